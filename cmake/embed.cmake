@@ -1,0 +1,17 @@
+# cmake -DOUTPUT=embedded.cpp -DDIRECTORY=kernels "-DFILES=a.cl;shared/b.h" -P embed.cmake
+set(CODE "#include \"kernels/embedded.hpp\"\n\nnamespace flaunay {\nnamespace {\n")
+set(TABLE "")
+set(INDEX 0)
+foreach(FILE IN LISTS FILES)
+  file(READ ${DIRECTORY}/${FILE} HEX HEX)
+  string(LENGTH "${HEX}" LENGTH)
+  math(EXPR SIZE "${LENGTH} / 2")
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," BYTES "${HEX}")
+  string(APPEND CODE "const unsigned char file_${INDEX}[] = {${BYTES}0};\n")
+  string(APPEND TABLE "      {\"${FILE}\", reinterpret_cast<const char*>(file_${INDEX}), ${SIZE}},\n")
+  math(EXPR INDEX "${INDEX} + 1")
+endforeach()
+string(APPEND CODE "}  // namespace\n\nconst std::vector<EmbeddedFile>& embedded_kernels() {\n"
+                   "  static const std::vector<EmbeddedFile> files = {\n${TABLE}  };\n  return files;\n}\n\n"
+                   "}  // namespace flaunay\n")
+file(WRITE ${OUTPUT} "${CODE}")

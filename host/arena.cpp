@@ -1,0 +1,93 @@
+#include "host/arena.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "host/error.hpp"
+
+namespace flaunay::host {
+namespace {
+
+constexpr std::size_t kSmallestBlock = std::size_t{1} << 20;
+
+std::shared_ptr<_cl_mem> own(cl_mem memory) {
+  return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
+}
+
+}  // namespace
+
+Arena::Arena(boost::compute::context context, const boost::compute::device& device)
+    : context_(std::move(context)),
+      // At least a cache line, so that kernels' vector loads never straddle a neighbour's.
+      alignment_(std::max<std::size_t>(128, device.get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8)),
+      largest_(device.max_memory_alloc_size()),
+      blocks_(1) {}
+
+Arena::~Arena() = default;
+
+std::size_t Arena::held_bytes() const {
+  std::size_t sum = 0;
+  for (const Block& block : blocks_) sum += block.size;
+  return sum;
+}
+
+std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
+  if (bytes > largest_) {
+    throw DeviceError(fmt::format("a buffer of {} bytes is more than the device allows in one piece ({} bytes); "
+                                  "use fewer points, or another device (FLAUNAY_DEVICE)",
+                                  bytes, largest_),
+                      CL_INVALID_BUFFER_SIZE);
+  }
+  cl_int code = CL_SUCCESS;
+  cl_mem memory = clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code);
+  check_call(code, "clCreateBuffer");
+  ++block_allocations_;
+  return own(memory);
+}
+
+void Arena::reserve(std::size_t bytes) {
+  if (current_ != 0 || blocks_[0].used != 0 || blocks_[0].size >= bytes) return;
+  bytes = std::min(std::max(bytes, kSmallestBlock), largest_);
+  blocks_.clear();
+  blocks_.resize(1);
+  blocks_[0].memory = allocate_block(bytes);
+  blocks_[0].size = bytes;
+}
+
+std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t bytes) {
+  // OpenCL has no empty buffers; an array of no elements still needs an address.
+  const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
+  while (blocks_[current_].used + rounded > blocks_[current_].size) {
+    if (current_ + 1 == blocks_.size()) blocks_.emplace_back();
+    Block& next = blocks_[current_ + 1];
+    if (next.size < rounded) {
+      // A quarter of what is held now: few blocks, and not too much in vain.
+      std::size_t size = std::max({rounded, kSmallestBlock, held_bytes() / 4});
+      size = std::max(rounded, std::min(size, largest_));
+      next.memory.reset();
+      next.memory = allocate_block(size);
+      next.size = size;
+    }
+    next.used = 0;
+    ++current_;
+  }
+  Block& block = blocks_[current_];
+  cl_buffer_region region{block.used, rounded};
+  cl_int code = CL_SUCCESS;
+  cl_mem memory =
+      clCreateSubBuffer(block.memory.get(), CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);
+  check_call(code, "clCreateSubBuffer");
+  block.used += rounded;
+  std::size_t used = 0;
+  for (std::size_t b = 0; b <= current_; ++b) used += blocks_[b].used;
+  peak_ = std::max(peak_, used);
+  return own(memory);
+}
+
+void Arena::release(std::size_t block, std::size_t used) {
+  current_ = block;
+  blocks_[block].used = used;
+}
+
+}  // namespace flaunay::host

@@ -1,0 +1,88 @@
+// Device memory: one stack of typed buffers, carved from blocks that live as long as the arena.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <boost/compute/context.hpp>
+#include <boost/compute/device.hpp>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace flaunay::host {
+
+/// A run of T in device memory. A handle: copies refer to the same memory.
+template <typename T>
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(std::shared_ptr<_cl_mem> memory, std::size_t size) : memory_(std::move(memory)), size_(size) {}
+  cl_mem memory() const { return memory_.get(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::shared_ptr<_cl_mem> memory_;
+  std::size_t size_ = 0;
+};
+
+/// A stack: what was allocated last is released first, by scopes. Work already enqueued on an in-order queue
+/// may go on using released memory, since whatever reuses it is enqueued later. If the blocks do not suffice,
+/// a further block is allocated, and kept.
+class Arena {
+ public:
+  Arena(boost::compute::context context, const boost::compute::device& device);
+  ~Arena();
+  Arena(const Arena&) = delete;
+  Arena& operator=(const Arena&) = delete;
+
+  /// Makes one block of at least `bytes`, if nothing is allocated and the blocks are smaller.
+  /// Throws DeviceError if the device cannot give it.
+  void reserve(std::size_t bytes);
+
+  template <typename T>
+  Buffer<T> allocate(std::size_t count) {
+    return Buffer<T>(allocate_bytes(count * sizeof(T)), count);
+  }
+
+  /// Releases, at its end, all that was allocated since its begin.
+  class Scope {
+   public:
+    explicit Scope(Arena& arena) : arena_(arena), block_(arena.current_), used_(arena.blocks_[block_].used) {}
+    ~Scope() { arena_.release(block_, used_); }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Arena& arena_;
+    std::size_t block_;
+    std::size_t used_;
+  };
+
+  /// Bytes in use at most since reset_peak, gaps at the ends of blocks included.
+  std::size_t peak_bytes() const { return peak_; }
+  /// Bytes of all blocks.
+  std::size_t held_bytes() const;
+  /// Blocks made so far: no more of them for the same work done again.
+  std::size_t block_allocations() const { return block_allocations_; }
+  void reset_peak() { peak_ = 0; }
+
+ private:
+  struct Block {
+    std::shared_ptr<_cl_mem> memory;
+    std::size_t size = 0;
+    std::size_t used = 0;
+  };
+  std::shared_ptr<_cl_mem> allocate_bytes(std::size_t bytes);
+  std::shared_ptr<_cl_mem> allocate_block(std::size_t bytes);
+  void release(std::size_t block, std::size_t used);
+
+  boost::compute::context context_;
+  std::size_t alignment_;
+  std::size_t largest_;
+  std::vector<Block> blocks_;
+  std::size_t current_ = 0;
+  std::size_t peak_ = 0;
+  std::size_t block_allocations_ = 0;
+};
+
+}  // namespace flaunay::host

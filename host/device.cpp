@@ -1,0 +1,96 @@
+#include "host/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/compute/platform.hpp>
+#include <cctype>
+#include <cstdlib>
+
+#include "host/error.hpp"
+
+namespace flaunay::host {
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::string listing(const std::vector<boost::compute::device>& devices) {
+  std::string text;
+  for (std::size_t k = 0; k < devices.size(); ++k) {
+    text += fmt::format("{}#{} {} ({})", k ? ", " : "", k, devices[k].name(), devices[k].platform().name());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<boost::compute::device> all_devices() {
+  cl_uint platform_count = 0;
+  const cl_int code = clGetPlatformIDs(0, nullptr, &platform_count);
+  if (code != CL_SUCCESS || platform_count == 0) {
+    throw DeviceError(
+        "no OpenCL platform found: install a driver. On Debian, for the CPU: apt-get install pocl-opencl-icd; "
+        "for a GPU: its vendor's OpenCL driver (nvidia-opencl-icd, rocm-opencl-icd, intel-opencl-icd). "
+        "If one is installed, see that /etc/OpenCL/vendors (or OCL_ICD_VENDORS) names it",
+        code == CL_SUCCESS ? -1001 : code);
+  }
+  std::vector<cl_platform_id> platforms(platform_count);
+  FLAUNAY_CL(clGetPlatformIDs(platform_count, platforms.data(), nullptr));
+  std::vector<boost::compute::device> devices;
+  for (const cl_platform_id platform : platforms) {
+    cl_uint device_count = 0;
+    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &device_count) != CL_SUCCESS) continue;
+    std::vector<cl_device_id> ids(device_count);
+    FLAUNAY_CL(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, device_count, ids.data(), nullptr));
+    for (const cl_device_id id : ids) devices.emplace_back(id);
+  }
+  return devices;
+}
+
+bool has_fp64(const boost::compute::device& device) {
+  return device.get_info<cl_device_fp_config>(CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
+}
+
+boost::compute::device find_device(const std::string& requested) {
+  const std::vector<boost::compute::device> devices = all_devices();
+  if (devices.empty()) {
+    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo", CL_DEVICE_NOT_FOUND);
+  }
+  std::string wanted = requested;
+  std::string origin = "--device";
+  if (wanted.empty()) {
+    const char* environment = std::getenv("FLAUNAY_DEVICE");
+    if (environment != nullptr) wanted = environment;
+    origin = "FLAUNAY_DEVICE";
+  }
+  if (wanted.empty()) {
+    for (const bool gpu_only : {true, false}) {
+      for (const auto& device : devices) {
+        if (has_fp64(device) && (!gpu_only || (device.type() & CL_DEVICE_TYPE_GPU))) return device;
+      }
+    }
+    throw DeviceError(fmt::format("no OpenCL device has double precision (fp64): {}", listing(devices)));
+  }
+  if (wanted[0] == '#') {
+    std::size_t index = 0;
+    for (const char c : wanted.substr(1)) {
+      if (!std::isdigit(static_cast<unsigned char>(c)) || index > devices.size()) index = devices.size();
+      else index = 10 * index + static_cast<std::size_t>(c - '0');
+    }
+    if (wanted.size() > 1 && index < devices.size()) return devices[index];
+  } else {
+    for (const auto& device : devices) {
+      if (lower_case(device.name()).find(lower_case(wanted)) != std::string::npos ||
+          lower_case(device.platform().name()).find(lower_case(wanted)) != std::string::npos) {
+        return device;
+      }
+    }
+  }
+  throw DeviceError(fmt::format("no device matches '{}' ({}); there are: {}", wanted, origin, listing(devices)),
+                    CL_DEVICE_NOT_FOUND);
+}
+
+}  // namespace flaunay::host

@@ -1,0 +1,154 @@
+#include "host/runtime.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "host/device.hpp"
+#include "kernels/embedded.hpp"
+
+namespace flaunay::host {
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string read_kernel_file(const std::string& name) {
+  if (const char* directory = std::getenv("FLAUNAY_KERNEL_PATH"); directory != nullptr && *directory != '\0') {
+    const std::string path = std::string(directory) + "/" + name;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw DeviceError(fmt::format("cannot read {} (FLAUNAY_KERNEL_PATH={})", path, directory));
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  for (const EmbeddedFile& file : embedded_kernels()) {
+    if (name == file.name) return std::string(file.text, file.size);
+  }
+  throw DeviceError(fmt::format("no kernel file {} in this build", name));
+}
+
+// Puts included files in place, each once: the driver never looks for files.
+void append_with_includes(const std::string& name, std::set<std::string>& seen, std::string& out) {
+  if (!seen.insert(name).second) return;
+  std::istringstream lines(read_kernel_file(name));
+  out += fmt::format("#line 1 \"{}\"\n", name);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const std::string prefix = "#include \"";
+    if (line.compare(0, prefix.size(), prefix) == 0) {
+      append_with_includes(line.substr(prefix.size(), line.find('"', prefix.size()) - prefix.size()), seen, out);
+      out += fmt::format("#line {} \"{}\"\n", number + 1, name);
+    } else {
+      out += line + "\n";
+    }
+  }
+}
+
+}  // namespace
+
+std::string kernel_source(const std::string& file) {
+  std::set<std::string> seen;
+  std::string source;
+  append_with_includes(file + ".cl", seen, source);
+  return source;
+}
+
+Runtime::Runtime(const boost::compute::device& device)
+    : device_(device), tuning_(tuning_for(device)), context_(device), queue_(context_, device_,
+      CL_QUEUE_PROFILING_ENABLE), arena_(context_, device) {}
+
+const boost::compute::program& Runtime::find_program(const std::string& file) {
+  const auto found = programs_.find(file);
+  if (found != programs_.end()) return found->second;
+  const double begin = now();
+  auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
+  const std::string options =
+      fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={}", tuning_.sort_bits, tuning_.sort_group);
+  const cl_device_id id = device_.id();
+  const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
+  if (code != CL_SUCCESS) {
+    std::size_t size = 0;
+    clGetProgramBuildInfo(program.get(), id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+    std::string log(size, '\0');
+    clGetProgramBuildInfo(program.get(), id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    throw DeviceError(fmt::format("{} ({}) from clBuildProgram of kernels/{}.cl; {}\n{}", error_name(code), code,
+                                  file, error_advice(code), log.c_str()),
+                      code);
+  }
+  build_seconds_ += now() - begin;
+  return programs_.emplace(file, std::move(program)).first->second;
+}
+
+Runtime::Kernel& Runtime::find_kernel(const char* file, const char* name) {
+  const auto key = std::make_pair(file, name);
+  const auto found = kernels_.find(key);
+  if (found != kernels_.end()) return found->second;
+  const boost::compute::program& program = find_program(file);
+  cl_int code = CL_SUCCESS;
+  cl_kernel kernel = clCreateKernel(program.get(), name, &code);
+  check_call(code, "clCreateKernel", fmt::format("{}.cl: {}", file, name));
+  return kernels_.emplace(key, Kernel{boost::compute::kernel(kernel, false), name}).first->second;
+}
+
+void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group) {
+  const std::size_t global = (work_items + group - 1) / group * group;
+  cl_event event = nullptr;
+  ++launches_;
+  FLAUNAY_CL_KERNEL(clEnqueueNDRangeKernel(queue_.get(), kernel.kernel.get(), 1, nullptr, &global, &group, 0,
+                                           nullptr, profiling_ ? &event : nullptr),
+                    kernel.name);
+  if (profiling_) events_.emplace_back(event, &kernel.name);
+  if (profiling_ && events_.size() >= 4096) collect_times();
+}
+
+void Runtime::read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to) {
+  ++waits_;
+  FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, CL_TRUE, offset, bytes, to, 0, nullptr, nullptr));
+}
+
+void Runtime::write_bytes(cl_mem to, std::size_t offset, std::size_t bytes, const void* from) {
+  ++waits_;
+  FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, CL_TRUE, offset, bytes, from, 0, nullptr, nullptr));
+}
+
+void Runtime::finish() {
+  ++waits_;
+  FLAUNAY_CL(clFinish(queue_.get()));
+}
+
+void Runtime::collect_times() {
+  if (events_.empty()) return;
+  FLAUNAY_CL(clFinish(queue_.get()));
+  for (const auto& [event, name] : events_) {
+    cl_ulong begin = 0, end = 0;
+    FLAUNAY_CL_KERNEL(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr), *name);
+    FLAUNAY_CL_KERNEL(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr), *name);
+    clReleaseEvent(event);
+    KernelTime& time = times_[*name];
+    ++time.launches;
+    time.seconds += 1e-9 * static_cast<double>(end - begin);
+  }
+  events_.clear();
+}
+
+std::map<std::string, KernelTime> Runtime::kernel_times() {
+  collect_times();
+  return times_;
+}
+
+void Runtime::reset_accounts() {
+  collect_times();
+  times_.clear();
+  launches_ = 0;
+  waits_ = 0;
+  build_seconds_ = 0;
+  arena_.reset_peak();
+}
+
+}  // namespace flaunay::host

@@ -1,0 +1,37 @@
+// Twins: for each half-edge the same edge in the triangle beyond it, or -1.
+//
+// One pass, a work-item a half-edge, over a hash table of undirected edges with linear probing: the first of an
+// edge's two half-edges takes a slot, the second finds it there. Which of them is first depends on scheduling; the
+// result does not, since each edge has two half-edges at most.
+
+#include "shared/halfedges.h"
+
+static inline uint edge_hash(int low, int high) {
+  ulong z = ((ulong)(uint)low << 32 | (uint)high) * 0x9e3779b97f4a7c15UL;
+  z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93UL;
+  return (uint)(z >> 32);
+}
+
+// table: mask + 1 slots (a power of two), -1 throughout; twins: -1 throughout.
+kernel void match_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table,
+                        global int* restrict twins) {
+  const int h = get_global_id(0);
+  if (h < n) {
+    const int from = halfedge_from(triangles, h);
+    const int to = halfedge_to(triangles, h);
+    uint slot = edge_hash(min(from, to), max(from, to)) & mask;
+    int searching = 1;
+    while (searching) {
+      const int other = atomic_cmpxchg(&table[slot], -1, h);
+      if (other == -1) {
+        searching = 0;
+      } else if (halfedge_from(triangles, other) == to && halfedge_to(triangles, other) == from) {
+        twins[h] = other;
+        twins[other] = h;
+        searching = 0;
+      } else {
+        slot = (slot + 1) & mask;
+      }
+    }
+  }
+}

@@ -1,0 +1,92 @@
+// How far a point's projection lies below a chord: the one predicate of prune, quickhull and clean-up.
+#ifndef FLAUNAY_HULL_HEIGHT_H
+#define FLAUNAY_HULL_HEIGHT_H
+
+#include "shared/exact_arithmetic.h"
+#include "shared/frame.h"
+
+// With h(p) the height of p's projection, and A, B the chord's ends, u_A < u_B: positive iff p lies strictly below
+// the chord, in a floating-point value that is also good to rank points by. For the cut at q,
+//   depth = (A_s - q)^2 (B_u - u) + (B_s - q)^2 (u - A_u) + (B_u - A_u) ((u - A_u)(B_u - u) - (s - q)^2):
+// the term in u^2 of the projection is replaced by its difference from the chord's own, which cancels nothing. For a
+// planar hull the squares are plain values and the quadratic term in u is absent. For one chord and one u, depth never
+// grows with the height of p, rounding included: of points with equal u, none lower has a smaller depth.
+//
+// Each of the four terms is a product of at most five rounded factors and sums; with unit roundoff e = 2^-53 its
+// relative error is below 6e(1 + 5e), the three additions add 3e of the sum of magnitudes. So
+// |depth - exact| <= 10 e * magnitude with room for rounding the bound itself, where magnitude is the computed sum
+// of the terms' magnitudes. Nothing underflows: see docs/exactness.md.
+#define HULL_DEPTH_BOUND (10.0 * 0x1p-53)
+
+// (depth, magnitude). a, b, p in the frame (s, u).
+static inline double2 hull_depth(double2 a, double2 b, double2 p, double q, int planar) {
+  const double to_b = b.y - p.y;
+  const double from_a = p.y - a.y;
+  const double length = b.y - a.y;
+  const double as = a.x - q;
+  const double bs = b.x - q;
+  const double ps = p.x - q;
+  const double ha = planar ? as : as * as;
+  const double hb = planar ? bs : bs * bs;
+  const double hp = planar ? ps : ps * ps;
+  const double ta = ha * to_b;
+  const double tb = hb * from_a;
+  const double tu = planar ? 0.0 : length * (from_a * to_b);
+  const double tp = length * hp;
+  return (double2)(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
+}
+
+// The exact sign of depth: -(bu * ds(c) - cu * ds(b)) with everything relative to a, where for the cut at q
+// ds(p) = p_s (p_s + t) + p_u^2, t = 2 (a_s - q), and for a planar hull ds(p) = p_s.
+static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int planar) {
+  const double2 bu = two_sum(b.y, -a.y);
+  const double2 pu = two_sum(p.y, -a.y);
+  expansion sum;
+  sum.size = 0;
+  // Terms: pu * bs (bs + t), -bu * ps (ps + t), bu * pu * (bu - pu).
+  for (int term = 0; term < (planar ? 2 : 3); ++term) {
+    expansion product;
+    double factor[3];
+    const double2 u = term == 0 ? pu : bu;
+    const double sign = term == 1 ? -1.0 : 1.0;
+    product.size = 0;
+    expansion_add(&product, sign * u.y);
+    expansion_add(&product, sign * u.x);
+    const double2 c = term == 0 ? b : p;
+    for (int f = 0; f < (planar ? 1 : 2); ++f) {
+      double2 difference;
+      factor[2] = 0.0;
+      if (term == 2) {
+        difference = f == 0 ? pu : two_sum(b.y, -p.y);
+      } else if (f == 0) {
+        difference = two_sum(c.x, -a.x);
+      } else {
+        // c_s - a_s + 2 (a_s - q) = c_s + a_s - 2q
+        difference = two_sum(c.x, a.x);
+        factor[2] = -2.0 * q;
+      }
+      factor[0] = difference.x;
+      factor[1] = difference.y;
+      expansion_multiply(&product, factor, 3);
+    }
+    for (int i = 0; i < product.size; ++i) {
+      expansion_add(&sum, product.part[i]);
+    }
+    expansion_compress(&sum);
+  }
+  return expansion_sign(&sum);
+}
+
+// Whether, of two points with equal u, p projects strictly lower than v; equal projections (mirror images in
+// the cut line) count as lower if p has the smaller s. Exact.
+static inline int is_lower(double2 p, double2 v, double q, int planar) {
+  if (planar) return p.x < v.x;
+  const int ps = sign_of(p.x - q);
+  const int vs = sign_of(v.x - q);
+  if (ps * vs >= 0) return ps + vs < 0 ? p.x > v.x : p.x < v.x;
+  // On different sides: the nearer one, by the sign of p_s + v_s - 2q.
+  const int side = sign_of_sum(p.x, v.x, -2.0 * q);
+  return ps < 0 ? side >= 0 : side < 0;
+}
+
+#endif

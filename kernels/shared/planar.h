@@ -1,0 +1,97 @@
+// Orientation and in-circle tests: floating point with a bound first, exact by expansions.
+#ifndef FLAUNAY_PLANAR_H
+#define FLAUNAY_PLANAR_H
+
+#include "shared/exact_arithmetic.h"
+
+// Shewchuk's (1997) bounds for the straightforward evaluation, e = 2^-53: (3 + 16e)e and (10 + 96e)e, times the sum
+// of magnitudes. A bound of 0 says that the input is so coarse that nothing is rounded (docs/exactness.md).
+#define ORIENT_BOUND ((3.0 + 16.0 * 0x1p-53) * 0x1p-53)
+#define CIRCLE_BOUND ((10.0 + 96.0 * 0x1p-53) * 0x1p-53)
+#define UNDECIDED 2
+
+// 1 if a, b, c turn left, -1 right, 0 straight, UNDECIDED.
+static inline int orient_filtered(double2 a, double2 b, double2 c, double bound) {
+  const double left = (a.x - c.x) * (b.y - c.y);
+  const double right = (a.y - c.y) * (b.x - c.x);
+  const double det = left - right;
+  const double error = bound * (fabs(left) + fabs(right));
+  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+}
+
+static inline int orient_exact(double2 a, double2 b, double2 c) {
+  const double2 bx = two_sum(b.x, -a.x);
+  const double2 by = two_sum(b.y, -a.y);
+  const double2 cx = two_sum(c.x, -a.x);
+  const double2 cy = two_sum(c.y, -a.y);
+  expansion sum;
+  sum.size = 0;
+  for (int term = 0; term < 2; ++term) {
+    const double2 f = term == 0 ? bx : -by;
+    const double2 g = term == 0 ? cy : cx;
+    for (int k = 0; k < 4; ++k) {
+      const double2 p = two_product(k & 1 ? f.x : f.y, k & 2 ? g.x : g.y);
+      if (p.y != 0.0) expansion_add(&sum, p.y);
+      if (p.x != 0.0) expansion_add(&sum, p.x);
+    }
+  }
+  return expansion_sign(&sum);
+}
+
+// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it, UNDECIDED.
+static inline int circle_filtered(double2 a, double2 b, double2 c, double2 d, double bound) {
+  const double2 ad = a - d;
+  const double2 bd = b - d;
+  const double2 cd = c - d;
+  const double bc = bd.x * cd.y;
+  const double cb = cd.x * bd.y;
+  const double ca = cd.x * ad.y;
+  const double ac = ad.x * cd.y;
+  const double ab = ad.x * bd.y;
+  const double ba = bd.x * ad.y;
+  const double al = ad.x * ad.x + ad.y * ad.y;
+  const double bl = bd.x * bd.x + bd.y * bd.y;
+  const double cl = cd.x * cd.x + cd.y * cd.y;
+  const double det = al * (bc - cb) + bl * (ca - ac) + cl * (ab - ba);
+  const double magnitude =
+      (fabs(bc) + fabs(cb)) * al + (fabs(ca) + fabs(ac)) * bl + (fabs(ab) + fabs(ba)) * cl;
+  const double error = bound * magnitude;
+  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+}
+
+static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
+  double2 dx[3], dy[3];
+  dx[0] = two_sum(a.x, -d.x);
+  dy[0] = two_sum(a.y, -d.y);
+  dx[1] = two_sum(b.x, -d.x);
+  dy[1] = two_sum(b.y, -d.y);
+  dx[2] = two_sum(c.x, -d.x);
+  dy[2] = two_sum(c.y, -d.y);
+  expansion sum;
+  sum.size = 0;
+  // lift(k) times the cross product of the other two: six products of four differences for each coordinate's
+  // square, twelve in all.
+  for (int term = 0; term < 12; ++term) {
+    const int k = term / 4;
+    const int i = (k + 1) % 3;
+    const int j = (k + 2) % 3;
+    const int crossed = term & 1;
+    const double2 lift = term & 2 ? dy[k] : dx[k];
+    const double2 f = crossed ? -dx[j] : dx[i];
+    const double2 g = crossed ? dy[i] : dy[j];
+    expansion product;
+    product.size = 0;
+    expansion_add(&product, f.y);
+    expansion_add(&product, f.x);
+    for (int s = 0; s < 3; ++s) {
+      const double2 by = s == 0 ? g : lift;
+      const double factor[2] = {by.x, by.y};
+      expansion_multiply(&product, factor, 2);
+    }
+    for (int s = 0; s < product.size; ++s) expansion_add(&sum, product.part[s]);
+    expansion_compress(&sum);
+  }
+  return expansion_sign(&sum);
+}
+
+#endif

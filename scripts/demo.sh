@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Triangulates a million points, checks the result exactly, and draws a smaller triangulation.
+# Needs nothing but a Debian 12: installs and builds first. Results: build/demo.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+scripts/install-deps.sh
+
+say() { printf '\n== %s\n' "$*"; }
+
+say 'Building'
+cmake --preset release >/dev/null
+cmake --build --preset release --target flaunay_cli
+
+flaunay=build/release/flaunay
+demo=build/demo
+mkdir -p "$demo"
+
+say 'The devices here'
+"$flaunay" devices
+
+say 'A million points of the kuzmin distribution: dense in the middle, sparse outside'
+"$flaunay" generate kuzmin 1000000 --seed 1 -o "$demo/million.npy"
+"$flaunay" triangulate "$demo/million.npy" --triangles "$demo/million-triangles.npy" \
+  --neighbors "$demo/million-neighbors.npy" --hull "$demo/million-hull.npy" --stats "$demo/million-stats.json"
+
+say 'Verifying every triangle with exact arithmetic, independently, on the host'
+"$flaunay" verify "$demo/million.npy" "$demo/million-triangles.npy" --neighbors "$demo/million-neighbors.npy"
+
+say 'A picture of 2,000 points'
+"$flaunay" generate kuzmin 2000 --seed 1 -o "$demo/kuzmin.npy"
+"$flaunay" triangulate "$demo/kuzmin.npy" -o "$demo/kuzmin.svg"
+pictures="$PWD/$demo/kuzmin.svg"
+if command -v rsvg-convert >/dev/null; then
+  rsvg-convert "$demo/kuzmin.svg" -o "$demo/kuzmin.png"
+  pictures+=" and $PWD/$demo/kuzmin.png"
+fi
+
+say 'Done'
+echo "picture:    $pictures"
+echo "triangles:  $PWD/$demo/million-triangles.npy"
+echo "statistics: $PWD/$demo/million-stats.json"

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs what flaunay needs on Debian 12 to build, run and test. Does nothing if all is there.
+set -euo pipefail
+
+packages=(
+  # building
+  ca-certificates git cmake g++ ninja-build pkg-config
+  # OpenCL: the loader, the headers, and a device that every machine has, its CPU
+  ocl-icd-opencl-dev opencl-headers pocl-opencl-icd
+  # libraries
+  libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
+  # tests
+  libgtest-dev libgmp-dev libcgal-dev oclgrind
+  # the demonstration's picture
+  librsvg2-bin
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  status="$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null || true)"
+  [[ $status == 'install ok installed' ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  exit 0
+fi
+
+if ((EUID != 0)); then
+  {
+    echo "install-deps: these packages are missing and need root to be installed:"
+    echo "  apt-get install --no-install-recommends ${missing[*]}"
+  } >&2
+  exit 1
+fi
+
+echo "install-deps: installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+apt-get update -q
+apt-get install -q -y --no-install-recommends "${missing[@]}"

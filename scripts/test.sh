@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Builds and runs all tests. Needs nothing but a Debian 12: installs first.
+#   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers
+#   scripts/test.sh --quick   without the sanitizers
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+quick=false
+case "${1-}" in
+  '') ;;
+  --quick) quick=true ;;
+  *)
+    echo "usage: scripts/test.sh [--quick]" >&2
+    exit 2
+    ;;
+esac
+
+scripts/install-deps.sh
+
+jobs="$(nproc)"
+build() {
+  cmake --preset "$1"
+  cmake --build --preset "$1"
+}
+
+build release
+if ! $quick; then
+  build asan
+  # PoCL and the compiler in it leak. Leaks of our own are looked for in the tests that open no device: those
+  # turn the detection on again.
+  ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
+fi
+# Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
+ctest --preset release --no-tests=error -j "$jobs"

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+std::string gibibytes(std::size_t bytes) {
+  return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1024.0 * 1024 * 1024));
+}
+
+std::string self_test(const DeviceInfo& device) {
+  if (device.self_test_passed) return "passed";
+  if (!device.fp64) return "unusable: no fp64";
+  return "failed: " + device.self_test_failure;
+}
+
+int devices() {
+  std::vector<DeviceInfo> found;
+  {
+    Progress progress(true);
+    progress.update_slow("testing devices", "testing devices: compiling kernels, cached for next time");
+    found = list_devices(true);
+  }
+  if (found.empty()) {
+    throw Error(ErrorKind::device,
+                "no OpenCL device: the installed platforms offer none; on Debian, install pocl-opencl-icd to "
+                "compute on the CPU");
+  }
+
+  constexpr std::size_t kColumns = 10;
+  using Row = std::array<std::string, kColumns>;
+  std::vector<Row> rows = {
+      {"#", "name", "type", "platform", "driver", "fp64", "memory", "largest buffer", "units", "self-test"}};
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const DeviceInfo& device = found[k];
+    rows.push_back({fmt::format("#{}", k), device.name, device.type, device.platform, device.driver,
+                    device.fp64 ? "yes" : "no", gibibytes(device.memory_bytes),
+                    gibibytes(device.largest_buffer_bytes), std::to_string(device.compute_units),
+                    self_test(device)});
+  }
+  std::array<std::size_t, kColumns> widths{};
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c < kColumns; ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string table;
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c + 1 < kColumns; ++c) {
+      fmt::format_to(std::back_inserter(table), "{:<{}}  ", row[c], widths[c]);
+    }
+    table += row.back() + "\n";
+  }
+  print(table);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_devices(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("devices", "List the OpenCL devices, with the result of the self-test");
+  command->callback([&action] { action = devices; });
+}
+
+}  // namespace flaunay::cli

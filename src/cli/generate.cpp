@@ -1,0 +1,88 @@
+#include "io/generate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "flaunay/flaunay.hpp"
+#include "io/points.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+struct GenerateRequest {
+  std::string distribution;
+  std::size_t count = 0;
+  std::uint64_t seed = 1;
+  std::string output;
+};
+
+int generate(const GenerateRequest& request) {
+  constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max();
+  if (request.count > kMostPoints) {
+    throw Error(ErrorKind::usage, fmt::format("{} points are too many: indices are 32 bits, so at most {}",
+                                              request.count, kMostPoints));
+  }
+  if (request.output == "-") {
+    // Text into a pipe: if the reader goes away, end as every filter does.
+    std::signal(SIGPIPE, SIG_DFL);
+    io::write_points("-", io::generate(request.distribution, request.count, request.seed));
+    return kSuccess;
+  }
+  OutputFiles outputs("-");
+  outputs.add_points(request.output);
+  io::write_points(request.output, io::generate(request.distribution, request.count, request.seed));
+  outputs.keep();
+  return kSuccess;
+}
+
+std::string distribution_list() {
+  std::size_t width = 0;
+  for (const io::Distribution& distribution : io::distributions()) {
+    width = std::max(width, distribution.name.size());
+  }
+  std::string list = "Distributions:\n";
+  for (const io::Distribution& distribution : io::distributions()) {
+    fmt::format_to(std::back_inserter(list), "  {:<{}}  {}\n", distribution.name, width,
+                   distribution.description);
+  }
+  return list;
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Action& action) {
+  auto request = std::make_shared<GenerateRequest>();
+  CLI::App* command = app.add_subcommand("generate", "Write points of a known distribution");
+  command->add_option("distribution", request->distribution, "One of those listed below")->required();
+  // CLI11 wraps negative numbers round and cuts large ones off.
+  const CLI::Validator whole_number(
+      [](std::string& text) -> std::string {
+        constexpr std::size_t kMostDigits = std::numeric_limits<std::uint64_t>::digits10;
+        const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
+        if (digits && !text.empty() && text.size() <= kMostDigits) return "";
+        return fmt::format("expected a whole number of at most {} digits, not '{}'", kMostDigits, text);
+      },
+      "");
+  command->add_option("count", request->count, "How many points")->required()->check(whole_number);
+  command->add_option("--seed", request->seed, "The same seed gives the same points on every machine")
+      ->check(whole_number)
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", request->output,
+                   "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text on standard output")
+      ->required();
+  command->footer(distribution_list());
+  command->callback([request, &action] { action = [request] { return generate(*request); }; });
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,96 @@
+#include "cli/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace flaunay::cli {
+
+namespace {
+
+constexpr std::chrono::milliseconds kSlow(500);
+constexpr std::chrono::milliseconds kRedraw(100);
+constexpr const char* kClearLine = "\r\x1b[K";
+
+bool on_terminal() {
+  const char* type = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && !(type != nullptr && std::strcmp(type, "dumb") == 0);
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+// A line that cannot be shown is not worth an error.
+void write_to_terminal(const std::string& text) {
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+}  // namespace
+
+Progress::Progress(bool wanted) {
+  if (wanted && on_terminal()) drawer_ = std::thread([this] { draw_until_finished(); });
+}
+
+Progress::~Progress() { finish(); }
+
+void Progress::update(const std::string& stage, int level, double done) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stage_ = stage;
+  stage_if_slow_.clear();
+  level_ = level;
+  done_ = done;
+}
+
+void Progress::update_slow(const std::string& stage, const std::string& if_slow) {
+  update(stage);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stage_if_slow_ = if_slow;
+  stage_start_ = Clock::now();
+}
+
+void Progress::finish() {
+  if (!drawer_.joinable()) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    finished_ = true;
+  }
+  finish_asked_.notify_one();
+  drawer_.join();
+}
+
+void Progress::draw_until_finished() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const auto finished = [this] { return finished_; };
+  if (finish_asked_.wait_for(lock, kSlow, finished)) return;
+  do {
+    const std::string text = line();
+    // The terminal may be slow; the work must not wait for it.
+    lock.unlock();
+    write_to_terminal(kClearLine + text.substr(0, terminal_width() - 1));
+    lock.lock();
+  } while (!finish_asked_.wait_for(lock, kRedraw, finished));
+  write_to_terminal(kClearLine);
+}
+
+std::string Progress::line() const {
+  std::string text = stage_;
+  if (!stage_if_slow_.empty() && Clock::now() - stage_start_ >= kSlow) text = stage_if_slow_;
+  if (level_ >= 0) text += fmt::format(", level {}", level_);
+  if (done_ >= 0) {
+    constexpr int kBarLength = 30;
+    const double done = std::clamp(done_, 0.0, 1.0);
+    const int filled = static_cast<int>(done * kBarLength);
+    text = fmt::format("{:<28} [{:#<{}}{:.<{}}] {:3.0f}%", text, "", filled, "", kBarLength - filled,
+                       std::floor(100 * done));
+  }
+  return text;
+}
+
+}  // namespace flaunay::cli

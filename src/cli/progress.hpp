@@ -1,0 +1,61 @@
+// One line on the terminal that says what goes on, while it goes on.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace flaunay::cli {
+
+/// Rewrites one line of standard error until it is destroyed, then clears it. Shows nothing if standard error
+/// is no terminal, if it is not wanted, or in the first half second. A thread of its own draws the line, so
+/// that a stage that reports nothing (reading, compiling) is seen too.
+class Progress {
+ public:
+  explicit Progress(bool wanted);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// level below 0: the stage has none; done (0 to 1) below 0: how far it is is unknown.
+  void update(const std::string& stage, int level = -1, double done = -1);
+  /// For a stage that is only worth explaining if it takes half a second itself: is then shown as `if_slow`.
+  void update_slow(const std::string& stage, const std::string& if_slow);
+  /// Clears the line and ends; the destructor does it too.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void draw_until_finished();
+  std::string line() const;
+
+  std::mutex mutex_;
+  std::condition_variable finish_asked_;
+  bool finished_ = false;
+  std::string stage_;
+  std::string stage_if_slow_;  // may be empty
+  Clock::time_point stage_start_;
+  int level_ = -1;
+  double done_ = -1;
+  std::thread drawer_;
+};
+
+/// Seconds since it was made or last restarted.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double restart() {
+    const double elapsed = seconds();
+    start_ = Clock::now();
+    return elapsed;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace flaunay::cli

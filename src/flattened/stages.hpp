@@ -1,0 +1,170 @@
+// The stages of the flattened triangulator and what they hand to each other. Each stage is one function, in the
+// file named as its kernel file; the level loop is in triangulator.cpp.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "host/runtime.hpp"
+#include "host/vector_operations.hpp"
+
+namespace flaunay::flattened {
+
+using host::Arena;
+using host::Buffer;
+
+/// Bounds of the filters; 0 where the input is so coarse that floating point is exact (docs/exactness.md).
+struct Bounds {
+  double hull = 0;
+  double orient = 0;
+  double circle = 0;
+};
+
+/// What every stage works with.
+struct Workspace {
+  host::Runtime& runtime;
+  Arena& persistent;  ///< lives as long as the call
+  Arena* state;       ///< of the level at work
+  Arena* next_state;  ///< of the level that it makes
+  Statistics& statistics;
+  Bounds bounds{};
+  /// Bits set by kernels on a broken invariant; see check_invariants.
+  Buffer<cl_int> broken{};
+  /// Number of undecided predicates of the list at hand, on the device.
+  Buffer<cl_uint> list_length{};
+  /// Sum of list lengths.
+  Buffer<cl_uint> undecided{};
+
+  Arena& scratch() { return runtime.arena(); }
+};
+
+/// Distinct points by id, the rank in (set, x, y).
+struct PointTable {
+  std::size_t input_count = 0;
+  std::size_t count = 0;
+  std::size_t sets = 0;
+  Buffer<cl_double2> points{};
+  Buffer<cl_int> source{};       ///< id to index of the input
+  Buffer<cl_int> set_of_id{};
+  Buffer<cl_int> set_offsets{};  ///< sets + 1 ids
+  Buffer<cl_int> y_order{};      ///< ids by (set, y, x)
+  Buffer<cl_uchar> side{};       ///< of internal points: where they go; SIDE_BORDER for all others
+};
+
+/// The regions of one level. Points and corners are grouped by region.
+struct Level {
+  std::size_t regions = 0;
+  std::size_t points = 0;
+  std::size_t corners = 0;
+  Buffer<cl_int> x_list{}, y_list{};   ///< internal points of each region, in either order
+  Buffer<cl_int> point_regions{};      ///< of both lists' places
+  Buffer<cl_int> point_offsets{};      ///< regions + 1
+  Buffer<cl_int> corner_ids{};         ///< 3 per corner: before, vertex, after
+  Buffer<cl_int> corner_regions{};
+  Buffer<cl_int> corner_offsets{};     ///< regions + 1
+  Buffer<cl_int> axis{};
+  Buffer<cl_double> cut{};
+  Buffer<cl_int> first_end{}, last_end{};  ///< ends of each region's hull
+};
+
+/// Regions without internal points.
+struct RetiredRegions {
+  std::size_t regions = 0;
+  std::size_t corners = 0;
+  Buffer<cl_int> corner_ids{};
+  Buffer<cl_int> offsets{};  ///< regions + 1
+};
+
+/// Every region's path: the vertices of its hull in the order of u.
+struct Paths {
+  std::size_t size = 0;
+  Buffer<cl_int> vertices{};
+  Buffer<cl_double> u{};
+  Buffer<cl_int> regions{};
+  Buffer<cl_int> offsets{};  ///< regions + 1
+};
+
+/// The borders of all sets, and what the host must know of them.
+struct Borders {
+  std::size_t size = 0;
+  Buffer<cl_int> hull{};  ///< ids, set by set
+  std::vector<std::size_t> hull_offsets;
+  std::size_t triangles = 0;  ///< that all sets together will have
+};
+
+/// Checks, scales, sorts and renumbers. representatives: host memory for one index per input point.
+/// Throws Error(input) for points that are not finite or beyond the range of magnitudes.
+PointTable ingest(Workspace& work, const double* coordinates, const std::vector<std::size_t>& offsets,
+                  std::int32_t* representatives);
+
+/// The convex hulls, and the regions of level 0; sets without internal points retire at once.
+Borders initial_borders(Workspace& work, PointTable& table, Level& level, RetiredRegions& retired);
+
+/// Chooses the cuts of a level. alternate_axis: 0 or 1, or -1 for the interquartile rule.
+void cut(Workspace& work, const PointTable& table, Level& level, int alternate_axis);
+
+/// The strict hulls of a level's regions, whose ends are known: prune, quickhull, clean-up.
+Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics);
+
+/// What prune keeps of internal points (and corners), as flags: against paths; keep_on also keeps what lies on them.
+struct Pruned {
+  std::size_t elements = 0;
+  Buffer<cl_uchar> flags{};
+};
+Pruned prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on);
+
+/// The points of quickhull: those flagged, with one segment per region.
+struct HullPoints {
+  std::size_t size = 0;
+  Buffer<cl_int> ids{}, segments{};
+  Buffer<cl_int> chord_a{}, chord_b{}, chord_region{}, first{};
+};
+Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& points,
+                int& rounds);
+/// Drops vertices that are not strictly below the segment of their neighbours, until there are none.
+Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths paths);
+
+/// Border merge and split: the next level's regions, and those that retire.
+void merge(Workspace& work, PointTable& table, const Level& level, const Paths& paths, Level& next,
+           RetiredRegions& retired);
+
+/// Lays out children from their scanned sizes; used by merge and initial_borders.
+struct Children {
+  Buffer<cl_int> region{}, base{};
+};
+Children place_children(Workspace& work, const Buffer<cl_uint8>& sizes, std::size_t children, Level& next,
+                        RetiredRegions& retired);
+
+/// Triangulates retired regions; their triangles go to triangles[base...]. Returns how many.
+std::size_t endgame(Workspace& work, const PointTable& table, const RetiredRegions& retired,
+                    const Buffer<cl_int>& triangles, std::size_t base);
+
+/// The triangles of regions too large for one work-item; see strips.cl.
+void strips(Workspace& work, const PointTable& table, const RetiredRegions& retired,
+            const Buffer<cl_int>& large, std::size_t large_count, const Buffer<cl_uint>& counts);
+
+/// Twins of all half-edges; see neighbors.cl.
+void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t count, const Buffer<cl_int>& twins);
+
+/// Makes triangles canonical, and their twins with them.
+void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles, std::size_t count,
+                  const Buffer<cl_int>& twins);
+
+/// Packs the flags of value 2 into a list whose length stays on the device, and counts it as undecided.
+Buffer<cl_int> pack_undecided(Workspace& work, const Buffer<cl_uchar>& flags, std::size_t n);
+
+/// Launches a kernel that shares a list of device-side length among a fixed number of work-items.
+template <typename... Arguments>
+void run_list(Workspace& work, const char* file, const char* kernel, const Buffer<cl_int>& list,
+              const Arguments&... arguments) {
+  work.runtime.launch(file, kernel, work.runtime.tuning().list_workers, work.runtime.tuning().chunk_group,
+                      work.list_length, list, arguments...);
+}
+
+/// Throws Error(internal) if a kernel found an invariant broken.
+void check_invariants(Workspace& work);
+
+}  // namespace flaunay::flattened

@@ -1,0 +1,235 @@
+// Whole files in, whole files out: read_file, and OutputFile, which replaces its target only on success.
+#pragma once
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::io {
+
+// The binary formats are little-endian and are read and written as they lie in memory.
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "flaunay::io needs a little-endian host");
+
+/// Throws Error(input) with a message that starts with path.
+template <typename... Arguments>
+[[noreturn]] void fail(const std::string& path, fmt::format_string<Arguments...> format,
+                       Arguments&&... arguments) {
+  throw Error(ErrorKind::input,
+              fmt::format("{}: {}", path, fmt::format(format, std::forward<Arguments>(arguments)...)));
+}
+
+inline std::string system_reason(int error_number) { return std::strerror(error_number); }
+
+/// The part of the file's name from its last dot, in lower case; empty if there is no dot.
+inline std::string ending_of(const std::string& path) {
+  const std::string name = path.substr(path.find_last_of('/') + 1);
+  const std::size_t dot = name.find_last_of('.');
+  if (dot == std::string::npos) return "";
+  std::string ending = name.substr(dot);
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return ending;
+}
+
+/// Throws Error(usage) saying that the ending of path is not among `expected`.
+[[noreturn]] inline void fail_ending(const std::string& path, std::string_view expected) {
+  const std::string ending = ending_of(path);
+  throw Error(ErrorKind::usage,
+              ending.empty() ? fmt::format("{}: has no ending; expected {}", path, expected)
+                             : fmt::format("{}: unknown ending '{}'; expected {}", path, ending, expected));
+}
+
+/// How messages call a path that read_file takes.
+inline std::string shown_path(const std::string& path) {
+  return path == "-" ? std::string("- (standard input)") : path;
+}
+
+/// The bytes of the file at path, or of standard input for "-". `expected` says what should have been in it.
+inline std::string read_file(const std::string& path, std::string_view expected) {
+  struct Descriptor {
+    int number;
+    ~Descriptor() {
+      if (number > STDIN_FILENO) ::close(number);
+    }
+  };
+  const std::string name = shown_path(path);
+  const Descriptor file{path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  struct stat status {};
+  if (file.number < 0 || ::fstat(file.number, &status) != 0) {
+    fail(name, "cannot be opened: {}; expected {}", system_reason(errno), expected);
+  }
+  if (S_ISDIR(status.st_mode)) fail(name, "cannot be read: {}; expected {}", system_reason(EISDIR), expected);
+
+  // A regular file's size is known; one byte more shows its end in the same call. Pipes grow as they come.
+  std::string bytes(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 1 << 16, '\0');
+  std::size_t used = 0;
+  for (;;) {
+    if (used == bytes.size()) bytes.resize(2 * bytes.size());
+    const ssize_t got = ::read(file.number, &bytes[used], bytes.size() - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(name, "cannot be read: {}", system_reason(errno));
+    if (got == 0) break;
+    used += static_cast<std::size_t>(got);
+  }
+  bytes.resize(used);
+  if (bytes.empty()) fail(name, "is empty (zero bytes); expected {}", expected);
+  return bytes;
+}
+
+/// A file being written. The bytes go to a temporary file in the target's folder; commit renames it over the
+/// target, and without commit it is removed: a failure leaves the target as it was. Targets that are no
+/// regular files (devices, pipes, "-" for standard output) are written directly. Throws Error(input).
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& path) : path_(path) {
+    if (path == "-") {
+      descriptor_ = STDOUT_FILENO;
+      return;
+    }
+    const Target target = find_target(path);
+    target_ = target.path;
+    if (target.direct) {
+      descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+      if (descriptor_ < 0) fail(path_, "cannot be opened for writing: {}", system_reason(errno));
+    } else {
+      create_temporary(target);
+    }
+  }
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile() {
+    if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+
+  /// Throws what writing would throw for a path that cannot be created; leaves nothing behind.
+  static void check(const std::string& path) {
+    if (!find_target(path).direct) OutputFile probe(path);
+  }
+
+  template <typename... Arguments>
+  void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    fmt::format_to(fmt::appender(buffer_), format, std::forward<Arguments>(arguments)...);
+    flush_if_full();
+  }
+  void write(const void* data, std::size_t bytes) {
+    const char* begin = static_cast<const char*>(data);
+    if (bytes >= kFull) {
+      flush();
+      write_through(begin, bytes);
+    } else {
+      buffer_.append(begin, begin + bytes);
+      flush_if_full();
+    }
+  }
+  template <typename Value>
+  void write_value(const Value& value) {
+    write(&value, sizeof value);
+  }
+
+  /// Everything written and closed, the target still untouched.
+  void finish() {
+    flush();
+    if (descriptor_ > STDERR_FILENO) {
+      const int closed = ::close(descriptor_);
+      descriptor_ = -1;
+      if (closed != 0) fail(path_, "cannot be written: {}", system_reason(errno));
+    }
+  }
+  /// finish, then the file takes its target's place.
+  void commit() {
+    finish();
+    if (temporary_.empty()) return;
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+      fail(path_, "cannot be replaced by the written file: {}", system_reason(errno));
+    }
+    temporary_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kFull = std::size_t{1} << 20;
+
+  struct Target {
+    std::string path;     // symbolic links followed
+    bool direct = false;  // exists and is no regular file
+    bool exists = false;
+    mode_t mode = 0;
+  };
+
+  static Target find_target(const std::string& path) {
+    Target target;
+    target.path = path;
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) {
+      if (errno != ENOENT) fail(path, "cannot be written: {}", system_reason(errno));
+      return target;
+    }
+    if (S_ISDIR(status.st_mode)) fail(path, "cannot be written: {}", system_reason(EISDIR));
+    // A rename would replace even a file that is write-protected.
+    if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0)
+      fail(path, "cannot be written: {}", system_reason(errno));
+    target.exists = true;
+    target.direct = !S_ISREG(status.st_mode);
+    target.mode = status.st_mode & 07777;
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(path, error);
+    if (!error) target.path = real.string();
+    return target;
+  }
+
+  void create_temporary(const Target& target) {
+    const std::size_t slash = target_.find_last_of('/');
+    const std::string folder = slash == std::string::npos ? "." : target_.substr(0, slash + 1);
+    for (int attempt = 0;; ++attempt) {
+      // Its own short name: the target's may already be as long as the file system allows.
+      const std::string name = fmt::format("{}/.flaunay-{}-{}.tmp", folder, ::getpid(), attempt);
+      descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ >= 0) {
+        temporary_ = name;
+        break;
+      }
+      if (errno != EEXIST) {
+        fail(path_, "cannot be created in folder '{}': {}", folder, system_reason(errno));
+      }
+    }
+    // Best effort: some file systems have no modes to keep.
+    if (target.exists && ::fchmod(descriptor_, target.mode) != 0) return;
+  }
+
+  void flush_if_full() {
+    if (buffer_.size() >= kFull) flush();
+  }
+  void flush() {
+    write_through(buffer_.data(), buffer_.size());
+    buffer_.clear();
+  }
+  void write_through(const char* data, std::size_t bytes) {
+    while (bytes > 0) {
+      const ssize_t written = ::write(descriptor_, data, bytes);
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(path_, "cannot be written: {}", system_reason(errno));
+      data += written;
+      bytes -= static_cast<std::size_t>(written);
+    }
+  }
+
+  std::string path_;
+  std::string target_;
+  std::string temporary_;  // empty: written directly, or already in place
+  int descriptor_ = -1;
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace flaunay::io

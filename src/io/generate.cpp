@@ -1,0 +1,414 @@
+#include "io/generate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <utility>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::io {
+namespace {
+
+// The same bytes on every machine: only + - * / and sqrt, which IEEE 754 fixes to the last bit, and the raw
+// output of mt19937_64, which the standard fixes. Logarithm, sine and cosine are therefore our own; those of
+// the C library differ between versions and processors.
+
+double portable_log(double x) {
+  constexpr double kLog2 = 0x1.62e42fefa39efp-1, kHalfRoot = 0x1.6a09e667f3bcdp-1;
+  int exponent;
+  double mantissa = std::frexp(x, &exponent);
+  if (mantissa < kHalfRoot) {
+    mantissa *= 2;
+    --exponent;
+  }
+  // log((1 + s) / (1 - s)) = 2 (s + s^3/3 + s^5/5 + ...), |s| < 0.172
+  const double s = (mantissa - 1) / (mantissa + 1);
+  double sum = 0;
+  for (int k = 23; k >= 1; k -= 2) sum = sum * (s * s) + 1.0 / k;
+  return exponent * kLog2 + 2 * s * sum;
+}
+
+struct Direction {
+  double x, y;
+};
+
+/// Cosine and sine of `turns` full turns.
+Direction direction(double turns) {
+  constexpr double kTau = 0x1.921fb54442d18p+2;
+  const double fraction = turns - std::floor(turns);
+  const int quarter = static_cast<int>(std::floor(4 * fraction + 0.5));
+  const double angle = kTau * (fraction - 0.25 * quarter);  // at most an eighth of a turn
+  const double square = angle * angle;
+  double cosine = 1, sine = 1;
+  for (int k = 18; k >= 2; k -= 2) {
+    cosine = 1 - cosine * square / (k * (k - 1));
+    sine = 1 - sine * square / (k * (k + 1));
+  }
+  sine *= angle;
+  switch (quarter % 4) {
+    case 0:
+      return {cosine, sine};
+    case 1:
+      return {-sine, cosine};
+    case 2:
+      return {-cosine, -sine};
+    default:
+      return {sine, -cosine};
+  }
+}
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// In [0, 1).
+  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  /// In [0, bound); the bias of the remainder is below bound / 2^64.
+  std::uint64_t below(std::uint64_t bound) { return engine_() % bound; }
+  /// Two independent N(0, 1), by Box and Muller.
+  Direction normal_pair() {
+    const double radius = std::sqrt(-2 * portable_log(1 - unit()));
+    const Direction d = direction(unit());
+    return {radius * d.x, radius * d.y};
+  }
+  template <typename Value>
+  void shuffle(std::vector<Value>& values) {
+    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Collects the points of one set.
+class Sink {
+ public:
+  explicit Sink(std::size_t n) { points_.coordinates.reserve(2 * n); }
+  void add(double x, double y) {
+    points_.coordinates.push_back(x);
+    points_.coordinates.push_back(y);
+  }
+  void add(Direction p) { add(p.x, p.y); }
+  Points take() { return std::move(points_); }
+
+ private:
+  Points points_;
+};
+
+/// Columns of the smallest square grid that has n nodes.
+std::size_t grid_width(std::size_t n) {
+  auto width = static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
+  while (width * width < n) ++width;
+  while (width > 1 && (width - 1) * (width - 1) >= n) --width;
+  return width;
+}
+
+Points uniform(std::size_t n, Random& random) {
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = random.unit();
+    sink.add(x, random.unit());
+  }
+  return sink.take();
+}
+
+Points normal(std::size_t n, Random& random) {
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) sink.add(random.normal_pair());
+  return sink.take();
+}
+
+Points kuzmin(std::size_t n, Random& random) {
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    // M(r) = 1 - 1 / sqrt(1 + r^2), inverted.
+    const double rest = 1 - random.unit();
+    const double radius = std::sqrt(1 / (rest * rest) - 1);
+    const Direction d = direction(random.unit());
+    sink.add(radius * d.x, radius * d.y);
+  }
+  return sink.take();
+}
+
+Points line(std::size_t n, Random& random) {
+  constexpr double b = 0.001;
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double u = random.unit();
+    const double x = b / (u - b * u + b);
+    sink.add(x, random.unit());
+  }
+  return sink.take();
+}
+
+Points grid(std::size_t n, Random&) {
+  Sink sink(n);
+  const std::size_t width = grid_width(n);
+  for (std::size_t i = 0; i < n; ++i)
+    sink.add(static_cast<double>(i % width), static_cast<double>(i / width));
+  return sink.take();
+}
+
+Points rotated_grid(std::size_t n, Random&) {
+  Sink sink(n);
+  const std::size_t width = grid_width(n);
+  const double cosine = 3 / std::sqrt(10.0), sine = 1 / std::sqrt(10.0);  // by atan(1/3)
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto x = static_cast<double>(i % width), y = static_cast<double>(i / width);
+    sink.add(cosine * x - sine * y, sine * x + cosine * y);
+  }
+  return sink.take();
+}
+
+Points hexagonal(std::size_t n, Random&) {
+  Sink sink(n);
+  const std::size_t width = grid_width(n);
+  const double row_distance = std::sqrt(3.0) / 2;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t row = i / width;
+    sink.add(static_cast<double>(i % width) + (row % 2 ? 0.5 : 0.0), row_distance * static_cast<double>(row));
+  }
+  return sink.take();
+}
+
+Points circle(std::size_t n, Random& random) {
+  Sink sink(n);
+  const double start = random.unit();
+  for (std::size_t i = 0; i < n; ++i) {
+    sink.add(direction((static_cast<double>(i) + start) / static_cast<double>(n)));
+  }
+  return sink.take();
+}
+
+struct IntegerPoint {
+  std::int64_t x, y;
+  IntegerPoint times(IntegerPoint other) const {  // as complex numbers
+    return {x * other.x - y * other.y, x * other.y + y * other.x};
+  }
+};
+
+/// A prime 1 mod 4 as a^2 + b^2, and its power in the squared radius.
+struct GaussianPrime {
+  std::int64_t a, b;
+  int power;
+};
+
+/// All points of the integer circle whose squared radius is the product of the primes' powers: the Gaussian
+/// integers of that norm. z^k conj(z)^(power - k) for each prime, times the four units, gives each once.
+std::vector<IntegerPoint> integer_circle_points(const std::vector<GaussianPrime>& primes) {
+  std::vector<IntegerPoint> points = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  for (const GaussianPrime& prime : primes) {
+    std::vector<IntegerPoint> products;
+    for (int k = 0; k <= prime.power; ++k) {
+      IntegerPoint factor = {1, 0};
+      for (int i = 0; i < prime.power; ++i) {
+        factor = factor.times(i < k ? IntegerPoint{prime.a, prime.b} : IntegerPoint{prime.a, -prime.b});
+      }
+      for (const IntegerPoint& p : points) products.push_back(p.times(factor));
+    }
+    points = std::move(products);
+  }
+  return points;
+}
+
+Points integer_circle(std::size_t n, Random& random) {
+  // 5 = 2^2 + 1^2, 13 = 3^2 + 2^2, ...; each circle has more points than the one before, 4 to 36,864.
+  const std::vector<std::vector<GaussianPrime>> circles = {
+      {},
+      {{2, 1, 1}, {3, 2, 1}},
+      {{2, 1, 2}, {3, 2, 1}, {4, 1, 1}},
+      {{2, 1, 2}, {3, 2, 2}, {4, 1, 1}, {5, 2, 1}, {6, 1, 1}},
+      {{2, 1, 2}, {3, 2, 2}, {4, 1, 2}, {5, 2, 1}, {6, 1, 1}, {5, 4, 1}, {7, 2, 1}},
+      {{2, 1, 3},
+       {3, 2, 3},
+       {4, 1, 2},
+       {5, 2, 2},
+       {6, 1, 1},
+       {5, 4, 1},
+       {7, 2, 1},
+       {6, 5, 1},
+       {8, 3, 1},
+       {8, 5, 1}},
+  };
+  std::vector<IntegerPoint> points;
+  for (const auto& primes : circles) {
+    points = integer_circle_points(primes);
+    if (points.size() >= n) break;
+  }
+  // The largest circle scaled by 1, 2, 3, ... has as many points again, as exactly cocircular.
+  Sink sink(n);
+  std::int64_t scale = 1;
+  for (std::size_t left = n; left > 0; ++scale) {
+    random.shuffle(points);
+    const std::size_t taken = std::min(left, points.size());
+    for (std::size_t i = 0; i < taken; ++i) {
+      sink.add(static_cast<double>(scale * points[i].x), static_cast<double>(scale * points[i].y));
+    }
+    left -= taken;
+  }
+  return sink.take();
+}
+
+Points nested_circles(std::size_t n, Random& random) {
+  Sink sink(n);
+  const std::size_t circles = grid_width(n) / 4 + 1;
+  const double start = random.unit();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t c = i % circles, on_circle = (n - c + circles - 1) / circles;
+    const double radius = static_cast<double>(c + 1) / static_cast<double>(circles);
+    const Direction d =
+        direction((static_cast<double>(i / circles) + start) / static_cast<double>(on_circle));
+    sink.add(radius * d.x, radius * d.y);
+  }
+  return sink.take();
+}
+
+Points columns(std::size_t n, Random& random) {
+  constexpr std::size_t kColumns = 8;
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t column = i % kColumns, row = i / kColumns;
+    // Even columns equally spaced, odd ones irregular; integers all, and no two the same.
+    const std::uint64_t shift = column % 2 ? random.below(4) : 0;
+    sink.add(static_cast<double>(column), static_cast<double>(4 * row + shift));
+  }
+  return sink.take();
+}
+
+Points small_integers(std::size_t n, Random& random) {
+  Sink sink(n);
+  const std::uint64_t bound = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(n)) / 2) + 2;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto x = static_cast<double>(random.below(bound));
+    sink.add(x, static_cast<double>(random.below(bound)));
+  }
+  return sink.take();
+}
+
+Points half_duplicates(std::size_t n, Random& random) {
+  const std::size_t originals = n - n / 2;
+  std::vector<Direction> all;
+  all.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i < originals) {
+      const double x = random.unit();
+      all.push_back({x, random.unit()});
+    } else {
+      all.push_back(all[random.below(originals)]);
+    }
+  }
+  random.shuffle(all);
+  Sink sink(n);
+  for (const Direction& p : all) sink.add(p);
+  return sink.take();
+}
+
+Points collinear(std::size_t n, Random& random) {
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto position = static_cast<double>(random.below(8 * n));
+    sink.add(position, 3 * position);
+  }
+  return sink.take();
+}
+
+Points parabola(std::size_t n, Random&) {
+  Sink sink(n);
+  // Scaled by a power of two, so that x is within [-1, 1] and x^2 as exact as the integer's square.
+  int bits = 0;
+  while ((n / 2) >> bits > 0) ++bits;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = std::ldexp(static_cast<double>(i) - static_cast<double>(n / 2), -bits);
+    sink.add(x, x * x);
+  }
+  return sink.take();
+}
+
+Points clusters(std::size_t n, Random& random) {
+  constexpr int kClusters = 12;
+  Direction centers[kClusters];
+  for (Direction& center : centers) {
+    center.x = random.unit();
+    center.y = random.unit();
+  }
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    // Each cluster a quarter the width of the one before: 1/8 down to 3e-8.
+    const auto c = static_cast<int>(random.below(kClusters));
+    const double width = std::ldexp(0.125, -2 * c);
+    const Direction d = random.normal_pair();
+    sink.add(centers[c].x + width * d.x, centers[c].y + width * d.y);
+  }
+  return sink.take();
+}
+
+Points spiral(std::size_t n, Random& random) {
+  Sink sink(n);
+  // Archimedes' spiral, with as far between its arms as from point to point along them.
+  const double pi = 0x1.921fb54442d18p+1;
+  const double arms = std::sqrt(static_cast<double>(n) / pi);
+  const double start = random.unit();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double radius = std::sqrt((static_cast<double>(i) + 0.5) / static_cast<double>(n));
+    const Direction d = direction(arms * radius + start);
+    sink.add(radius * d.x, radius * d.y);
+  }
+  return sink.take();
+}
+
+struct Generator {
+  Distribution distribution;
+  Points (*generate)(std::size_t n, Random& random);
+};
+
+const std::vector<Generator>& generators() {
+  static const std::vector<Generator> all = {
+      {{"uniform", "uniform in the unit square"}, uniform},
+      {{"normal", "both coordinates standard normal"}, normal},
+      {{"kuzmin", "Kuzmin's disk: dense in the centre, heavy tails"}, kuzmin},
+      {{"line", "clustered along a vertical line"}, line},
+      {{"grid", "a square integer grid, row by row"}, grid},
+      {{"rotated-grid", "a square grid turned by atan(1/3), rounded: nearly cocircular, nearly collinear"},
+       rotated_grid},
+      {{"hexagonal", "a hexagonal lattice, rounded"}, hexagonal},
+      {{"circle", "equally spaced on a unit circle, rounded"}, circle},
+      {{"integer-circle", "integers exactly on a circle around 0, or on several if one has too few"},
+       integer_circle},
+      {{"nested-circles", "concentric circles, rounded"}, nested_circles},
+      {{"columns", "eight columns of exactly collinear integers"}, columns},
+      {{"small-integers", "random small integers: most points several times"}, small_integers},
+      {{"half-duplicates", "uniform, half of the points copies of others"}, half_duplicates},
+      {{"collinear", "random integers exactly on one slanted line"}, collinear},
+      {{"parabola", "exactly on a parabola: every point on the hull"}, parabola},
+      {{"clusters", "twelve Gaussian clusters, each a quarter as wide as the one before"}, clusters},
+      {{"spiral", "a spiral with evenly spaced arms"}, spiral},
+  };
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Distribution>& distributions() {
+  static const std::vector<Distribution> all = [] {
+    std::vector<Distribution> list;
+    for (const Generator& generator : generators()) list.push_back(generator.distribution);
+    return list;
+  }();
+  return all;
+}
+
+Points generate(const std::string& distribution, std::size_t n, std::uint64_t seed) {
+  std::string names;
+  for (const Generator& generator : generators()) {
+    if (generator.distribution.name == distribution) {
+      Random random(seed);
+      return generator.generate(n, random);
+    }
+    names += (names.empty() ? "" : ", ") + generator.distribution.name;
+  }
+  throw Error(ErrorKind::usage, "unknown distribution '" + distribution + "'; expected one of " + names);
+}
+
+}  // namespace flaunay::io

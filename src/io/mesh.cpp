@@ -1,0 +1,386 @@
+#include "io/mesh.hpp"
+
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+#include "io/file.hpp"
+#include "io/npy.hpp"
+#include "io/svg.hpp"
+#include "io/text.hpp"
+
+namespace flaunay::io {
+namespace {
+
+constexpr std::string_view kOutputEndings = ".ele, .off, .ply, .vtu, .obj, .npy, .svg";
+constexpr std::string_view kTriangleEndings = ".npy, .ele, .off, .obj, .ply";
+constexpr long long kIndexLimit = std::numeric_limits<std::int32_t>::max();
+
+enum class Format { ele, off, ply, vtu, obj, npy, svg };
+
+Format output_format(const std::string& path) {
+  const std::string ending = ending_of(path);
+  if (ending == ".ele") return Format::ele;
+  if (ending == ".off") return Format::off;
+  if (ending == ".ply") return Format::ply;
+  if (ending == ".vtu") return Format::vtu;
+  if (ending == ".obj") return Format::obj;
+  if (ending == ".npy") return Format::npy;
+  if (ending == ".svg") return Format::svg;
+  fail_ending(path, kOutputEndings);
+}
+
+std::size_t triangle_count(const Triangulation& mesh) { return mesh.triangles.size() / 3; }
+
+/// x.ele to x.node.
+std::string node_path_beside(const std::string& ele_path) {
+  return ele_path.substr(0, ele_path.size() - std::strlen(".ele")) + ".node";
+}
+
+void write_ele(const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile ele(path);
+  OutputFile node(node_path_beside(path));
+  print_node(node, points);
+  ele.print("{} 3 0\n", triangle_count(mesh));
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
+    const std::int32_t* corner = &mesh.triangles[3 * t];
+    ele.print("{} {} {} {}\n", t, corner[0], corner[1], corner[2]);
+  }
+  // Neither replaces anything before both are written.
+  node.finish();
+  ele.finish();
+  node.commit();
+  ele.commit();
+}
+
+void write_off(const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile file(path);
+  file.print("OFF\n{} {} 0\n", points.size(), triangle_count(mesh));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    file.print("{} {} 0\n", points.coordinates[2 * i], points.coordinates[2 * i + 1]);
+  }
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
+    const std::int32_t* corner = &mesh.triangles[3 * t];
+    file.print("3 {} {} {}\n", corner[0], corner[1], corner[2]);
+  }
+  file.commit();
+}
+
+void write_obj(const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile file(path);
+  file.print("# {} vertices, {} triangles\n", points.size(), triangle_count(mesh));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    file.print("v {} {} 0\n", points.coordinates[2 * i], points.coordinates[2 * i + 1]);
+  }
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
+    const std::int32_t* corner = &mesh.triangles[3 * t];
+    file.print("f {} {} {}\n", corner[0] + 1LL, corner[1] + 1LL, corner[2] + 1LL);
+  }
+  file.commit();
+}
+
+/// The points as x, y, 0.
+void write_spatial_points(OutputFile& file, const Points& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double spatial[3] = {points.coordinates[2 * i], points.coordinates[2 * i + 1], 0};
+    file.write(spatial, sizeof spatial);
+  }
+}
+
+void write_ply(const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile file(path);
+  file.print(
+      "ply\nformat binary_little_endian 1.0\ncomment flaunay\n"
+      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      points.size(), triangle_count(mesh));
+  write_spatial_points(file, points);
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
+    file.write_value(std::uint8_t{3});
+    file.write(&mesh.triangles[3 * t], 3 * sizeof(std::int32_t));
+  }
+  file.commit();
+}
+
+void write_vtu(const std::string& path, const Points& points, const Triangulation& mesh) {
+  constexpr std::uint8_t kVtkTriangle = 5;
+  const std::uint64_t point_bytes = points.size() * 3 * sizeof(double);
+  const std::uint64_t corner_bytes = mesh.triangles.size() * sizeof(std::int32_t);
+  const std::uint64_t end_bytes = triangle_count(mesh) * sizeof(std::int64_t);
+  const std::uint64_t type_bytes = triangle_count(mesh);
+
+  // Each array of the appended data is its size in bytes, then its values.
+  const std::uint64_t prefix = sizeof(std::uint64_t);
+  const std::uint64_t corners_at = prefix + point_bytes;
+  const std::uint64_t ends_at = corners_at + prefix + corner_bytes;
+  const std::uint64_t types_at = ends_at + prefix + end_bytes;
+
+  OutputFile file(path);
+  file.print(
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n"
+      "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+      points.size(), triangle_count(mesh));
+  file.print(
+      "<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"appended\" "
+      "offset=\"0\"/>\n</Points>\n");
+  file.print(
+      "<Cells>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"appended\" offset=\"{}\"/>\n"
+      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"appended\" offset=\"{}\"/>\n"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"appended\" offset=\"{}\"/>\n</Cells>\n",
+      corners_at, ends_at, types_at);
+  file.print("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+  file.write_value(point_bytes);
+  write_spatial_points(file, points);
+  file.write_value(corner_bytes);
+  file.write(mesh.triangles.data(), corner_bytes);
+  file.write_value(end_bytes);
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t)
+    file.write_value(static_cast<std::int64_t>(3 * (t + 1)));
+  file.write_value(type_bytes);
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t) file.write_value(kVtkTriangle);
+  file.print("\n</AppendedData>\n</VTKFile>\n");
+  file.commit();
+}
+
+std::vector<std::int32_t> read_ele(const std::string& path) {
+  const std::string text = read_file(path, "Triangle's .ele format");
+  Lines lines(path, text, Lines::Separator::blanks);
+  if (!lines.next()) fail(path, "has no header line; expected \"triangles 3 attributes\"");
+  const std::size_t header_line = lines.number();
+  const std::size_t header_fields = lines.count_fields();
+  const long long count = lines.integer("the number of triangles");
+  const long long corners = header_fields > 1 ? lines.integer("the number of nodes per triangle") : 3;
+  const long long attributes = header_fields > 2 ? lines.integer("the number of attributes") : 0;
+  if (count < 0) lines.fail_line("{} triangles; expected 0 or more", count);
+  if (corners != 3) lines.fail_line("{} nodes per triangle; expected 3", corners);
+  if (attributes < 0) lines.fail_line("{} attributes; expected 0 or more", attributes);
+
+  std::vector<std::int32_t> triangles;
+  long long base = 0, read = 0;
+  for (; lines.next(); ++read) {
+    if (read == count)
+      lines.fail_line("more triangles than the {} of the header (line {})", count, header_line);
+    const std::size_t fields = lines.count_fields();
+    if (fields != static_cast<std::size_t>(4 + attributes)) {
+      lines.fail_line("expected {} fields (triangle number, 3 vertices, {} attributes), found {}",
+                      4 + attributes, attributes, fields);
+    }
+    const long long number = lines.integer("a triangle number");
+    if (read == 0) {
+      if (number != 0 && number != 1)
+        lines.fail_line("expected triangle number 0 or 1 first, found {}", number);
+      base = number;
+    }
+    if (number != base + read) lines.fail_line("expected triangle number {}, found {}", base + read, number);
+    for (int corner = 0; corner < 3; ++corner) {
+      triangles.push_back(
+          checked_index(lines, "vertex", lines.integer("a vertex number"), base, kIndexLimit));
+    }
+  }
+  if (read != count) {
+    fail(path, "line {}: the header says {} triangles, but the file ends after {}", header_line, count, read);
+  }
+  return triangles;
+}
+
+std::vector<std::int32_t> read_off(const std::string& path) {
+  const std::string text = read_file(path, "the OFF format");
+  Lines lines(path, text, Lines::Separator::blanks);
+  std::string_view keyword;
+  if (!lines.next()) fail(path, "has no first line; expected OFF");
+  if (!lines.field(keyword) || keyword != "OFF") lines.fail_line("expected OFF, found {}", quoted(keyword));
+  // The counts may stand on the keyword's line.
+  if (lines.count_fields() == 1 && !lines.next()) fail(path, "has no line of counts after OFF");
+  lines.rewind();
+  if (lines.field(keyword) && keyword != "OFF") lines.rewind();
+  const long long vertices = lines.integer("the number of vertices");
+  const long long faces = lines.integer("the number of faces");
+  if (vertices < 0 || faces < 0)
+    lines.fail_line("{} vertices and {} faces; expected 0 or more", vertices, faces);
+
+  for (long long i = 0; i < vertices; ++i) {
+    if (!lines.next()) fail(path, "expected {} vertices, but the file ends after {}", vertices, i);
+  }
+  std::vector<std::int32_t> triangles;
+  for (long long t = 0; t < faces; ++t) {
+    if (!lines.next()) fail(path, "expected {} faces, but the file ends after {}", faces, t);
+    const long long corners = lines.integer("the number of corners");
+    if (corners != 3) lines.fail_line("a face of {} corners; expected 3", corners);
+    for (int corner = 0; corner < 3; ++corner) {
+      triangles.push_back(checked_index(lines, "vertex", lines.integer("a vertex number"), 0, vertices));
+    }
+  }
+  if (lines.next()) lines.fail_line("text after the {} faces of the header", faces);
+  return triangles;
+}
+
+std::vector<std::int32_t> read_obj(const std::string& path) {
+  const std::string text = read_file(path, "the OBJ format");
+  std::string_view keyword;
+  long long vertices = 0;
+  for (Lines lines(path, text, Lines::Separator::blanks); lines.next();) {
+    if (lines.field(keyword) && keyword == "v") ++vertices;
+  }
+  std::vector<std::int32_t> triangles;
+  long long vertices_so_far = 0;
+  for (Lines lines(path, text, Lines::Separator::blanks); lines.next();) {
+    const std::size_t fields = lines.count_fields();
+    lines.field(keyword);
+    if (keyword == "v") ++vertices_so_far;
+    if (keyword != "f") continue;
+    if (fields != 4) lines.fail_line("a face of {} corners; expected 3", fields - 1);
+    std::string_view corner;
+    while (lines.field(corner)) {
+      // "7/2/5" is vertex 7 with a texture and a normal; negative numbers count back from the latest vertex.
+      const std::string_view digits = corner.substr(0, corner.find('/'));
+      long long number = 0;
+      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+      if (error != std::errc() || stop != digits.data() + digits.size()) {
+        lines.fail_field(corner, "expected a vertex number, found {}", quoted(corner));
+      }
+      if (number < 0) number += vertices_so_far + 1;
+      triangles.push_back(checked_index(lines, "vertex", number, 1, vertices));
+    }
+  }
+  return triangles;
+}
+
+/// Bytes of one of PLY's scalar types; 0 for an unknown name.
+std::size_t ply_type_bytes(std::string_view type) {
+  if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
+  if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
+  if (type == "int" || type == "uint" || type == "int32" || type == "uint32") return 4;
+  if (type == "float" || type == "float32") return 4;
+  if (type == "double" || type == "float64") return 8;
+  return 0;
+}
+
+std::vector<std::int32_t> read_ply(const std::string& path) {
+  const std::string bytes = read_file(path, "the PLY format");
+  constexpr std::string_view kEnd = "end_header\n";
+  const std::size_t header_end = bytes.find(kEnd);
+  if (bytes.compare(0, 4, "ply\n") != 0) fail(path, "is no PLY file; expected its first line to be \"ply\"");
+  if (header_end == std::string::npos)
+    fail(path, "has no end of its PLY header; expected a line \"end_header\"");
+
+  Lines lines(path, std::string_view(bytes).substr(0, header_end), Lines::Separator::blanks);
+  lines.next();
+  std::string_view element;
+  std::size_t vertex_bytes = 0;
+  long long vertices = -1, faces = -1;
+  bool binary = false, corner_list = false;
+  while (lines.next()) {
+    std::string_view word[5];
+    std::size_t words = 0;
+    while (words < 5 && lines.field(word[words])) ++words;
+    if (word[0] == "format") {
+      binary = word[1] == "binary_little_endian" && word[2] == "1.0";
+    } else if (word[0] == "element") {
+      lines.rewind();
+      lines.field(word[0]);
+      lines.field(element);
+      const long long count = lines.integer("the number of elements");
+      if (count < 0) lines.fail_line("{} elements; expected 0 or more", count);
+      if (element == "vertex" && vertices < 0 && faces < 0) {
+        vertices = count;
+      } else if (element == "face" && vertices >= 0 && faces < 0) {
+        faces = count;
+      } else {
+        lines.fail_line("element {}; expected vertex, then face", quoted(element));
+      }
+    } else if (word[0] == "property" && element == "vertex") {
+      const std::size_t size = ply_type_bytes(word[1]);
+      if (size == 0) lines.fail_line("vertex property of type {}; expected a number's", quoted(word[1]));
+      vertex_bytes += size;
+    } else if (word[0] == "property" && element == "face") {
+      const bool known = word[1] == "list" && ply_type_bytes(word[2]) == 1 && ply_type_bytes(word[3]) == 4 &&
+                         word[3] != "float" && word[3] != "float32";
+      if (!known || corner_list)
+        lines.fail_line("expected the one face property \"list uchar int vertex_indices\"");
+      corner_list = true;
+    } else if (word[0] != "comment" && word[0] != "obj_info") {
+      lines.fail_line("expected a PLY header line, found {}", quoted(word[0]));
+    }
+  }
+  if (!binary) fail(path, "expected PLY of format binary_little_endian 1.0");
+  if (vertices < 0 || faces < 0 || !corner_list) fail(path, "expected PLY elements vertex and face");
+
+  constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
+  const std::size_t data_begin = header_end + kEnd.size();
+  const std::size_t found = bytes.size() - data_begin;
+  // Division first: counts from a header could overflow the product.
+  const auto vertex_count = static_cast<std::size_t>(vertices), face_count = static_cast<std::size_t>(faces);
+  if (vertex_bytes > 0 && vertex_count > found / vertex_bytes) {
+    fail(path, "is truncated: {} vertices need {} bytes each after the header, found {} bytes", vertices,
+         vertex_bytes, found);
+  }
+  const std::size_t faces_begin = data_begin + vertex_count * vertex_bytes;
+  const std::size_t face_room = bytes.size() - faces_begin;
+  std::vector<std::int32_t> triangles;
+  triangles.reserve(3 * std::min(face_count, face_room / kFaceBytes));
+  for (std::size_t t = 0; t < face_count; ++t) {
+    if (face_room / kFaceBytes <= t)
+      fail(path, "is truncated: {} faces expected, the file ends in face {}", faces, t);
+    const std::size_t at = faces_begin + t * kFaceBytes;
+    const int corners = static_cast<unsigned char>(bytes[at]);
+    if (corners != 3) fail(path, "byte {}: face {} has {} corners; expected 3", at, t, corners);
+    std::int32_t corner[3];
+    std::memcpy(corner, bytes.data() + at + 1, sizeof corner);
+    for (const std::int32_t v : corner) {
+      if (v < 0 || v >= vertices) {
+        fail(path, "byte {}: face {} has vertex {}; expected 0 to {}", at, t, v, vertices - 1);
+      }
+      triangles.push_back(v);
+    }
+  }
+  if (face_room != face_count * kFaceBytes) {
+    fail(path, "has {} bytes after its {} faces; expected none", face_room - face_count * kFaceBytes, faces);
+  }
+  return triangles;
+}
+
+}  // namespace
+
+void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh) {
+  switch (output_format(path)) {
+    case Format::ele:
+      return write_ele(path, points, mesh);
+    case Format::off:
+      return write_off(path, points, mesh);
+    case Format::ply:
+      return write_ply(path, points, mesh);
+    case Format::vtu:
+      return write_vtu(path, points, mesh);
+    case Format::obj:
+      return write_obj(path, points, mesh);
+    case Format::npy:
+      return write_npy_int32(path, mesh.triangles, 3);
+    case Format::svg:
+      return write_svg(path, points, mesh);
+  }
+}
+
+void check_mesh_output(const std::string& path) {
+  const Format format = output_format(path);
+  OutputFile::check(path);
+  if (format == Format::ele) OutputFile::check(node_path_beside(path));
+}
+
+void check_output(const std::string& path, const std::string& ending) {
+  if (ending_of(path) != ending) fail_ending(path, ending);
+  OutputFile::check(path);
+}
+
+std::vector<std::int32_t> read_triangles(const std::string& path) {
+  const std::string ending = ending_of(path);
+  if (ending == ".npy") return read_npy_triangles(path);
+  if (ending == ".ele") return read_ele(path);
+  if (ending == ".off") return read_off(path);
+  if (ending == ".obj") return read_obj(path);
+  if (ending == ".ply") return read_ply(path);
+  fail_ending(path, kTriangleEndings);
+}
+
+}  // namespace flaunay::io

@@ -1,0 +1,35 @@
+// Writing triangulations to files, and reading triangles back for verification.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "io/points.hpp"
+
+namespace flaunay::io {
+
+/// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
+/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .svg (a picture worth looking at).
+/// Throws Error(input) naming path and the system's reason if it cannot be written.
+void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh);
+
+/// Throws before any work: Error(usage) for an unknown ending, Error(input) if path cannot be created. Leaves
+/// no file behind that was not there.
+void check_mesh_output(const std::string& path);
+/// The same for an output whose ending must be `ending` (".npy", ".json").
+void check_output(const std::string& path, const std::string& ending);
+
+/// Writes an int32 .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
+void write_npy_int32(const std::string& path, const std::vector<std::int32_t>& values, std::size_t columns);
+
+/// Reads triangles, 0-based, from .npy (int32 or int64, m x 3), .ele (either index base), .off, .obj (faces),
+/// .ply as write_mesh writes it. Throws Error(input) that names the place.
+std::vector<std::int32_t> read_triangles(const std::string& path);
+
+/// Reads neighbours, as write_npy_int32 writes Triangulation::neighbors: .npy (int32 or int64, m x 3), triangle
+/// indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
+std::vector<std::int32_t> read_neighbors(const std::string& path);
+
+}  // namespace flaunay::io

@@ -1,0 +1,269 @@
+#include "io/npy.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "io/file.hpp"
+#include "io/mesh.hpp"
+
+namespace flaunay::io {
+namespace {
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+
+struct Header {
+  std::string descr;
+  bool fortran_order = false;
+  std::vector<std::size_t> shape;
+  std::size_t data_begin = 0;
+};
+
+/// Reads the header's text, a Python dictionary with the keys descr, fortran_order and shape.
+class HeaderParser {
+ public:
+  HeaderParser(const std::string& path, std::string_view text) : path_(path), text_(text) {}
+
+  Header parse() {
+    Header header;
+    bool descr_seen = false, order_seen = false, shape_seen = false;
+    expect('{');
+    while (!accept('}')) {
+      const std::string key = parse_string();
+      expect(':');
+      if (key == "descr") {
+        if (peek() == '[') fail(path_, "has a structured dtype; expected plain numbers");
+        header.descr = parse_string();
+        descr_seen = true;
+      } else if (key == "fortran_order") {
+        header.fortran_order = parse_bool();
+        order_seen = true;
+      } else if (key == "shape") {
+        header.shape = parse_shape();
+        shape_seen = true;
+      } else {
+        malformed("unknown key '" + key + "'");
+      }
+      if (!accept(',') && peek() != '}') malformed("expected ',' or '}'");
+    }
+    if (peek() != '\0') malformed("text after '}'");
+    if (!descr_seen) malformed("no key 'descr'");
+    if (!order_seen) malformed("no key 'fortran_order'");
+    if (!shape_seen) malformed("no key 'shape'");
+    return header;
+  }
+
+ private:
+  [[noreturn]] void malformed(const std::string& what) const {
+    fail(path_, "the .npy header is malformed at its byte {}: {}", at_, what);
+  }
+  char peek() {
+    while (at_ < text_.size() && std::strchr(" \t\r\n", text_[at_]) && text_[at_] != '\0') ++at_;
+    return at_ < text_.size() ? text_[at_] : '\0';
+  }
+  bool accept(char c) {
+    if (peek() != c) return false;
+    ++at_;
+    return true;
+  }
+  void expect(char c) {
+    if (!accept(c)) malformed(std::string("expected '") + c + "'");
+  }
+  std::string parse_string() {
+    const char quote = peek();
+    if (quote != '\'' && quote != '"') malformed("expected a quoted string");
+    const std::size_t begin = at_ + 1;
+    const std::size_t end = text_.find(quote, begin);
+    if (end == std::string_view::npos) malformed("string without end");
+    at_ = end + 1;
+    return std::string(text_.substr(begin, end - begin));
+  }
+  bool parse_bool() {
+    peek();
+    for (const std::string_view word : {"True", "False"}) {
+      if (text_.substr(at_, word.size()) == word) {
+        at_ += word.size();
+        return word == "True";
+      }
+    }
+    malformed("expected True or False");
+  }
+  std::vector<std::size_t> parse_shape() {
+    std::vector<std::size_t> shape;
+    expect('(');
+    while (!accept(')')) {
+      if (peek() < '0' || peek() > '9') malformed("expected a length of the shape");
+      std::size_t length = 0;
+      for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
+        const auto digit = static_cast<std::size_t>(text_[at_] - '0');
+        if (length > (std::numeric_limits<std::size_t>::max() - digit) / 10) malformed("length too large");
+        length = 10 * length + digit;
+      }
+      accept('L');  // Python 2 wrote its long integers so
+      shape.push_back(length);
+      if (!accept(',') && peek() != ')') malformed("expected ',' or ')'");
+    }
+    return shape;
+  }
+
+  const std::string& path_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+Header parse_header(const std::string& path, const std::string& bytes) {
+  if (bytes.compare(0, kMagic.size(), kMagic) != 0) {
+    fail(path, "is no .npy file; expected it to begin with \\x93NUMPY");
+  }
+  if (bytes.size() < 8) fail(path, "is truncated in the .npy header: {} bytes", bytes.size());
+  const int version = static_cast<unsigned char>(bytes[6]);
+  if (version < 1 || version > 3) fail(path, "has .npy format version {}; expected 1, 2 or 3", version);
+  const std::size_t length_bytes = version == 1 ? 2 : 4;
+  const std::size_t text_begin = 8 + length_bytes;
+  std::uint32_t length = 0;
+  if (bytes.size() >= text_begin) std::memcpy(&length, bytes.data() + 8, length_bytes);
+  if (bytes.size() < text_begin || bytes.size() - text_begin < length) {
+    fail(path, "is truncated in the .npy header: expected {} bytes of it, the file has {}",
+         text_begin + length, bytes.size());
+  }
+  Header header = HeaderParser(path, std::string_view(bytes).substr(text_begin, length)).parse();
+  header.data_begin = text_begin + length;
+  return header;
+}
+
+std::string shape_text(const std::vector<std::size_t>& shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i) text += (i ? ", " : "") + std::to_string(shape[i]);
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+/// Checks everything but the values: an array of shape (rows, columns) whose dtype is one of the two. Returns
+/// the number of rows.
+std::size_t check_layout(const std::string& path, const std::string& bytes, const Header& header,
+                         std::size_t columns, const char* rows_name, const std::string& first_dtype,
+                         const std::string& second_dtype) {
+  const std::string expected = fmt::format("expected '{}' or '{}'", first_dtype, second_dtype);
+  if (!header.descr.empty() && header.descr[0] == '>') {
+    fail(path, "has big-endian dtype '{}'; {} (numpy converts: array.astype('{}'))", header.descr, expected,
+         first_dtype);
+  }
+  if (header.descr != first_dtype && header.descr != second_dtype) {
+    fail(path, "has dtype '{}'; {}", header.descr, expected);
+  }
+  if (header.shape.size() != 2 || header.shape[1] != columns) {
+    fail(path, "has shape {}; expected ({}, {})", shape_text(header.shape), rows_name, columns);
+  }
+  if (header.fortran_order) {
+    fail(path, "is in Fortran order; expected C order (numpy converts: numpy.ascontiguousarray(array))");
+  }
+  const std::size_t row_bytes = columns * static_cast<std::size_t>(header.descr[2] - '0');
+  const std::size_t rows = header.shape[0];
+  if (rows > std::numeric_limits<std::size_t>::max() / row_bytes) {
+    fail(path, "has shape {}, more than any memory holds", shape_text(header.shape));
+  }
+  const std::size_t promised = rows * row_bytes;
+  const std::size_t found = bytes.size() - header.data_begin;
+  if (found < promised) {
+    fail(path, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
+         shape_text(header.shape), header.descr, promised, found);
+  }
+  if (found > promised) {
+    fail(path, "has {} bytes too many: shape {} of '{}' needs {} bytes after the header, found {}",
+         found - promised, shape_text(header.shape), header.descr, promised, found);
+  }
+  return rows;
+}
+
+template <typename Value>
+std::vector<Value> values_of(const std::string& bytes, std::size_t begin, std::size_t count) {
+  std::vector<Value> values(count);
+  if (count > 0) std::memcpy(values.data(), bytes.data() + begin, count * sizeof(Value));
+  return values;
+}
+
+void write_npy(const std::string& path, const char* descr, const std::string& shape, const void* data,
+               std::size_t bytes) {
+  std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", descr, shape);
+  constexpr std::size_t kPrefix = 10, kAlignment = 64;  // NumPy aligns the data, and counts a final newline
+  text.append(kAlignment - (kPrefix + text.size() + 1) % kAlignment, ' ');
+  text += '\n';
+  OutputFile file(path);
+  file.write(kMagic.data(), kMagic.size());
+  file.write("\x01\x00", 2);
+  file.write_value(static_cast<std::uint16_t>(text.size()));
+  file.write(text.data(), text.size());
+  file.write(data, bytes);
+  file.commit();
+}
+
+}  // namespace
+
+Points read_npy_points(const std::string& path) {
+  const std::string bytes = read_file(path, "a NumPy array of shape (n, 2)");
+  const Header header = parse_header(path, bytes);
+  const std::size_t n = check_layout(path, bytes, header, 2, "n", "<f8", "<f4");
+  Points points;
+  if (header.descr == "<f8") {
+    points.coordinates = values_of<double>(bytes, header.data_begin, 2 * n);
+  } else {
+    const std::vector<float> values = values_of<float>(bytes, header.data_begin, 2 * n);
+    points.coordinates.assign(values.begin(), values.end());
+  }
+  return points;
+}
+
+void write_npy_points(const std::string& path, const Points& points) {
+  write_npy(path, "<f8", shape_text({points.size(), 2}), points.coordinates.data(),
+            2 * points.size() * sizeof(double));
+}
+
+namespace {
+
+/// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
+std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
+  const std::string bytes = read_file(path, "a NumPy array of shape (m, 3)");
+  const Header header = parse_header(path, bytes);
+  const std::size_t count = 3 * check_layout(path, bytes, header, 3, "m", "<i4", "<i8");
+  std::vector<std::int32_t> triangles;
+  const auto check = [&](auto value, std::size_t i) {
+    if (value < lowest || value > std::numeric_limits<std::int32_t>::max()) {
+      fail(path, "triangle {} has {} {}; expected {} to {}", i / 3, member, value, lowest,
+           std::numeric_limits<std::int32_t>::max());
+    }
+  };
+  if (header.descr == "<i4") {
+    triangles = values_of<std::int32_t>(bytes, header.data_begin, count);
+    for (std::size_t i = 0; i < count; ++i) check(triangles[i], i);
+  } else {
+    const std::vector<std::int64_t> wide = values_of<std::int64_t>(bytes, header.data_begin, count);
+    for (std::size_t i = 0; i < count; ++i) check(wide[i], i);
+    triangles.assign(wide.begin(), wide.end());
+  }
+  return triangles;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> read_npy_triangles(const std::string& path) {
+  return read_npy_indices(path, 0, "vertex");
+}
+
+std::vector<std::int32_t> read_neighbors(const std::string& path) {
+  if (ending_of(path) != ".npy") fail_ending(path, ".npy");
+  return read_npy_indices(path, -1, "neighbour");
+}
+
+void write_npy_int32(const std::string& path, const std::vector<std::int32_t>& values, std::size_t columns) {
+  if (columns > 0 && values.size() % columns != 0) {
+    throw Error(ErrorKind::internal,
+                fmt::format("{}: {} values make no rows of {}", path, values.size(), columns));
+  }
+  const std::vector<std::size_t> shape = columns == 0
+                                             ? std::vector<std::size_t>{values.size()}
+                                             : std::vector<std::size_t>{values.size() / columns, columns};
+  write_npy(path, "<i4", shape_text(shape), values.data(), values.size() * sizeof(std::int32_t));
+}
+
+}  // namespace flaunay::io

@@ -1,0 +1,17 @@
+// NumPy's array files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/points.hpp"
+
+namespace flaunay::io {
+
+Points read_npy_points(const std::string& path);
+void write_npy_points(const std::string& path, const Points& points);
+/// m x 3, int32 or int64.
+std::vector<std::int32_t> read_npy_triangles(const std::string& path);
+
+}  // namespace flaunay::io

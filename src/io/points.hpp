@@ -1,0 +1,36 @@
+// Reading points from files. Formats by the file's ending; see read_points.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace flaunay::io {
+
+/// Points as read: x0 y0 x1 y1 ...
+struct Points {
+  std::vector<double> coordinates;
+  std::size_t size() const { return coordinates.size() / 2; }
+};
+
+/// Reads points from path, by its ending (any case):
+///   .npy             NumPy array, n x 2, C order, little-endian float64 or float32 (format versions 1 to 3)
+///   .node            Triangle's format: comments, attributes, boundary markers, first index 0 or 1
+///   .xy .txt .csv    two numbers a line, separated by comma or white space; '#' comments, blank lines, and one
+///                    optional header line
+///   .bin             raw little-endian float64 pairs
+///   "-"              text from standard input
+/// Zero points are valid only where the format says so (an .npy of shape (0, 2), a .node of 0 points, or a
+/// text file with only comments or a header); a file of zero bytes is an error.
+/// Throws Error(input) that names the file and the place: line and column for text, byte or index for binary;
+/// NaN and infinity are errors that name the index of the point.
+Points read_points(const std::string& path);
+
+/// Throws Error(usage) that lists the endings if read_points does not know the ending of path.
+void check_points_ending(const std::string& path);
+
+/// Writes points in the format of path's ending (.npy float64, .node, .xy/.txt/.csv, .bin); numbers in text
+/// are the shortest that read back to the same double. Throws Error(input) if path cannot be written.
+void write_points(const std::string& path, const Points& points);
+
+}  // namespace flaunay::io

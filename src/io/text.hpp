@@ -1,0 +1,230 @@
+// Text by lines and fields, with the places that error messages need.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "io/file.hpp"
+#include "io/points.hpp"
+
+namespace flaunay::io {
+
+/// A field as messages show it: quoted, cut short, control characters replaced.
+inline std::string quoted(std::string_view field) {
+  constexpr std::size_t kLongest = 32;
+  std::string shown(field.substr(0, kLongest));
+  for (char& c : shown) {
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  }
+  return "'" + shown + (field.size() > kLongest ? "...'" : "'");
+}
+
+enum class ParsedNumber { fine, unreadable, infinite };
+
+/// Reads all of field as a double; a leading '+' is fine. Numbers too small for a double become zero; those
+/// too large are `infinite`, while the words "inf" and "nan" are `fine` and come out as such.
+inline ParsedNumber parse_number(std::string_view field, double& value) {
+  const char* begin = field.data();
+  const char* end = begin + field.size();
+  if (field.size() > 1 && field[0] == '+' && field[1] != '-') ++begin;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error == std::errc::invalid_argument || stop != end) return ParsedNumber::unreadable;
+  if (error != std::errc::result_out_of_range) return ParsedNumber::fine;
+
+  // Out of range is said of both ends: the power of ten of the first digit that is not 0 tells which. The
+  // exponent is capped far beyond a double's, so that it cannot overflow here.
+  long long power = 0;
+  bool after_point = false, nonzero_seen = false;
+  const char* c = begin;
+  for (; c != end && *c != 'e' && *c != 'E'; ++c) {
+    if (*c == '.') {
+      after_point = true;
+    } else if (*c >= '0' && *c <= '9') {
+      if (after_point && !nonzero_seen) --power;
+      if (*c != '0') nonzero_seen = true;
+      if (!after_point && nonzero_seen) ++power;
+    }
+  }
+  if (c != end) {
+    ++c;
+    const bool negative = c != end && *c == '-';
+    long long exponent = 0;
+    for (; c != end; ++c) {
+      if (*c >= '0' && *c <= '9' && exponent < 1'000'000'000'000'000) exponent = 10 * exponent + (*c - '0');
+    }
+    power += negative ? -exponent : exponent;
+  }
+  if (power > 0) return ParsedNumber::infinite;
+  value = *begin == '-' ? -0.0 : 0.0;
+  return ParsedNumber::fine;
+}
+
+/// Whether field was meant as a number, well written or not.
+inline bool looks_like_number(std::string_view field) {
+  double ignored;
+  if (parse_number(field, ignored) != ParsedNumber::unreadable) return true;
+  std::size_t i = 0;
+  if (i < field.size() && (field[i] == '+' || field[i] == '-')) ++i;
+  if (i < field.size() && field[i] == '.') ++i;
+  return i < field.size() && field[i] >= '0' && field[i] <= '9';
+}
+
+/// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
+/// fields.
+class Lines {
+ public:
+  enum class Separator { blanks, blanks_or_comma };
+
+  /// name is what messages start with; text must outlive this.
+  Lines(std::string name, std::string_view text, Separator separator)
+      : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+    next_line_ = text.data();
+    text_end_ = text.data() + text.size();
+  }
+
+  /// Goes to the next line with content; false at the end.
+  bool next() {
+    while (next_line_ != text_end_) {
+      ++number_;
+      line_begin_ = next_line_;
+      line_end_ = find(line_begin_, text_end_, '\n');
+      next_line_ = line_end_ == text_end_ ? text_end_ : line_end_ + 1;
+      line_end_ = find(line_begin_, line_end_, '#');
+      while (line_end_ != line_begin_ && is_blank(line_end_[-1])) --line_end_;
+      rewind();
+      if (cursor_ != line_end_) return true;
+    }
+    return false;
+  }
+  /// Back to the first field of the line.
+  void rewind() {
+    cursor_ = line_begin_;
+    skip_blanks();
+    fields_taken_ = 0;
+  }
+
+  /// The next field of the line; false if there is none. Two commas in a row have an empty field between
+  /// them.
+  bool field(std::string_view& result) {
+    skip_blanks();
+    bool comma = false;
+    if (commas_ && fields_taken_ > 0 && cursor_ != line_end_ && *cursor_ == ',') {
+      comma = true;
+      ++cursor_;
+      skip_blanks();
+    }
+    if (cursor_ == line_end_ && !comma) return false;
+    const char* begin = cursor_;
+    while (cursor_ != line_end_ && !is_blank(*cursor_) && !(commas_ && *cursor_ == ',')) ++cursor_;
+    result = std::string_view(begin, static_cast<std::size_t>(cursor_ - begin));
+    ++fields_taken_;
+    return true;
+  }
+  std::size_t fields_taken() const { return fields_taken_; }
+  /// How many fields the whole line has. Rewinds.
+  std::size_t count_fields() {
+    rewind();
+    std::string_view ignored;
+    while (field(ignored)) {
+    }
+    const std::size_t count = fields_taken_;
+    rewind();
+    return count;
+  }
+
+  /// The next field as a whole number; `what` names it for the message.
+  long long integer(std::string_view what) {
+    std::string_view text;
+    if (!field(text)) fail_line("expected {}, found the end of the line", what);
+    long long value = 0;
+    const std::size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
+    const auto [stop, error] = std::from_chars(text.data() + skip, text.data() + text.size(), value);
+    if (error != std::errc() || stop != text.data() + text.size()) {
+      fail_field(text, "expected {} (a whole number), found {}", what, quoted(text));
+    }
+    return value;
+  }
+
+  /// `text`, a field of this line that is a coordinate of the point of this index, as a finite number.
+  double coordinate(std::string_view text, std::size_t point) const {
+    double value = 0;
+    const ParsedNumber parsed = parse_number(text, value);
+    if (parsed == ParsedNumber::unreadable) {
+      fail_field(text, "expected a number (a coordinate of point {}), found {}", point,
+                 text.empty() ? "nothing" : quoted(text));
+    }
+    if (parsed == ParsedNumber::infinite) {
+      fail_field(text,
+                 "point {} has coordinate {}, beyond the largest double: infinity; expected finite numbers",
+                 point, quoted(text));
+    }
+    if (!std::isfinite(value)) {
+      fail_field(text, "point {} has coordinate {}; expected finite numbers", point, quoted(text));
+    }
+    return value;
+  }
+
+  const std::string& name() const { return name_; }
+  std::size_t number() const { return number_; }
+  /// Upper bound of the lines left, for reserving memory.
+  std::size_t lines_left() const {
+    std::size_t lines = 1;
+    for (const char* c = next_line_; (c = find(c, text_end_, '\n')) != text_end_; ++c) ++lines;
+    return lines;
+  }
+
+  template <typename... Arguments>
+  [[noreturn]] void fail_line(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
+    fail(name_, "line {}: {}", number_, fmt::format(format, std::forward<Arguments>(arguments)...));
+  }
+  template <typename... Arguments>
+  [[noreturn]] void fail_field(std::string_view field, fmt::format_string<Arguments...> format,
+                               Arguments&&... arguments) const {
+    fail(name_, "line {}, column {}: {}", number_, field.data() - line_begin_ + 1,
+         fmt::format(format, std::forward<Arguments>(arguments)...));
+  }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+  static const char* find(const char* begin, const char* end, char wanted) {
+    const void* found =
+        begin == end ? nullptr : std::memchr(begin, wanted, static_cast<std::size_t>(end - begin));
+    return found ? static_cast<const char*>(found) : end;
+  }
+  void skip_blanks() {
+    while (cursor_ != line_end_ && is_blank(*cursor_)) ++cursor_;
+  }
+
+  std::string name_;
+  bool commas_;
+  const char* next_line_;
+  const char* text_end_;
+  const char* line_begin_ = nullptr;
+  const char* line_end_ = nullptr;
+  const char* cursor_ = nullptr;
+  std::size_t number_ = 0;
+  std::size_t fields_taken_ = 0;
+};
+
+/// A vertex or triangle number as an index from 0: `number` less `base`, checked to be one of `count`.
+inline std::int32_t checked_index(const Lines& lines, std::string_view what, long long number, long long base,
+                                  long long count) {
+  if (number < base || number - base >= count) {
+    lines.fail_line("{} {} is out of range; expected {} to {}", what, number, base, base + count - 1);
+  }
+  return static_cast<std::int32_t>(number - base);
+}
+
+/// A whole .node file, numbered from 0, without attributes and markers. In points.cpp.
+void print_node(OutputFile& file, const Points& points);
+
+}  // namespace flaunay::io

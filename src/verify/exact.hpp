@@ -1,0 +1,82 @@
+// Exact signs of the two geometric predicates on the host, for any finite doubles.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+namespace flaunay {
+
+/// orient2d and incircle with exact signs, whatever the magnitudes (subnormal to 1.8e308). A floating-point
+/// filter decides nearly always; exact integers decide the rest, and are counted. Points are pointers to x,
+/// y.
+///
+/// The filters are Shewchuk's stage A ("Adaptive Precision Floating-Point Arithmetic and Fast Robust
+/// Geometric Predicates", 1997, sections 4.2 and 4.4), whose bounds, (3 + 16 eps) eps and (10 + 96 eps) eps
+/// with eps = 2^-53, hold as long as nothing overflows or underflows. Ours are 4 eps and 11 eps; the extra
+/// (nearly one) eps pays for underflow:
+///
+/// - A difference of doubles never underflows inexactly. A product may be off by a further u = 2^-1075.
+/// - orient2d: two products, so 2 u in all, which eps * magnitude exceeds if magnitude >= 2^-900.
+/// - incircle: differences are at most 2^250 in magnitude if the lifts sum to at most 2^500, which is asked
+/// for.
+///   Then each minor is off by at most 2 u and multiplied by a lift of at most 2^500, each lift is off by at
+///   most 2 u and multiplied by a minor of at most 2^501, and the last product adds u: for three terms less
+///   than 2^505 u = 2^-570 in all, which eps * magnitude exceeds if magnitude >= 2^-500. (The magnitude
+///   itself is off by no more, and is multiplied by 11 eps.)
+/// - Overflow makes the bound infinite or not a number in orient2d, and the comparison false; in incircle the
+///   limit on the lifts rules it out.
+///
+/// Needs -ffp-contract=off: a fused product would not have the rounding that the bounds assume.
+class ExactPredicates {
+ public:
+  /// +1 if a, b, c turn left (counter-clockwise), -1 if they turn right, 0 if they are collinear.
+  int orient2d(const double* a, const double* b, const double* c) {
+    const double left = (a[0] - c[0]) * (b[1] - c[1]);
+    const double right = (a[1] - c[1]) * (b[0] - c[0]);
+    const double determinant = left - right;
+    const double magnitude = std::fabs(left) + std::fabs(right);
+    if (magnitude >= 0x1p-900 && std::fabs(determinant) > 4 * kEpsilon * magnitude) {
+      return determinant > 0 ? 1 : -1;
+    }
+    ++exact_evaluations_;
+    return exact_orient2d(a, b, c);
+  }
+
+  /// For a, b, c counter-clockwise: +1 if d is inside their circle, -1 if it is outside, 0 if it is on it.
+  /// For a, b, c clockwise the sign is the opposite.
+  int incircle(const double* a, const double* b, const double* c, const double* d) {
+    const double adx = a[0] - d[0], ady = a[1] - d[1];
+    const double bdx = b[0] - d[0], bdy = b[1] - d[1];
+    const double cdx = c[0] - d[0], cdy = c[1] - d[1];
+    const double bdxcdy = bdx * cdy, cdxbdy = cdx * bdy;
+    const double cdxady = cdx * ady, adxcdy = adx * cdy;
+    const double adxbdy = adx * bdy, bdxady = bdx * ady;
+    const double a_lift = adx * adx + ady * ady;
+    const double b_lift = bdx * bdx + bdy * bdy;
+    const double c_lift = cdx * cdx + cdy * cdy;
+    const double determinant =
+        a_lift * (bdxcdy - cdxbdy) + b_lift * (cdxady - adxcdy) + c_lift * (adxbdy - bdxady);
+    const double magnitude = (std::fabs(bdxcdy) + std::fabs(cdxbdy)) * a_lift +
+                             (std::fabs(cdxady) + std::fabs(adxcdy)) * b_lift +
+                             (std::fabs(adxbdy) + std::fabs(bdxady)) * c_lift;
+    if (a_lift + b_lift + c_lift <= 0x1p500 && magnitude >= 0x1p-500 &&
+        std::fabs(determinant) > 11 * kEpsilon * magnitude) {
+      return determinant > 0 ? 1 : -1;
+    }
+    ++exact_evaluations_;
+    return exact_incircle(a, b, c, d);
+  }
+
+  /// How many calls floating point could not decide.
+  std::size_t exact_evaluations() const { return exact_evaluations_; }
+
+ private:
+  static constexpr double kEpsilon = 0x1p-53;  // half a unit in the last place of 1, as in Shewchuk's paper
+
+  static int exact_orient2d(const double* a, const double* b, const double* c);
+  static int exact_incircle(const double* a, const double* b, const double* c, const double* d);
+
+  std::size_t exact_evaluations_ = 0;
+};
+
+}  // namespace flaunay

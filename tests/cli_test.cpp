@@ -1,0 +1,808 @@
+// The command line as its users meet it: the built executable, its exit codes, messages and files.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+extern char** environ;
+
+namespace {
+
+namespace fs = std::filesystem;
+using Arguments = std::vector<std::string>;
+using Environment = std::map<std::string, std::string>;
+
+constexpr int kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDevice = 4;
+
+// What needs no device must not open one: these runs find no OpenCL platform at all. Sanitized builds look
+// for leaks here; with a device they would find those of the OpenCL implementation.
+const Environment kNoPlatform = {{"OCL_ICD_VENDORS", "/nonexistent"}, {"ASAN_OPTIONS", "detect_leaks=1"}};
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string contents(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_file(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::string npy(const std::string& type, const std::string& order, const std::string& shape,
+                const std::string& data) {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
+  header.resize((10 + header.size() + 1 + 63) / 64 * 64 - 10 - 1, ' ');
+  header += '\n';
+  std::string file("\x93NUMPY\x01\x00", 8);
+  file += static_cast<char>(header.size() % 256);
+  file += static_cast<char>(header.size() / 256);
+  return file + header + data;
+}
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// The int32 values of an .npy file as the command writes it; its shape as NumPy prints it.
+struct Array {
+  std::string shape;
+  std::vector<std::int32_t> values;
+};
+
+Array read_array(const fs::path& path) {
+  const std::string file = contents(path);
+  Array array;
+  if (file.size() < 10) return array;
+  const std::size_t header_size =
+      static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]);
+  const std::string header = file.substr(10, header_size);
+  EXPECT_NE(header.find("'<i4'"), std::string::npos) << header;
+  EXPECT_NE(header.find("'fortran_order': False"), std::string::npos) << header;
+  const std::size_t open = header.find('('), close = header.find(')');
+  EXPECT_NE(close, std::string::npos) << header;
+  array.shape = header.substr(open, close - open + 1);
+  const std::size_t start = 10 + header_size;
+  array.values.resize((file.size() - start) / 4);
+  if (!array.values.empty()) std::memcpy(array.values.data(), file.data() + start, 4 * array.values.size());
+  return array;
+}
+
+/// The environment of a child: this one's, with changes.
+class ChildEnvironment {
+ public:
+  explicit ChildEnvironment(const Environment& changes) {
+    Environment all = {{"ASAN_OPTIONS", "detect_leaks=0"}};
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+      const std::string text = *variable;
+      all.emplace(text.substr(0, text.find('=')), text.substr(text.find('=') + 1));
+    }
+    for (const auto& [name, value] : changes) all[name] = value;
+    for (const auto& [name, value] : all) variables_.push_back(name + "=" + value);
+    for (std::string& variable : variables_) pointers_.push_back(variable.data());
+    pointers_.push_back(nullptr);
+  }
+  char** get() { return pointers_.data(); }
+
+ private:
+  std::vector<std::string> variables_;
+  std::vector<char*> pointers_;
+};
+
+pid_t spawn(const Arguments& arguments, const Environment& changes, posix_spawn_file_actions_t* actions) {
+  std::vector<std::string> words = {FLAUNAY_EXECUTABLE};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ChildEnvironment environment(changes);
+  pid_t child = -1;
+  EXPECT_EQ(posix_spawn(&child, FLAUNAY_EXECUTABLE, actions, nullptr, pointers.data(), environment.get()), 0);
+  return child;
+}
+
+int exit_code_of(pid_t child) {
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class CommandTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "flaunay-cli-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    directory_ = pattern;
+    fs::create_directory(directory_ / "streams");
+    fs::create_directory(directory_ / "files");
+  }
+
+  void TearDown() override { fs::remove_all(directory_); }
+
+  /// A path for the test's own files.
+  std::string path(const std::string& name) const { return (directory_ / "files" / name).string(); }
+
+  std::string write(const std::string& name, const std::string& bytes) const {
+    write_file(path(name), bytes);
+    return path(name);
+  }
+
+  /// The names of the test's files, sorted.
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_ / "files")) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  Outcome run(const Arguments& arguments, const Environment& environment = {}, const std::string& input = "",
+              const std::string& out_path = "") const {
+    const std::string in = (directory_ / "streams/in").string();
+    const std::string out = out_path.empty() ? (directory_ / "streams/out").string() : out_path;
+    const std::string err = (directory_ / "streams/err").string();
+    write_file(in, input);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, in.c_str(), O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0600);
+    const pid_t child = spawn(arguments, environment, &actions);
+    posix_spawn_file_actions_destroy(&actions);
+    Outcome outcome;
+    outcome.exit_code = exit_code_of(child);
+    if (out_path.empty()) outcome.out = contents(out);
+    outcome.err = contents(err);
+    return outcome;
+  }
+
+  /// Runs and expects success without a word on standard error, which is no terminal.
+  Outcome run_well(const Arguments& arguments, const Environment& environment = {},
+                   const std::string& input = "") const {
+    Outcome outcome = run(arguments, environment, input);
+    EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return outcome;
+  }
+
+  /// Runs and expects one message on standard error that holds all the parts, and no new files.
+  void expect_error(int exit_code, const std::vector<std::string>& parts, const Arguments& arguments,
+                    const Environment& environment = kNoPlatform, const std::string& input = "") const {
+    std::string command = "flaunay";
+    for (const std::string& argument : arguments) command += " " + argument;
+    SCOPED_TRACE(command);
+    const std::vector<std::string> before = files();
+    const Outcome outcome = run(arguments, environment, input);
+    EXPECT_EQ(outcome.exit_code, exit_code);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err.rfind("flaunay: ", 0), 0u) << outcome.err;
+    EXPECT_EQ(outcome.err.find("flaunay: ", 1), std::string::npos)
+        << "more than one message: " << outcome.err;
+    EXPECT_EQ(outcome.err.find("internal"), std::string::npos) << outcome.err;
+    ASSERT_FALSE(outcome.err.empty());
+    EXPECT_EQ(outcome.err.back(), '\n');
+    for (const std::string& part : parts) {
+      EXPECT_NE(outcome.err.find(part), std::string::npos) << "no \"" << part << "\" in: " << outcome.err;
+    }
+    EXPECT_EQ(files(), before);
+  }
+
+  fs::path directory_;
+};
+
+std::string data(const std::string& name) { return std::string(FLAUNAY_TEST_DATA) + "/" + name; }
+
+// ---------------------------------------------------------------------------------------------------- usage
+
+using CommandUsageTest = CommandTest;
+
+TEST_F(CommandUsageTest, VersionAndHelpSucceed) {
+  EXPECT_EQ(run_well({"--version"}, kNoPlatform).out.rfind("flaunay ", 0), 0u);
+  const std::string help = run_well({"--help"}, kNoPlatform).out;
+  for (const char* subcommand : {"triangulate", "generate", "verify", "devices"}) {
+    EXPECT_NE(help.find(subcommand), std::string::npos) << subcommand;
+  }
+  EXPECT_NE(run_well({"triangulate", "--help"}, kNoPlatform).out.find("--neighbors"), std::string::npos);
+}
+
+TEST_F(CommandUsageTest, GenerateHelpListsTheDistributions) {
+  const std::string help = run_well({"generate", "--help"}, kNoPlatform).out;
+  for (const char* name : {"uniform", "normal", "kuzmin", "line", "grid"}) {
+    EXPECT_NE(help.find(name), std::string::npos) << name;
+  }
+}
+
+TEST_F(CommandUsageTest, RequestsThatMakeNoSense) {
+  const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
+  expect_error(kUsage, {"subcommand"}, {});
+  expect_error(kUsage, {"frobnicate"}, {"frobnicate"});
+  expect_error(kUsage, {"--frobnicate"}, {"triangulate", points, "--frobnicate"});
+  expect_error(kUsage, {"input"}, {"triangulate"});
+  expect_error(kUsage, {"--mode"}, {"triangulate", points, "--mode", "sideways"});
+  expect_error(kUsage, {"--cut"}, {"triangulate", points, "--cut", "sideways"});
+  expect_error(kUsage, {"empty"}, {"triangulate", points, "-o", ""});
+  expect_error(kUsage, {"many"}, {"generate", "uniform", "many", "-o", path("many.npy")});
+  expect_error(kUsage, {"-5"}, {"generate", "uniform", "-5", "-o", path("negative.npy")});
+  expect_error(kUsage, {"4000000000", "2147483647"},
+               {"generate", "uniform", "4000000000", "-o", path("g.npy")});
+  expect_error(kUsage, {"output"}, {"generate", "uniform", "10"});
+}
+
+TEST_F(CommandUsageTest, UnknownEndings) {
+  const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
+  expect_error(kUsage, {"points.dwg", ".npy"}, {"triangulate", write("points.dwg", "0 0\n")});
+  expect_error(kUsage, {"mesh.dwg", ".off"}, {"triangulate", points, "-o", path("mesh.dwg")});
+  expect_error(kUsage, {"mesh", ".off"}, {"triangulate", points, "-o", path("mesh")});
+  expect_error(kUsage, {"triangles.txt", ".npy"},
+               {"triangulate", points, "--triangles", path("triangles.txt")});
+  expect_error(kUsage, {"stats.txt", ".json"}, {"triangulate", points, "--stats", path("stats.txt")});
+  expect_error(kUsage, {"points.dwg", ".npy"}, {"generate", "uniform", "10", "-o", path("points.dwg")});
+}
+
+TEST_F(CommandUsageTest, UnknownDistributionListsTheKnown) {
+  expect_error(kUsage, {"lumpy", "uniform", "kuzmin"}, {"generate", "lumpy", "10", "-o", path("points.npy")});
+}
+
+TEST_F(CommandUsageTest, OutputsDoNotOverwriteTheInputOrEachOther) {
+  const std::string points = write("points.node", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n");
+  expect_error(kUsage, {"points.node", "overwrite the input"},
+               {"triangulate", points, "-o", path("points.ele")});
+  EXPECT_EQ(contents(points), "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n");
+  const std::string array = write("points.npy", npy("<f8", "False", "(1, 2)", bytes_of<double>({1, 2})));
+  expect_error(kUsage, {"points.npy", "overwrite the input"}, {"triangulate", array, "--hull", array});
+  expect_error(kUsage, {"same path"},
+               {"triangulate", points, "--hull", path("a.npy"), "--triangles", path("./a.npy")});
+}
+
+// ------------------------------------------------------------------------------------------------ bad input
+
+using CommandBadInputTest = CommandTest;
+
+TEST_F(CommandBadInputTest, MissingFile) {
+  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin"}) {
+    expect_error(kBadInput, {std::string("missing") + ending, "No such file"},
+                 {"triangulate", path(std::string("missing") + ending), "-o", path("mesh.off")});
+  }
+}
+
+TEST_F(CommandBadInputTest, ADirectoryIsNoFile) {
+  fs::create_directory(path("directory.xy"));
+  expect_error(kBadInput, {"directory.xy"}, {"triangulate", path("directory.xy")});
+}
+
+TEST_F(CommandBadInputTest, EmptyFile) {
+  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin"}) {
+    const std::string file = write(std::string("empty") + ending, "");
+    expect_error(kBadInput, {std::string("empty") + ending}, {"triangulate", file, "-o", path("mesh.off")});
+  }
+  expect_error(kBadInput, {}, {"triangulate", "-", "-o", path("mesh.off")});
+}
+
+TEST_F(CommandBadInputTest, UnreadableNumberWithLineAndColumn) {
+  const std::string text = write("points.xy", "# a comment\n0 0\n1 0\n0.5 oops\n");
+  expect_error(kBadInput, {"points.xy", "line 4", "column 5"}, {"triangulate", text, "-o", path("mesh.off")});
+  const std::string node = write("points.node", "2 2 0 0\n1 0 0\n2 1 1x\n");
+  expect_error(kBadInput, {"points.node", "line 3", "column 5"},
+               {"triangulate", node, "-o", path("mesh.off")});
+  expect_error(kBadInput, {"line 2", "column 3"}, {"triangulate", "-", "-o", path("mesh.off")}, kNoPlatform,
+               "0 0\n1 zero\n");
+}
+
+TEST_F(CommandBadInputTest, RaggedLine) {
+  const std::string short_line = write("short.csv", "0,0\n1,0\n2\n3,3\n");
+  expect_error(kBadInput, {"short.csv", "line 3"}, {"triangulate", short_line, "-o", path("mesh.off")});
+  const std::string long_line = write("long.xy", "0 0\n1 0 7\n");
+  expect_error(kBadInput, {"long.xy", "line 2"}, {"triangulate", long_line, "-o", path("mesh.off")});
+}
+
+TEST_F(CommandBadInputTest, NodeFileThatEndsEarly) {
+  const std::string node = write("early.node", "3 2 0 0\n1 0 0\n2 1 1\n");
+  expect_error(kBadInput, {"early.node"}, {"triangulate", node, "-o", path("mesh.off")});
+}
+
+TEST_F(CommandBadInputTest, NotFiniteWithIndex) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::string nan_array =
+      write("nan.npy", npy("<f8", "False", "(4, 2)", bytes_of<double>({0, 0, 1, 0, 2, nan, 3, 3})));
+  expect_error(kBadInput, {"nan.npy", "point 2"}, {"triangulate", nan_array, "-o", path("mesh.off")});
+  const std::string infinite = write("infinite.bin", bytes_of<double>({0, 0, 1, 0, 2, 2, -infinity, 3}));
+  expect_error(kBadInput, {"infinite.bin", "point 3"}, {"triangulate", infinite, "-o", path("mesh.off")});
+  const std::string text = write("nan.xy", "0 0\nnan 1\n");
+  expect_error(kBadInput, {"nan.xy", "point 1"}, {"triangulate", text, "-o", path("mesh.off")});
+}
+
+TEST_F(CommandBadInputTest, WrongArrays) {
+  const std::string eight = bytes_of<double>({0, 0, 1, 0, 0, 1, 1, 1});
+  const std::map<std::string, std::string> arrays = {
+      {"columns.npy", npy("<f8", "False", "(2, 4)", eight)},
+      {"flat.npy", npy("<f8", "False", "(8,)", eight)},
+      {"type.npy", npy("<i8", "False", "(4, 2)", eight)},
+      {"complex.npy", npy("<c16", "False", "(2, 2)", eight)},
+      {"endian.npy", npy(">f8", "False", "(4, 2)", eight)},
+      {"order.npy", npy("<f8", "True", "(4, 2)", eight)},
+      {"truncated.npy", npy("<f8", "False", "(4, 2)", eight.substr(0, 50))},
+      {"huge.npy", npy("<f8", "False", "(4611686018427387904, 2)", eight)},
+      {"header.npy", npy("<f8", "False", "(4, 2)", eight).substr(0, 40)},
+      {"magic.npy", "PK\x03\x04 and so on, as an .npz would be"},
+      {"half.bin", eight.substr(0, 50)},
+  };
+  for (const auto& [name, bytes] : arrays) {
+    expect_error(kBadInput, {name}, {"triangulate", write(name, bytes), "-o", path("mesh.off")});
+  }
+}
+
+TEST_F(CommandBadInputTest, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
+  // The input is missing and there is no device: that the output is what is complained of shows the order.
+  const std::string input = path("missing.xy");
+  const std::string nowhere = path("no/such/directory/");
+  for (const char* option : {"--triangles", "--neighbors", "--hull", "--duplicates"}) {
+    expect_error(kBadInput, {"no/such/directory/a.npy"}, {"triangulate", input, option, nowhere + "a.npy"});
+  }
+  for (const char* ending : {".ele", ".off", ".ply", ".vtu", ".obj", ".npy", ".svg"}) {
+    expect_error(kBadInput, {"no/such/directory/a"}, {"triangulate", input, "-o", nowhere + "a" + ending});
+  }
+  expect_error(kBadInput, {"a.json"}, {"triangulate", input, "--stats", nowhere + "a.json"});
+  expect_error(kBadInput, {"a.npy"}, {"generate", "uniform", "10", "-o", nowhere + "a.npy"});
+  fs::create_directory(path("directory.off"));
+  expect_error(kBadInput, {"directory.off"}, {"triangulate", input, "-o", path("directory.off")});
+}
+
+TEST_F(CommandBadInputTest, AnOutputThatWasThereSurvivesAnError) {
+  const std::string mesh = write("mesh.off", "precious");
+  expect_error(kBadInput, {"missing.xy"}, {"triangulate", path("missing.xy"), "-o", mesh});
+  EXPECT_EQ(contents(mesh), "precious");
+}
+
+// -------------------------------------------------------------------------------------- generate and verify
+
+using CommandVerifyTest = CommandTest;
+
+TEST_F(CommandVerifyTest, RightAndWrong) {
+  const std::string points = write("points.xy", "0 0\n4 0\n4 3\n0 4\n");
+  const std::string right = write("right.obj", "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 4 0\nf 1 2 3\nf 1 3 4\n");
+  const Outcome good = run_well({"verify", points, right}, kNoPlatform);
+  EXPECT_EQ(good.out.rfind("right: ", 0), 0u) << good.out;
+  EXPECT_NE(good.out.find("2 triangles"), std::string::npos) << good.out;
+
+  const std::string wrong = write("wrong.obj", "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 4 0\nf 1 2 4\nf 2 3 4\n");
+  const Outcome bad = run({"verify", points, wrong}, kNoPlatform);
+  EXPECT_EQ(bad.exit_code, kFailure);
+  EXPECT_EQ(bad.out.rfind("wrong: ", 0), 0u) << bad.out;
+  EXPECT_EQ(bad.err.rfind("flaunay: ", 0), 0u) << bad.err;
+  EXPECT_NE(bad.err.find("wrong.obj"), std::string::npos) << bad.err;
+}
+
+TEST_F(CommandVerifyTest, Neighbors) {
+  const std::string points = write("points.xy", "0 0\n4 0\n4 3\n0 4\n");
+  const std::string triangles =
+      write("triangles.npy", npy("<i4", "False", "(2, 3)", bytes_of<std::int32_t>({0, 1, 2, 0, 2, 3})));
+  const auto neighbors = [this](const std::string& name, const std::vector<std::int32_t>& values) {
+    return write(name,
+                 npy("<i4", "False", "(" + std::to_string(values.size() / 3) + ", 3)", bytes_of(values)));
+  };
+  const std::string right = neighbors("right.npy", {-1, 1, -1, -1, -1, 0});
+  run_well({"verify", points, triangles, "--neighbors", right}, kNoPlatform);
+  const std::string wrong = neighbors("wrong.npy", {1, -1, -1, -1, -1, 0});
+  EXPECT_EQ(run({"verify", points, triangles, "--neighbors", wrong}, kNoPlatform).exit_code, kFailure);
+  const std::string few = neighbors("few.npy", {-1, 1, -1});
+  EXPECT_EQ(run({"verify", points, triangles, "--neighbors", few}, kNoPlatform).exit_code, kFailure);
+}
+
+TEST_F(CommandVerifyTest, BadFiles) {
+  const std::string points = write("points.xy", "0 0\n4 0\n0 4\n");
+  expect_error(kBadInput, {"missing.npy"}, {"verify", points, path("missing.npy")});
+  expect_error(kBadInput, {"missing.npy"}, {"verify", path("missing.npy"), path("missing.npy")});
+  expect_error(
+      kBadInput, {"double.npy"},
+      {"verify", points, write("double.npy", npy("<f8", "False", "(1, 3)", bytes_of<double>({0, 1, 2})))});
+  const std::string range =
+      write("range.npy", npy("<i4", "False", "(1, 3)", bytes_of<std::int32_t>({0, 1, 3})));
+  EXPECT_EQ(run({"verify", points, range}, kNoPlatform).exit_code, kFailure);
+}
+
+TEST_F(CommandVerifyTest, GenerateGivesTheSameBytesForTheSameSeed) {
+  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin"}) {
+    SCOPED_TRACE(ending);
+    for (const char* name : {"a", "b"}) {
+      run_well({"generate", "kuzmin", "500", "--seed", "7", "-o", path(name + std::string(ending))},
+               kNoPlatform);
+    }
+    run_well({"generate", "kuzmin", "500", "--seed", "8", "-o", path("c" + std::string(ending))},
+             kNoPlatform);
+    const std::string a = contents(path("a" + std::string(ending)));
+    EXPECT_GT(a.size(), 1000u);
+    EXPECT_EQ(a, contents(path("b" + std::string(ending))));
+    EXPECT_NE(a, contents(path("c" + std::string(ending))));
+  }
+}
+
+TEST_F(CommandVerifyTest, GenerateToStandardOutputIsTheTextFile) {
+  run_well({"generate", "normal", "5000", "-o", path("points.xy")}, kNoPlatform);
+  EXPECT_EQ(run_well({"generate", "normal", "5000", "-o", "-"}, kNoPlatform).out,
+            contents(path("points.xy")));
+}
+
+TEST_F(CommandVerifyTest, FullDiskIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const Outcome outcome = run({"generate", "uniform", "5000", "-o", "-"}, kNoPlatform, "", "/dev/full");
+  EXPECT_EQ(outcome.exit_code, kBadInput);
+  EXPECT_NE(outcome.err.find("No space left"), std::string::npos) << outcome.err;
+  EXPECT_EQ(run({"generate", "--help"}, kNoPlatform, "", "/dev/full").err.find("internal"),
+            std::string::npos);
+}
+
+/// The wait status of a run whose standard output has a reader that leaves after one byte, or at once.
+int status_without_reader(const Arguments& arguments, bool one_byte) {
+  int ends[2];
+  if (pipe(ends) != 0) return -1;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_addclose(&actions, ends[0]);
+  posix_spawn_file_actions_addclose(&actions, ends[1]);
+  if (!one_byte) close(ends[0]);
+  const pid_t child = spawn(arguments, kNoPlatform, &actions);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (one_byte) {
+    char byte = 0;
+    EXPECT_EQ(read(ends[0], &byte, 1), 1);
+    close(ends[0]);
+  }
+  int status = -1;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return status;
+}
+
+TEST_F(CommandVerifyTest, AReaderThatGoesAwayEndsAGenerator) {
+  const int status = status_without_reader({"generate", "uniform", "200000", "-o", "-"}, true);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE) << status;
+}
+
+TEST_F(CommandVerifyTest, TheVerdictNeedsNoReader) {
+  const std::string points = write("points.xy", "0 0\n4 0\n4 3\n0 4\n");
+  const std::string right = write("right.obj", "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 4 0\nf 1 2 3\nf 1 3 4\n");
+  const int status = status_without_reader({"verify", points, right}, false);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == kSuccess) << status;
+}
+
+// ------------------------------------------------------------------------------------------------- progress
+
+/// Runs with a terminal as standard error and an input that ends, badly, only after a while.
+std::string terminal_output_of_slow_run(std::chrono::milliseconds wait, const Environment& environment) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return "no terminal";
+  const int terminal_end = open(ptsname(terminal), O_RDWR | O_NOCTTY);
+  int ends[2];
+  if (terminal_end < 0 || pipe(ends) != 0) return "no terminal";
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, terminal_end, STDERR_FILENO);
+  for (const int descriptor : {ends[0], ends[1], terminal, terminal_end}) {
+    posix_spawn_file_actions_addclose(&actions, descriptor);
+  }
+  const pid_t child = spawn({"triangulate", "-"}, environment, &actions);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[0]);
+  close(terminal_end);
+  std::this_thread::sleep_for(wait);
+  const std::string text = "0 0\n1 oops\n";
+  EXPECT_EQ(write(ends[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  close(ends[1]);
+  std::string output;
+  char buffer[4096];
+  for (ssize_t count; (count = read(terminal, buffer, sizeof buffer)) > 0;) {
+    output.append(buffer, static_cast<std::size_t>(count));
+  }
+  close(terminal);
+  EXPECT_EQ(exit_code_of(child), kBadInput);
+  return output;
+}
+
+TEST(CommandProgressTest, OneLineRewrittenAndClearedAtTheEnd) {
+  Environment environment = kNoPlatform;
+  environment["TERM"] = "xterm";
+  const std::string clear = "\r\x1b[K";
+  const std::string output = terminal_output_of_slow_run(std::chrono::milliseconds(900), environment);
+  EXPECT_EQ(output.rfind(clear + "reading", 0), 0u) << output;
+  const std::size_t message = output.find("flaunay: ");
+  ASSERT_NE(message, std::string::npos) << output;
+  EXPECT_EQ(output.substr(message - clear.size(), clear.size()), clear) << output;
+  EXPECT_EQ(output.substr(0, message).find('\n'), std::string::npos) << output;
+}
+
+TEST(CommandProgressTest, NothingInTheFirstHalfSecond) {
+  Environment environment = kNoPlatform;
+  environment["TERM"] = "xterm";
+  const std::string output = terminal_output_of_slow_run(std::chrono::milliseconds(0), environment);
+  EXPECT_EQ(output.rfind("flaunay: ", 0), 0u) << output;
+}
+
+TEST(CommandProgressTest, NothingOnADumbTerminal) {
+  Environment environment = kNoPlatform;
+  environment["TERM"] = "dumb";
+  const std::string output = terminal_output_of_slow_run(std::chrono::milliseconds(700), environment);
+  EXPECT_EQ(output.rfind("flaunay: ", 0), 0u) << output;
+}
+
+// --------------------------------------------------------------------------------------------------- device
+
+using CommandDeviceTest = CommandTest;
+
+TEST_F(CommandDeviceTest, NoPlatformSaysWhatToInstall) {
+  const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
+  expect_error(kDevice, {"pocl-opencl-icd"}, {"triangulate", points, "-o", path("mesh.off")});
+  expect_error(kDevice, {"pocl-opencl-icd"}, {"devices"});
+}
+
+TEST_F(CommandDeviceTest, UnknownDevice) {
+  const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
+  const Arguments command = {"triangulate", points, "-o", path("mesh.off")};
+  for (const char* device : {"no such device", "#999"}) {
+    Arguments with_option = command;
+    with_option.insert(with_option.end(), {"--device", device});
+    expect_error(kDevice, {device}, with_option, {});
+    expect_error(kDevice, {device}, command, {{"FLAUNAY_DEVICE", device}});
+  }
+}
+
+TEST_F(CommandDeviceTest, TheOptionGoesBeforeTheEnvironment) {
+  const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
+  run_well({"triangulate", points, "--device", "#0"}, {{"FLAUNAY_DEVICE", "no such device"}});
+  run_well({"triangulate", points}, {{"FLAUNAY_DEVICE", "#0"}});
+}
+
+TEST_F(CommandDeviceTest, DevicesListsWhatMatters) {
+  const std::string out = run_well({"devices"}).out;
+  for (const char* part :
+       {"#0", "platform", "driver", "fp64", "memory", "largest buffer", "units", "self-test"}) {
+    EXPECT_NE(out.find(part), std::string::npos) << out;
+  }
+  EXPECT_NE(out.find("passed"), std::string::npos) << out;
+}
+
+// ---------------------------------------------------------------------------------------------- triangulate
+
+using CommandTriangulateTest = CommandTest;
+
+TEST_F(CommandTriangulateTest, EveryFileOfTheTestDataIsTriangulatedExactly) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(FLAUNAY_TEST_DATA)) {
+    const std::string input = entry.path().string();
+    if (entry.path().extension() != ".xy" && entry.path().extension() != ".node") continue;
+    SCOPED_TRACE(input);
+    ++count;
+    run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors", path("n.npy")});
+    run_well({"verify", input, path("t.npy"), "--neighbors", path("n.npy")}, kNoPlatform);
+  }
+  EXPECT_GE(count, 9u);
+}
+
+TEST_F(CommandTriangulateTest, EveryMeshFormat) {
+  const std::string input = data("ukraine.xy");
+  for (const char* ending : {".ele", ".off", ".ply", ".vtu", ".obj", ".npy", ".svg"}) {
+    SCOPED_TRACE(ending);
+    const std::string mesh = path("mesh" + std::string(ending));
+    run_well({"triangulate", input, "-o", mesh});
+    EXPECT_GT(fs::file_size(mesh), 1000u);
+    // .vtu and .svg are for looking at.
+    if (std::string(ending) != ".vtu" && std::string(ending) != ".svg") {
+      run_well({"verify", input, mesh}, kNoPlatform);
+    }
+  }
+  // Triangle's pair of files is complete: its own points verify too.
+  run_well({"verify", path("mesh.node"), path("mesh.ele")}, kNoPlatform);
+  EXPECT_NE(contents(path("mesh.svg")).find("<svg"), std::string::npos);
+  EXPECT_NE(contents(path("mesh.vtu")).find("UnstructuredGrid"), std::string::npos);
+}
+
+TEST_F(CommandTriangulateTest, EveryInputFormatGivesTheSameTriangles) {
+  std::string expected;
+  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin"}) {
+    SCOPED_TRACE(ending);
+    const std::string input = path("points" + std::string(ending));
+    run_well({"generate", "kuzmin", "300", "-o", input}, kNoPlatform);
+    run_well({"triangulate", input, "--triangles", path("t.npy")});
+    const std::string triangles = contents(path("t.npy"));
+    if (expected.empty()) expected = triangles;
+    EXPECT_EQ(triangles, expected);
+  }
+  run_well({"triangulate", "-", "--triangles", path("t.npy")}, {}, contents(path("points.xy")));
+  EXPECT_EQ(contents(path("t.npy")), expected);
+}
+
+TEST_F(CommandTriangulateTest, ArraysOfASquareWithADuplicate) {
+  const std::string input = write("points.xy", "0 0\n1 0\n1 1\n0 1\n1 0\n");
+  const Outcome outcome = run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors",
+                                    path("n.npy"), "--hull", path("h.npy"), "--duplicates", path("d.npy")});
+  const Array triangles = read_array(path("t.npy")), neighbors = read_array(path("n.npy"));
+  const Array hull = read_array(path("h.npy")), duplicates = read_array(path("d.npy"));
+  EXPECT_EQ(triangles.shape, "(2, 3)");
+  EXPECT_EQ(neighbors.shape, "(2, 3)");
+  EXPECT_EQ(hull.shape, "(4,)");
+  EXPECT_EQ(duplicates.shape, "(5,)");
+  EXPECT_EQ(hull.values, (std::vector<std::int32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(duplicates.values, (std::vector<std::int32_t>{0, 1, 2, 3, 1}));
+  // The four points are on a circle: a fan from the smallest, whatever the order of the rows.
+  std::vector<std::vector<std::int32_t>> rows;
+  for (std::size_t i = 0; i + 3 <= triangles.values.size(); i += 3) {
+    rows.emplace_back(triangles.values.begin() + i, triangles.values.begin() + i + 3);
+  }
+  std::sort(rows.begin(), rows.end());
+  EXPECT_EQ(rows, (std::vector<std::vector<std::int32_t>>{{0, 1, 2}, {0, 2, 3}}));
+  for (const char* part :
+       {"5 points", "1 duplicate", "2 triangles", "4 hull vertices", "points per second"}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
+  }
+}
+
+struct Degenerate {
+  const char* name;
+  const char* text;
+  std::vector<std::int32_t> hull;
+  std::vector<std::int32_t> representatives;
+};
+
+TEST_F(CommandTriangulateTest, DegenerateInputHasADefinedResult) {
+  const std::vector<Degenerate> cases = {
+      {"no points", "# none\n", {}, {}},
+      {"one point", "3 4\n", {0}, {0}},
+      {"two points", "3 4\n1 2\n", {1, 0}, {0, 1}},
+      {"two equal points", "3 4\n3 4\n", {0}, {0, 0}},
+      {"three points on a line", "2 2\n0 0\n1 1\n", {1, 2, 0}, {0, 1, 2}},
+      {"on a vertical line", "1 5\n1 -5\n1 0\n1 5\n", {1, 2, 0}, {0, 1, 2, 0}},
+      {"all equal", "7 7\n7 7\n7 7\n7 7\n7 7\n", {0}, {0, 0, 0, 0, 0}},
+      {"zeros of both signs", "0 0\n-0 0\n0 -0\n", {0}, {0, 0, 0}},
+  };
+  for (const Degenerate& degenerate : cases) {
+    SCOPED_TRACE(degenerate.name);
+    const std::string input = write("points.xy", degenerate.text);
+    const Outcome outcome =
+        run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors", path("n.npy"), "--hull",
+                  path("h.npy"), "--duplicates", path("d.npy"), "-o", path("mesh.off")});
+    EXPECT_NE(outcome.out.find("note: "), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("0 triangles"), std::string::npos) << outcome.out;
+    EXPECT_EQ(read_array(path("t.npy")).shape, "(0, 3)");
+    EXPECT_EQ(read_array(path("n.npy")).shape, "(0, 3)");
+    EXPECT_EQ(read_array(path("h.npy")).values, degenerate.hull);
+    EXPECT_EQ(read_array(path("d.npy")).values, degenerate.representatives);
+    run_well({"verify", input, path("t.npy")}, kNoPlatform);
+  }
+}
+
+TEST_F(CommandTriangulateTest, EveryMeshFormatTakesNoTriangles) {
+  for (const char* text : {"# none\n", "3 4\n", "2 2\n0 0\n1 1\n"}) {
+    const std::string input = write("points.xy", text);
+    for (const char* ending : {".ele", ".off", ".ply", ".vtu", ".obj", ".npy", ".svg"}) {
+      SCOPED_TRACE(text + std::string(ending));
+      run_well({"triangulate", input, "-o", path("mesh" + std::string(ending))});
+      EXPECT_TRUE(fs::exists(path("mesh" + std::string(ending))));
+    }
+  }
+}
+
+TEST_F(CommandTriangulateTest, ThreePointsAreOneTriangle) {
+  const std::string input = write("points.xy", "0 0\n0 1\n1 0\n");
+  const Outcome outcome = run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors",
+                                    path("n.npy"), "--hull", path("h.npy")});
+  EXPECT_EQ(outcome.out.find("note: "), std::string::npos) << outcome.out;
+  EXPECT_EQ(read_array(path("t.npy")).values, (std::vector<std::int32_t>{0, 2, 1}));
+  EXPECT_EQ(read_array(path("n.npy")).values, (std::vector<std::int32_t>{-1, -1, -1}));
+  EXPECT_EQ(read_array(path("h.npy")).values, (std::vector<std::int32_t>{0, 2, 1}));
+}
+
+TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
+  run_well({"generate", "uniform", "2000", "-o", path("points.npy")}, kNoPlatform);
+  const Outcome outcome = run_well(
+      {"triangulate", path("points.npy"), "--cut", "alternate", "--stats", path("stats.json"), "--profile"});
+  EXPECT_NE(outcome.out.find("kernel"), std::string::npos) << outcome.out;
+  const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
+  ASSERT_FALSE(stats.is_discarded());
+  EXPECT_EQ(stats.value("points", 0), 2000);
+  EXPECT_EQ(stats.value("duplicates", -1), 0);
+  EXPECT_EQ(stats.value("triangles", 0), 2 * 2000 - 2 - stats.value("hull_vertices", 0));
+  EXPECT_EQ(stats.value("mode", ""), "flattened");
+  EXPECT_EQ(stats.value("cut", ""), "alternate");
+  EXPECT_FALSE(stats.value("device", "").empty());
+  EXPECT_FALSE(stats.value("flaunay", "").empty());
+  EXPECT_GT(stats.value("kernel_launches", 0), 0);
+  EXPECT_GT(stats.value("host_waits", 0), 0);
+  EXPECT_GT(stats.value("device_bytes_peak", 0), 0);
+  EXPECT_GT(stats.value("device_bytes_per_point", 0.0), 0);
+  EXPECT_TRUE(stats.contains("undecided_predicates"));
+  for (const char* part : {"reading", "opening_device", "building_programs", "triangulating", "writing"}) {
+    EXPECT_TRUE(stats["seconds"].contains(part)) << part;
+  }
+  ASSERT_FALSE(stats["phases"].empty());
+  EXPECT_TRUE(stats["phases"][0].contains("name") && stats["phases"][0].contains("seconds"));
+  ASSERT_FALSE(stats["levels"].empty());
+  EXPECT_EQ(stats["levels"][0].value("regions", 0), 1);
+  for (const char* part :
+       {"internal_points", "corners", "survivors", "path_vertices", "hull_rounds", "seconds"}) {
+    EXPECT_TRUE(stats["levels"][0].contains(part)) << part;
+  }
+  ASSERT_FALSE(stats["kernels"].empty());
+  EXPECT_GT(stats["kernels"][0].value("launches", 0), 0);
+}
+
+TEST_F(CommandTriangulateTest, QuietSaysNothing) {
+  const std::string input = data("robustness1.xy");
+  EXPECT_EQ(run_well({"triangulate", input, "--quiet", "-o", path("mesh.off")}).out, "");
+  EXPECT_TRUE(fs::exists(path("mesh.off")));
+  const std::string line = write("line.xy", "0 0\n1 1\n2 2\n");
+  EXPECT_EQ(run_well({"triangulate", line, "--quiet", "--profile"}).out, "");
+}
+
+TEST_F(CommandTriangulateTest, TheSameInputGivesTheSameBytes) {
+  for (const char* run_name : {"a", "b"}) {
+    const std::string prefix = path(run_name);
+    run_well({"triangulate", data("ukraine.xy"), "--quiet", "-o", prefix + ".off", "--triangles",
+              prefix + "t.npy", "--neighbors", prefix + "n.npy", "--hull", prefix + "h.npy", "--duplicates",
+              prefix + "d.npy"});
+  }
+  for (const char* output : {".off", "t.npy", "n.npy", "h.npy", "d.npy"}) {
+    EXPECT_EQ(contents(path("a" + std::string(output))), contents(path("b" + std::string(output)))) << output;
+  }
+}
+
+TEST_F(CommandTriangulateTest, BothCutsGiveTheSameTriangles) {
+  std::vector<std::vector<std::vector<std::int32_t>>> results;
+  for (const char* cut : {"iqr", "alternate"}) {
+    run_well({"triangulate", data("issue44.xy"), "--cut", cut, "--mode", "flattened", "--triangles",
+              path("t.npy")});
+    const Array triangles = read_array(path("t.npy"));
+    std::vector<std::vector<std::int32_t>> rows;
+    for (std::size_t i = 0; i + 3 <= triangles.values.size(); i += 3) {
+      rows.emplace_back(triangles.values.begin() + i, triangles.values.begin() + i + 3);
+    }
+    std::sort(rows.begin(), rows.end());
+    results.push_back(rows);
+  }
+  EXPECT_FALSE(results[0].empty());
+  EXPECT_EQ(results[0], results[1]);
+}
+
+TEST_F(CommandTriangulateTest, OutOfRangeNamesThePointAndWritesNothing) {
+  const std::string input = write("points.xy", "0 0\n1 0\n0 1e-300\n1e300 1\n");
+  expect_error(kBadInput, {"point"}, {"triangulate", input, "-o", path("mesh.off"), "--hull", path("h.npy")},
+               {});
+}
+
+TEST_F(CommandTriangulateTest, AFailedWriteLeavesNoFileBehind) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  fs::create_symlink("/dev/full", path("hull.npy"));
+  expect_error(kBadInput, {"hull.npy"},
+               {"triangulate", data("ukraine.xy"), "-o", path("mesh.ele"), "--triangles", path("t.npy"),
+                "--hull", path("hull.npy")},
+               {});
+}
+
+}  // namespace

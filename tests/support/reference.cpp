@@ -1,0 +1,251 @@
+#include "tests/support/reference.hpp"
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace flaunay::testing {
+namespace {
+
+__extension__ using Int128 = __int128;
+
+template <typename Integer>
+struct Point {
+  Integer x, y;
+};
+
+template <typename Integer>
+Integer cross(const Point<Integer>& o, const Point<Integer>& a, const Point<Integer>& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+template <typename Integer>
+Integer dot(const Point<Integer>& o, const Point<Integer>& a, const Point<Integer>& b) {
+  return (a.x - o.x) * (b.x - o.x) + (a.y - o.y) * (b.y - o.y);
+}
+
+template <typename Integer>
+bool before(const Point<Integer>& a, const Point<Integer>& b) {
+  return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+/// The doubles as integers, all multiplied by the same power of two (which changes no predicate).
+std::vector<mpz_class> scale_to_integers(const double* values, std::size_t count) {
+  int smallest = std::numeric_limits<int>::max();
+  for (std::size_t i = 0; i < count; ++i) {
+    int exponent = 0;
+    if (std::frexp(values[i], &exponent) != 0) smallest = std::min(smallest, exponent - 53);
+  }
+  std::vector<mpz_class> integers(count);
+  mp_bitcnt_t trailing_zeros = std::numeric_limits<mp_bitcnt_t>::max();
+  for (std::size_t i = 0; i < count; ++i) {
+    int exponent = 0;
+    const double fraction = std::frexp(values[i], &exponent);
+    if (fraction == 0) continue;
+    integers[i] = std::ldexp(fraction, 53);
+    integers[i] <<= static_cast<mp_bitcnt_t>(exponent - 53 - smallest);
+    trailing_zeros = std::min(trailing_zeros, mpz_scan1(integers[i].get_mpz_t(), 0));
+  }
+  for (mpz_class& integer : integers) {
+    if (integer != 0) integer >>= trailing_zeros;
+  }
+  return integers;
+}
+
+/// Triangulates distinct points; the triangles are in terms of their positions in the list.
+template <typename Integer>
+class CellWrapper {
+ public:
+  explicit CellWrapper(const std::vector<Point<Integer>>& points) : points_(points) {}
+
+  TriangleSet run() {
+    if (points_.size() < 3) return {};
+    // A hull edge: from the lexicographically smallest point to the one that has all others to its left, the
+    // nearest if there are several.
+    int a = 0;
+    for (int i = 1; i < size(); ++i) {
+      if (before(points_[i], points_[a])) a = i;
+    }
+    int b = a == 0 ? 1 : 0;
+    for (int i = 0; i < size(); ++i) {
+      if (i == a || i == b) continue;
+      const Integer turn = cross<Integer>(points_[a], points_[b], points_[i]);
+      if (turn < 0 || (turn == 0 && before(points_[i], points_[b]))) b = i;
+    }
+    std::vector<std::pair<int, int>> open{{a, b}};
+    while (!open.empty()) {
+      const auto edge = open.back();
+      open.pop_back();
+      if (done_.count(edge) != 0) continue;
+      const std::vector<int> cell = cell_left_of(edge.first, edge.second);
+      if (cell.empty()) continue;  // beyond the hull
+      for (std::size_t i = 0; i < cell.size(); ++i) {
+        const int u = cell[i], v = cell[(i + 1) % cell.size()];
+        if (!done_.insert({u, v}).second) throw std::logic_error("reference_delaunay: an edge of two cells");
+        open.push_back({v, u});
+        if (i > 0 && i + 1 < cell.size()) triangles_.push_back({cell[0], u, v});
+      }
+    }
+    return triangles_;
+  }
+
+ private:
+  int size() const { return static_cast<int>(points_.size()); }
+
+  /// All points on the empty circle through the Delaunay edge a b and a point to its left: counter-clockwise
+  /// from the lexicographically smallest. Empty if there is no point to the left.
+  std::vector<int> cell_left_of(int a, int b) const {
+    // The circle through a, b and p has its centre on the bisector of a b, at a distance to the left that
+    // grows with cot(angle a p b) = dot / cross. The empty circle is that of the smallest.
+    std::vector<int> cell;
+    Integer best_dot = 0, best_cross = 0;
+    for (int p = 0; p < size(); ++p) {
+      const Integer p_cross = cross<Integer>(points_[p], points_[a], points_[b]);
+      if (p_cross <= 0) continue;
+      const Integer p_dot = dot<Integer>(points_[p], points_[a], points_[b]);
+      const Integer difference = p_dot * best_cross - best_dot * p_cross;
+      if (cell.empty() || difference < 0) {
+        cell.assign(1, p);
+        best_dot = p_dot;
+        best_cross = p_cross;
+      } else if (difference == 0) {
+        cell.push_back(p);
+      }
+    }
+    if (cell.empty()) return cell;
+    cell.push_back(a);
+    cell.push_back(b);
+    const auto smallest = std::min_element(cell.begin(), cell.end(),
+                                           [this](int p, int q) { return before(points_[p], points_[q]); });
+    std::iter_swap(cell.begin(), smallest);
+    std::sort(cell.begin() + 1, cell.end(), [&](int p, int q) {  // no three points of a circle are collinear
+      return cross<Integer>(points_[cell[0]], points_[p], points_[q]) > 0;
+    });
+    return cell;
+  }
+
+  const std::vector<Point<Integer>>& points_;
+  std::set<std::pair<int, int>> done_;  // directed edges of the cells found
+  TriangleSet triangles_;
+};
+
+TriangleSet normalized(TriangleSet triangles) {
+  for (auto& triangle : triangles) {
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+}  // namespace
+
+TriangleSet reference_delaunay(const double* coordinates, std::size_t n) {
+  std::map<std::pair<double, double>, std::int32_t> smallest_index;  // -0 and 0 compare equal, as they should
+  for (std::size_t i = 0; i < n; ++i) {
+    smallest_index.emplace(std::make_pair(coordinates[2 * i], coordinates[2 * i + 1]),
+                           static_cast<std::int32_t>(i));
+  }
+  std::vector<std::int32_t> index;
+  std::vector<double> distinct;
+  for (const auto& [place, i] : smallest_index) {
+    index.push_back(i);
+    distinct.push_back(place.first);
+    distinct.push_back(place.second);
+  }
+
+  const std::vector<mpz_class> integers = scale_to_integers(distinct.data(), distinct.size());
+  // With coordinates below 2^30, dot and cross are below 2^63, and their products' difference below 2^127.
+  const bool narrow = std::all_of(integers.begin(), integers.end(),
+                                  [](const mpz_class& i) { return mpz_sizeinbase(i.get_mpz_t(), 2) <= 30; });
+  TriangleSet triangles;
+  if (narrow) {
+    std::vector<Point<Int128>> points;
+    for (std::size_t i = 0; i < integers.size(); i += 2) {
+      points.push_back({Int128{integers[i].get_si()}, Int128{integers[i + 1].get_si()}});
+    }
+    triangles = CellWrapper<Int128>(points).run();
+  } else {
+    std::vector<Point<mpz_class>> points;
+    for (std::size_t i = 0; i < integers.size(); i += 2) points.push_back({integers[i], integers[i + 1]});
+    triangles = CellWrapper<mpz_class>(points).run();
+  }
+  for (auto& triangle : triangles) {
+    for (std::int32_t& corner : triangle) corner = index[corner];
+  }
+  return normalized(std::move(triangles));
+}
+
+TriangleSet reference_delaunay(const std::vector<double>& coordinates) {
+  return reference_delaunay(coordinates.data(), coordinates.size() / 2);
+}
+
+TriangleSet sorted_triangles(const std::vector<std::int32_t>& triangles) {
+  TriangleSet result;
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+    result.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
+  }
+  return normalized(std::move(result));
+}
+
+std::vector<std::int32_t> flat_triangles(const TriangleSet& triangles) {
+  std::vector<std::int32_t> flat;
+  for (const auto& triangle : triangles) flat.insert(flat.end(), triangle.begin(), triangle.end());
+  return flat;
+}
+
+std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> triangle_left_of;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::size_t t = i / 3;
+    const std::pair<std::int32_t, std::int32_t> edge{triangles[3 * t + (i + 1) % 3],
+                                                     triangles[3 * t + (i + 2) % 3]};
+    if (!triangle_left_of.emplace(edge, static_cast<std::int32_t>(t)).second) {
+      throw std::logic_error("reference_neighbors: an edge of two triangles");
+    }
+  }
+  std::vector<std::int32_t> neighbors;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::size_t t = i / 3;
+    const auto beyond =
+        triangle_left_of.find({triangles[3 * t + (i + 2) % 3], triangles[3 * t + (i + 1) % 3]});
+    neighbors.push_back(beyond == triangle_left_of.end() ? -1 : beyond->second);
+  }
+  return neighbors;
+}
+
+int reference_orient2d(const double* a, const double* b, const double* c) {
+  const double values[] = {a[0], a[1], b[0], b[1], c[0], c[1]};
+  const auto z = scale_to_integers(values, 6);
+  // As a 3 x 3 determinant, without translation: another way than the code that this is to check.
+  const mpz_class determinant = z[0] * (z[3] - z[5]) - z[1] * (z[2] - z[4]) + (z[2] * z[5] - z[3] * z[4]);
+  return sgn(determinant);
+}
+
+int reference_incircle(const double* a, const double* b, const double* c, const double* d) {
+  const double values[] = {a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]};
+  const auto z = scale_to_integers(values, 8);
+  // The 4 x 4 determinant of rows (x, y, x^2 + y^2, 1), expanded by the lifts: each times the orientation of
+  // the three other points, with alternating signs.
+  mpz_class determinant = 0;
+  for (int i = 0; i < 4; ++i) {
+    const int j = i == 0 ? 1 : 0, k = i <= 1 ? 2 : 1, l = i <= 2 ? 3 : 2;
+    const mpz_class orientation = z[2 * j] * (z[2 * k + 1] - z[2 * l + 1]) -
+                                  z[2 * j + 1] * (z[2 * k] - z[2 * l]) +
+                                  (z[2 * k] * z[2 * l + 1] - z[2 * k + 1] * z[2 * l]);
+    const mpz_class lift = z[2 * i] * z[2 * i] + z[2 * i + 1] * z[2 * i + 1];
+    if (i % 2 == 0) {
+      determinant += lift * orientation;
+    } else {
+      determinant -= lift * orientation;
+    }
+  }
+  return sgn(determinant);
+}
+
+}  // namespace flaunay::testing

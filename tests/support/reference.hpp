@@ -1,0 +1,37 @@
+// Slow and obviously correct answers to compare with, in exact GMP arithmetic. Shares no code with src/.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace flaunay::testing {
+
+/// Triangles in a form that is equal for equal sets: each rotated so that its smallest index is first (the
+/// orientation stays), the list sorted.
+using TriangleSet = std::vector<std::array<std::int32_t, 3>>;
+
+/// The canonical Delaunay triangulation of n points (x0 y0 x1 y1 ..., finite): duplicates are represented by
+/// their smallest index; every Delaunay cell (polygon whose corners are all points on an empty circle) is
+/// triangulated as a fan from its lexicographically smallest corner; counter-clockwise. Empty if the points
+/// are all collinear. O(n^2): a few milliseconds for 100 points, some 50 for 300.
+TriangleSet reference_delaunay(const double* coordinates, std::size_t n);
+TriangleSet reference_delaunay(const std::vector<double>& coordinates);
+
+/// The same form for a result, 3 indices per triangle.
+TriangleSet sorted_triangles(const std::vector<std::int32_t>& triangles);
+
+/// The triangles one after the other, as Triangulation::triangles has them.
+std::vector<std::int32_t> flat_triangles(const TriangleSet& triangles);
+
+/// For each triangle the triangles opposite to its corners, -1 for none: as Triangulation::neighbors.
+/// Every directed edge must occur at most once.
+std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles);
+
+/// Exact signs for any finite doubles; points are pointers to x, y. +1: a, b, c turn left.
+int reference_orient2d(const double* a, const double* b, const double* c);
+/// +1: d is inside the circle of the counter-clockwise a, b, c.
+int reference_incircle(const double* a, const double* b, const double* c, const double* d);
+
+}  // namespace flaunay::testing
