@@ -69,7 +69,8 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   const double begin = now();
   auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
   const std::string options =
-      fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={}", tuning_.sort_bits, tuning_.sort_group);
+      fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={}", tuning_.sort_bits,
+                  tuning_.sort_group, tuning_.small_region);
   const cl_device_id id = device_.id();
   const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {

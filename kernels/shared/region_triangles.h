@@ -4,7 +4,9 @@
 
 #include "shared/planar.h"
 
+#ifndef SMALL_REGION
 #define SMALL_REGION 48  // corners; what a work-item keeps in private memory
+#endif
 #define REGION_UNDECIDED -1
 #define REGION_BROKEN -2
 
