@@ -17,7 +17,7 @@ Tuning tuning_for(const boost::compute::device& device) {
   // A CPU's work-item walks a long chunk: a core each, with a few to spare for balance. Wide digits, since a
   // core's first-level cache holds the counters.
   const std::size_t cores = std::max<std::size_t>(1, device.compute_units());
-  const Tuning cpu{64, 1, 1024, 8 * cores, 8, 1, 0, 48, 16 * cores};
+  const Tuning cpu{256, 1, 1024, 8 * cores, 8, 1, 0, 48, 16 * cores};
   // A GPU wants many short chunks; its counters live in local memory.
   const Tuning gpu{256, 64, 32, 0, 4, 128, 16, 32, 16384};
   // Odd sizes that make every boundary occur on small inputs.

@@ -1,8 +1,8 @@
 // The split of every region's internal points, in both sorted orders.
 //
 // side[id] says where an internal point goes. point_sides sets it by comparison with the cut line, which is all it
-// takes: what is not on the path lies on the same side of both. list_flags turns a sorted list's sides into counts for
-// a scan (uint2, scan.cl), list_split writes the children's lists, stably. One pass each, a work-item a point.
+// takes: what is not on the path lies on the same side of both; one pass, a work-item a point. list_counts, list_bounds
+// and list_split then write the children's lists, stably: one pass each over chunks, with a scan (scan.cl).
 
 #include "shared/frame.h"
 
@@ -27,32 +27,77 @@ kernel void point_sides(int n, global const int* restrict list, global const int
   }
 }
 
-kernel void list_flags(int n, global const int* restrict list, global const uchar* restrict side,
-                       global uint2* restrict counts) {
-  const int i = get_global_id(0);
-  if (i < n) {
-    const int s = side[list[i]];
-    counts[i] = (uint2)(s == SIDE_LEFT, s == SIDE_RIGHT);
+// The next three walk chunks of a sorted list, a work-item each, counting points that go left and right. Counts of the
+// chunks, to be scanned:
+kernel void list_counts(int n, int chunk, global const int* restrict list, global const uchar* restrict side,
+                        global uint2* restrict counts) {
+  const int c = get_global_id(0);
+  const int low = c * chunk;
+  if (low < n) {
+    const int high = min(n, low + chunk);
+    uint left = 0, right = 0;
+    for (int i = low; i < high; ++i) {
+      const int s = side[list[i]];
+      left += s == SIDE_LEFT;
+      right += s == SIDE_RIGHT;
+    }
+    counts[c] = (uint2)(left, right);
   }
 }
 
-kernel void list_split(int n, global const int* restrict list, global const int* restrict regions,
-                       global const int* restrict point_offsets, global const uint2* restrict scanned,
-                       global const int* restrict child_region, global int* restrict new_list,
-                       global int* restrict new_regions) {
-  const int i = get_global_id(0);
-  if (i < n) {
-    const uint2 before = scanned[i];
-    const uint2 after = scanned[i + 1];
-    const int r = regions[i];
-    if (after.x != before.x) {
-      const int to = before.x + scanned[point_offsets[r]].y;
-      new_list[to] = list[i];
-      new_regions[to] = child_region[2 * r];
-    } else if (after.y != before.y) {
-      const int to = before.y + scanned[point_offsets[r + 1]].x;
-      new_list[to] = list[i];
-      new_regions[to] = child_region[2 * r + 1];
+// before[r]: those of all regions before r; the same for both lists.
+kernel void list_bounds(int n, int chunk, int regions_count, global const int* restrict list,
+                        global const int* restrict regions, global const uchar* restrict side,
+                        global const uint2* restrict scanned, global uint2* restrict before) {
+  const int c = get_global_id(0);
+  const int low = c * chunk;
+  if (low < n) {
+    const int high = min(n, low + chunk);
+    uint2 count = scanned[c];
+    int previous = low > 0 ? regions[low - 1] : -1;
+    for (int i = low; i < high; ++i) {
+      const int r = regions[i];
+      if (r != previous) before[r] = count;
+      previous = r;
+      const int s = side[list[i]];
+      count += (uint2)(s == SIDE_LEFT, s == SIDE_RIGHT);
+    }
+    if (high == n) before[regions_count] = count;
+  }
+}
+
+kernel void list_split(int n, int chunk, global const int* restrict list, global const int* restrict regions,
+                       global const uchar* restrict side, global const uint2* restrict scanned,
+                       global const uint2* restrict before, global const int* restrict child_region,
+                       global int* restrict new_list, global int* restrict new_regions) {
+  const int c = get_global_id(0);
+  const int low = c * chunk;
+  if (low < n) {
+    const int high = min(n, low + chunk);
+    uint2 count = scanned[c];
+    int previous = -1;
+    uint right_before = 0, left_through = 0;
+    int left_child = 0, right_child = 0;
+    for (int i = low; i < high; ++i) {
+      const int r = regions[i];
+      if (r != previous) {
+        previous = r;
+        right_before = before[r].y;
+        left_through = before[r + 1].x;
+        left_child = child_region[2 * r];
+        right_child = child_region[2 * r + 1];
+      }
+      const int id = list[i];
+      const int s = side[id];
+      if (s == SIDE_LEFT) {
+        const uint to = count.x++ + right_before;
+        new_list[to] = id;
+        new_regions[to] = left_child;
+      } else if (s == SIDE_RIGHT) {
+        const uint to = count.y++ + left_through;
+        new_list[to] = id;
+        new_regions[to] = right_child;
+      }
     }
   }
 }

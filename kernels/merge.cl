@@ -92,7 +92,9 @@ static inline void corner_directions(global const int* restrict corner, int a, i
 }
 
 // place: the corner's vertex on its region's path, or -1.
-kernel void corner_codes(int n, double bound, global const int* restrict corners, global const int* restrict regions,
+// kept[points_count + i]: 0 if prune found that corner i's vertex is not on the path.
+kernel void corner_codes(int n, int points_count, double bound, global const uchar* restrict kept,
+                         global const int* restrict corners, global const int* restrict regions,
                          global const int* restrict axis, global const double* restrict cut,
                          global const double2* restrict points, global const int* restrict path_offsets,
                          global const int* restrict path, global const double* restrict path_u,
@@ -105,7 +107,7 @@ kernel void corner_codes(int n, double bound, global const int* restrict corners
     const double2 m = to_frame(points[vertex], a);
     const int first = path_offsets[r];
     const int last = path_offsets[r + 1] - 1;
-    int low = first, high = last + 1;
+    int low = first, high = kept[points_count + i] ? last + 1 : first;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
       if (path_u[middle] <= m.y) {
@@ -219,13 +221,13 @@ kernel void path_internal(int n, global const int* restrict path, global uchar* 
 
 // sizes[2r + side]: (1, corners, points, 0, 0) for a child with internal points, (0, 0, 0, 1, corners) for one that
 // retires, 0 for one that is empty; to be scanned.
-kernel void child_sizes(int n, global const int* restrict point_offsets, global const int* restrict corner_offsets,
-                        global const int* restrict path_offsets, global const uint2* restrict point_sides,
+kernel void child_sizes(int n, global const int* restrict corner_offsets, global const int* restrict path_offsets,
+                        global const uint2* restrict points_before,
                         global const uint2* restrict corner_sides, global const uint* restrict internal,
                         global uint8* restrict sizes) {
   const int r = get_global_id(0);
   if (r < n) {
-    const uint2 points = point_sides[point_offsets[r + 1]] - point_sides[point_offsets[r]];
+    const uint2 points = points_before[r + 1] - points_before[r];
     uint2 corners = corner_sides[corner_offsets[r + 1]] - corner_sides[corner_offsets[r]];
     corners += internal[path_offsets[r + 1]] - internal[path_offsets[r]];
     for (int side = 0; side < 2; ++side) {

@@ -1,6 +1,6 @@
 // Twins: for each half-edge the same edge in the triangle beyond it, or -1.
 //
-// One pass, a work-item a half-edge, over a hash table of undirected edges with linear probing: the first of an
+// One pass, a work-item a half-edge, over a hash table of undirected edges: the first of an
 // edge's two half-edges takes a slot, the second finds it there. Which of them is first depends on scheduling; the
 // result does not, since each edge has two half-edges at most.
 
@@ -12,6 +12,17 @@ static inline uint edge_hash(int low, int high) {
   return (uint)(z >> 32);
 }
 
+// The first slots tried are those of the smaller vertex, which has three edges on average: neighbours in the plane are
+// neighbours in the table. A vertex with many edges overflows into slots all over it, by double hashing.
+#define SLOTS_PER_VERTEX 4
+#define SLOTS_NEAR 8
+
+static inline uint edge_slot(int low, int high, uint attempt) {
+  if (attempt < SLOTS_NEAR) return SLOTS_PER_VERTEX * (uint)low + attempt;
+  const uint hash = edge_hash(low, high);
+  return hash + (attempt - SLOTS_NEAR) * (hash >> 7 | 1);
+}
+
 // table: mask + 1 slots (a power of two), -1 throughout; twins: -1 throughout.
 kernel void match_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table,
                         global int* restrict twins) {
@@ -19,10 +30,10 @@ kernel void match_edges(int n, uint mask, global const int* restrict triangles, 
   if (h < n) {
     const int from = halfedge_from(triangles, h);
     const int to = halfedge_to(triangles, h);
-    uint slot = edge_hash(min(from, to), max(from, to)) & mask;
+    uint attempt = 0;
     int searching = 1;
     while (searching) {
-      const int other = atomic_cmpxchg(&table[slot], -1, h);
+      const int other = atomic_cmpxchg(&table[edge_slot(min(from, to), max(from, to), attempt) & mask], -1, h);
       if (other == -1) {
         searching = 0;
       } else if (halfedge_from(triangles, other) == to && halfedge_to(triangles, other) == from) {
@@ -30,7 +41,7 @@ kernel void match_edges(int n, uint mask, global const int* restrict triangles, 
         twins[other] = h;
         searching = 0;
       } else {
-        slot = (slot + 1) & mask;
+        ++attempt;
       }
     }
   }

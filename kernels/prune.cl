@@ -2,9 +2,9 @@
 //
 // extreme_* find the ends of each region's hull among its border vertices (passes of a segmented arg-reduce).
 // candidate_flags takes from each bucket of consecutive internal points, sorted along the cut line, the one
-// nearest to the line: one pass, a work-item a bucket. Quickhull makes those into a chord path. prune_points then
-// holds every internal point and corner against the path's chord over it: one pass, a binary search each. What
-// floating point cannot decide gets flag 2 and goes to hull_depth_exact (quickhull.cl).
+// nearest to the line: one pass, a work-item a bucket. Quickhull makes those into a chord path. prune_points and
+// prune_corners then hold every internal point and corner against the path's chord over it: one pass, a binary search
+// for each bucket or corner. What floating point cannot decide gets flag 2 and goes to hull_depth_exact (quickhull.cl).
 
 #include "shared/hull_height.h"
 #include "shared/segmented_arg_reduce.h"
@@ -58,53 +58,99 @@ kernel void candidate_flags(int n, int elements, global const int* restrict regi
   }
 }
 
-// Elements 0..points_count-1 are the internal points, the others the corners' vertices. flags: 1 keep, 0 drop, 2
-// undecided. keep_on also keeps what lies on the path and, of the column of the path's last vertex, all.
-kernel void prune_points(int n, int points_count, int keep_on, double bound, global const int* restrict regions,
+#define FLAG_END 3
+
+// A point against the path's chord over it. flag: 1 keep, 0 drop, 2 undecided, FLAG_END on the hull as its end. keep_on also keeps what lies on the path
+// and, of the column of the path's last vertex, all. low: the last vertex with u no greater than p's.
+static inline int held_against(int id, double2 p, int low, int first, int last, int a, double q, int keep_on,
+                               double bound, global const int* restrict path, global const double* restrict path_u,
+                               global const double2* restrict points) {
+  const int v = path[low];
+  // The path's ends are known to be on the hull, and need no finding.
+  if (id == v) return keep_on || (low != first && low != last) ? 1 : FLAG_END;
+  if (path_u[low] == p.y) {
+    return keep_on ? low == last : is_lower(p, to_frame(points[v], a), q, is_planar(a));
+  }
+  const double2 d = hull_depth(to_frame(points[v], a), to_frame(points[path[low + 1]], a), p, q, is_planar(a));
+  const double error = bound * d.y;
+  return d.x > error ? 1 : d.x < -error ? 0 : bound == 0.0 ? (keep_on && d.x == 0.0) : 2;
+}
+
+static inline int search_path(double u, int first, int last, global const double* restrict path_u) {
+  int low = first, high = last + 1;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    if (path_u[middle] <= u) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// Internal points, by buckets: their neighbours in the list are their neighbours along the line, so only the first of a
+// region's in a bucket needs a search. ids and chord are written for the undecided alone.
+kernel void prune_points(int n, int elements, int keep_on, double bound, global const int* restrict regions,
                          global const int* restrict x_list, global const int* restrict y_list,
-                         global const int* restrict corner_regions, global const int* restrict corners,
                          global const int* restrict axis, global const double* restrict cut,
                          global const double2* restrict points, global const int* restrict path_offsets,
                          global const int* restrict path, global const double* restrict path_u,
                          global int* restrict ids, global int* restrict chord, global uchar* restrict flags) {
+  const int bucket = get_global_id(0);
+  if (bucket < n) {
+    int region = -1, a = 0, first = 0, last = 0, low = 0;
+    double q = 0.0;
+    for (int i = bucket * BUCKET; i < min(elements, (bucket + 1) * BUCKET); ++i) {
+      const int r = regions[i];
+      const int fresh = r != region;
+      if (fresh) {
+        region = r;
+        a = axis[r];
+        q = cut[r];
+        first = path_offsets[r];
+        last = path_offsets[r + 1] - 1;
+      }
+      const int id = a == AXIS_Y ? x_list[i] : y_list[i];
+      const double2 p = to_frame(points[id], a);
+      if (fresh) {
+        low = search_path(p.y, first, last, path_u);
+      } else {
+        while (low < last && path_u[low + 1] <= p.y) ++low;
+        while (low > first && path_u[low] > p.y) --low;
+      }
+      const int keep = held_against(id, p, low, first, last, a, q, keep_on, bound, path, path_u, points);
+      flags[i] = keep;
+      if (keep == 2) {
+        ids[i] = id;
+        chord[i] = low;
+      }
+    }
+  }
+}
+
+// Corners' vertices: element points_count + i is corner i.
+kernel void prune_corners(int n, int points_count, double bound, global const int* restrict corner_regions,
+                          global const int* restrict corners, global const int* restrict axis,
+                          global const double* restrict cut, global const double2* restrict points,
+                          global const int* restrict path_offsets, global const int* restrict path,
+                          global const double* restrict path_u, global int* restrict ids,
+                          global int* restrict chord, global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) {
-    int r, id;
-    if (i < points_count) {
-      r = regions[i];
-      id = axis[r] == AXIS_Y ? x_list[i] : y_list[i];
-    } else {
-      r = corner_regions[i - points_count];
-      id = corners[3 * (i - points_count) + 1];
-    }
+    const int r = corner_regions[i];
     const int a = axis[r];
+    const int id = corners[3 * i + 1];
     const double2 p = to_frame(points[id], a);
     const int first = path_offsets[r];
     const int last = path_offsets[r + 1] - 1;
-    // The last vertex with u no greater than p's.
-    int low = first, high = last + 1;
-    while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      if (path_u[middle] <= p.y) {
-        low = middle;
-      } else {
-        high = middle;
-      }
+    const int low = search_path(p.y, first, last, path_u);
+    const int keep = held_against(id, p, low, first, last, a, cut[r], 0, bound, path, path_u, points);
+    flags[points_count + i] = keep;
+    if (keep == 2) {
+      ids[points_count + i] = id;
+      chord[points_count + i] = low;
     }
-    const int v = path[low];
-    int keep;
-    if (id == v) {
-      keep = 1;
-    } else if (path_u[low] == p.y) {
-      keep = keep_on ? low == last : is_lower(p, to_frame(points[v], a), cut[r], is_planar(a));
-    } else {
-      const double2 d = hull_depth(to_frame(points[v], a), to_frame(points[path[low + 1]], a), p, cut[r], is_planar(a));
-      const double error = bound * d.y;
-      keep = d.x > error ? 1 : d.x < -error ? 0 : bound == 0.0 ? (keep_on && d.x == 0.0) : 2;
-    }
-    ids[i] = id;
-    chord[i] = low;
-    flags[i] = keep;
   }
 }
 
@@ -114,46 +160,64 @@ kernel void flag_counts(int n, global const uchar* restrict flags, global uint* 
   if (i < n) counts[i] = flags[i] == 1;
 }
 
-// The flagged elements as quickhull's points: ids, and to begin with one segment a region. Without corners (the
-// candidates) n is points_count. Internal points come first in each region, then border vertices.
-kernel void gather_points(int n, int points_count, global const uint* restrict scanned,
-                          global const int* restrict regions, global const int* restrict x_list,
-                          global const int* restrict y_list, global const int* restrict corner_regions,
-                          global const int* restrict corners, global const int* restrict point_offsets,
-                          global const int* restrict corner_offsets, global const int* restrict axis,
-                          global int* restrict ids, global int* restrict segment) {
-  const int i = get_global_id(0);
-  if (i < n && scanned[i + 1] != scanned[i]) {
+// How many of the ascending positions are below i.
+static inline int positions_below(int i, int kept, global const int* restrict positions) {
+  int low = 0, high = kept;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (positions[middle] < i) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// The first segments of quickhull: one a region, from end to end, with the kept points, whose positions among all
+// elements are given. before[r]: kept internal points and kept corners of the regions before r; internal points come
+// first in each region.
+kernel void begin_segments(int n, int points_count, int kept, global const int* restrict positions,
+                           global const int* restrict point_offsets, global const int* restrict corner_offsets,
+                           global const int* restrict first_end, global const int* restrict last_end,
+                           global int* restrict chord_a, global int* restrict chord_b,
+                           global int* restrict chord_region, global int* restrict first,
+                           global int2* restrict before) {
+  const int r = get_global_id(0);
+  if (r <= n) {
+    const int points = positions_below(point_offsets[r], kept, positions);
+    const int corners = positions_below(points_count + corner_offsets[r], kept, positions) -
+                        positions_below(points_count, kept, positions);
+    before[r] = (int2)(points, corners);
+    first[r] = points + corners;
+    if (r < n) {
+      chord_a[r] = first_end[r];
+      chord_b[r] = last_end[r];
+      chord_region[r] = r;
+    }
+  }
+}
+
+// The kept elements as quickhull's points.
+kernel void gather_points(int n, int points_count, int regions_count, global const int* restrict positions,
+                          global const int2* restrict before, global const int* restrict regions,
+                          global const int* restrict x_list, global const int* restrict y_list,
+                          global const int* restrict corner_regions, global const int* restrict corners,
+                          global const int* restrict axis, global int* restrict ids, global int* restrict segment) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const int i = positions[k];
     int r, id, to;
     if (i < points_count) {
       r = regions[i];
       id = axis[r] == AXIS_Y ? x_list[i] : y_list[i];
-      to = scanned[i];
-      if (n > points_count) to += scanned[points_count + corner_offsets[r]] - scanned[points_count];
+      to = k + before[r].y;
     } else {
       r = corner_regions[i - points_count];
       id = corners[3 * (i - points_count) + 1];
-      to = scanned[i] - scanned[points_count] + scanned[point_offsets[r + 1]];
+      to = k - before[regions_count].x + before[r + 1].x;
     }
     ids[to] = id;
     segment[to] = r;
-  }
-}
-
-// The first segments: one a region, from end to end, with the gathered points.
-kernel void begin_segments(int n, int points_count, int elements, global const uint* restrict scanned,
-                           global const int* restrict point_offsets, global const int* restrict corner_offsets,
-                           global const int* restrict first_end, global const int* restrict last_end,
-                           global int* restrict chord_a, global int* restrict chord_b,
-                           global int* restrict chord_region, global int* restrict first) {
-  const int r = get_global_id(0);
-  if (r < n) {
-    chord_a[r] = first_end[r];
-    chord_b[r] = last_end[r];
-    chord_region[r] = r;
-    int before = scanned[point_offsets[r]];
-    if (elements > points_count) before += scanned[points_count + corner_offsets[r]] - scanned[points_count];
-    first[r] = before;
-    if (r == n - 1) first[n] = scanned[elements];
   }
 }

@@ -39,8 +39,8 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
 
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
-  runtime.map("merge", "corner_codes", level.corners, work.bounds.orient, level.corner_ids, level.corner_regions,
-              level.axis, level.cut, table.points, paths.offsets, paths.vertices, paths.u, places, codes);
+  runtime.map("merge", "corner_codes", level.corners, static_cast<cl_int>(level.points), work.bounds.orient, paths.flags,
+              level.corner_ids, level.corner_regions, level.axis, level.cut, table.points, paths.offsets, paths.vertices, paths.u, places, codes);
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, codes, level.corners);
@@ -56,14 +56,19 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   host::exclusive_scan(runtime, internal, paths.size, internal);
   runtime.map("lists", "point_sides", level.points, level.x_list, level.point_regions, level.axis, level.cut,
               table.points, table.side, work.broken);
-  const auto point_sides = scratch.allocate<cl_uint2>(level.points + 1);
-  runtime.map("lists", "list_flags", level.points, level.x_list, table.side, point_sides);
-  host::exclusive_scan(runtime, point_sides, level.points, point_sides);
+  const std::size_t chunk = runtime.tuning().chunk(level.points);
+  const std::size_t chunk_count = (level.points + chunk - 1) / chunk;
+  const auto point_counts = scratch.allocate<cl_uint2>(chunk_count + 1);
+  const auto points_before = scratch.allocate<cl_uint2>(level.regions + 1);
+  runtime.chunks("lists", "list_counts", level.points, chunk, level.x_list, table.side, point_counts);
+  host::exclusive_scan(runtime, point_counts, chunk_count, point_counts);
+  runtime.chunks("lists", "list_bounds", level.points, chunk, static_cast<cl_int>(level.regions), level.x_list,
+                 level.point_regions, table.side, point_counts, points_before);
 
   const std::size_t children = 2 * level.regions;
   const auto sizes = scratch.allocate<cl_uint8>(children + 1);
-  runtime.map("merge", "child_sizes", level.regions, level.point_offsets, level.corner_offsets, paths.offsets,
-              point_sides, corner_sides, internal, sizes);
+  runtime.map("merge", "child_sizes", level.regions, level.corner_offsets, paths.offsets, points_before,
+              corner_sides, internal, sizes);
   const Children child = place_children(work, sizes, children, next, retired);
 
   runtime.map("merge", "emit_corners", level.corners, level.corner_ids, level.corner_regions, level.corner_offsets,
@@ -73,12 +78,12 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
               level.corner_offsets, corner_sides, child.region, child.base, next.corner_ids, next.corner_regions,
               retired.corner_ids);
 
-  runtime.map("lists", "list_split", level.points, level.x_list, level.point_regions, level.point_offsets, point_sides,
-              child.region, next.x_list, next.point_regions);
-  runtime.map("lists", "list_flags", level.points, level.y_list, table.side, point_sides);
-  host::exclusive_scan(runtime, point_sides, level.points, point_sides);
-  runtime.map("lists", "list_split", level.points, level.y_list, level.point_regions, level.point_offsets, point_sides,
-              child.region, next.y_list, next.point_regions);
+  runtime.chunks("lists", "list_split", level.points, chunk, level.x_list, level.point_regions, table.side, point_counts,
+                 points_before, child.region, next.x_list, next.point_regions);
+  runtime.chunks("lists", "list_counts", level.points, chunk, level.y_list, table.side, point_counts);
+  host::exclusive_scan(runtime, point_counts, chunk_count, point_counts);
+  runtime.chunks("lists", "list_split", level.points, chunk, level.y_list, level.point_regions, table.side, point_counts,
+                 points_before, child.region, next.y_list, next.point_regions);
 }
 
 }  // namespace flaunay::flattened

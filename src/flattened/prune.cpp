@@ -4,29 +4,32 @@ namespace flaunay::flattened {
 namespace {
 
 constexpr std::size_t kBucket = 8;  // BUCKET in prune.cl
+// Candidates a region from which on it pays to prune them by candidates of their own.
+constexpr std::size_t kManyCandidates = 32;
 
 // Brings flagged internal points and corners together by region. elements: level.points, or with the corners.
 HullPoints gather(Workspace& work, const Level& level, const Buffer<cl_uchar>& flags, std::size_t elements) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   const auto points_count = static_cast<cl_int>(level.points);
+  const auto regions = static_cast<cl_int>(level.regions);
   HullPoints points;
-  const auto counts = scratch.allocate<cl_uint>(elements + 1);
-  runtime.map("prune", "flag_counts", elements, flags, counts);
-  host::exclusive_scan(runtime, counts, elements, counts);
-  points.size = runtime.read_one(counts, elements);
-  points.ids = scratch.allocate<cl_int>(points.size);
-  points.segments = scratch.allocate<cl_int>(points.size);
+  const auto [positions, kept] = host::pack_positions(runtime, flags, elements, 1);
+  points.size = kept;
+  points.ids = scratch.allocate<cl_int>(kept);
+  points.segments = scratch.allocate<cl_int>(kept);
   points.chord_a = scratch.allocate<cl_int>(level.regions);
   points.chord_b = scratch.allocate<cl_int>(level.regions);
   points.chord_region = scratch.allocate<cl_int>(level.regions);
   points.first = scratch.allocate<cl_int>(level.regions + 1);
-  runtime.map("prune", "gather_points", elements, points_count, counts, level.point_regions, level.x_list,
-              level.y_list, level.corner_regions, level.corner_ids, level.point_offsets, level.corner_offsets,
-              level.axis, points.ids, points.segments);
-  runtime.map("prune", "begin_segments", level.regions, points_count, static_cast<cl_int>(elements), counts,
-              level.point_offsets, level.corner_offsets, level.first_end, level.last_end, points.chord_a,
-              points.chord_b, points.chord_region, points.first);
+  const auto before = scratch.allocate<cl_int2>(level.regions + 1);
+  const std::size_t group = runtime.tuning().map_group;
+  runtime.launch("prune", "begin_segments", level.regions + 1, group, regions, points_count, static_cast<cl_int>(kept),
+                 positions, level.point_offsets, level.corner_offsets, level.first_end, level.last_end, points.chord_a,
+                 points.chord_b, points.chord_region, points.first, before);
+  runtime.map("prune", "gather_points", kept, points_count, regions, positions, before, level.point_regions,
+              level.x_list, level.y_list, level.corner_regions, level.corner_ids, level.axis, points.ids,
+              points.segments);
   return points;
 }
 
@@ -41,30 +44,55 @@ Pruned prune(Workspace& work, const PointTable& table, const Level& level, const
   Arena::Scope scope(scratch);
   const auto ids = scratch.allocate<cl_int>(pruned.elements);
   const auto chord = scratch.allocate<cl_int>(pruned.elements);
-  runtime.map("prune", "prune_points", pruned.elements, static_cast<cl_int>(level.points), cl_int{keep_on},
-              work.bounds.hull, level.point_regions, level.x_list, level.y_list, level.corner_regions,
-              level.corner_ids, level.axis, level.cut, table.points, paths.offsets, paths.vertices, paths.u, ids,
-              chord, pruned.flags);
+  runtime.map("prune", "prune_points", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
+              cl_int{keep_on}, work.bounds.hull, level.point_regions, level.x_list, level.y_list, level.axis, level.cut,
+              table.points, paths.offsets, paths.vertices, paths.u, ids, chord, pruned.flags);
+  runtime.map("prune", "prune_corners", level.corners, static_cast<cl_int>(level.points), work.bounds.hull,
+              level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, paths.offsets,
+              paths.vertices, paths.u, ids, chord, pruned.flags);
   const auto list = pack_undecided(work, pruned.flags, pruned.elements);
   run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, cl_int{1}, ids, chord,
            paths.vertices, paths.vertices, paths.regions, level.axis, level.cut, table.points, pruned.flags);
   return pruned;
 }
 
-Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
+namespace {
+
+// Chord paths over all of a level's internal points and ends, good enough to prune by: quickhull of one candidate a
+// bucket, which themselves have been pruned the same way while there are many of them.
+Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
   host::Runtime& runtime = work.runtime;
-  Arena& scratch = work.scratch();
-  const auto flags = scratch.allocate<cl_uchar>(level.points);
+  const auto flags = work.scratch().allocate<cl_uchar>(level.points);
   runtime.map("prune", "candidate_flags", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
               level.point_regions, level.x_list, level.y_list, level.axis, level.cut, table.points, flags);
-  const HullPoints candidates = gather(work, level, flags, level.points);
-  statistics.candidates = candidates.size;
-  const Paths chords = quickhull(work, table, level, candidates, statistics.candidate_rounds);
+  HullPoints candidates = gather(work, level, flags, level.points);
+  statistics.candidates += candidates.size;
+  if (candidates.size > kManyCandidates * level.regions) {
+    Level thin = level;
+    thin.points = candidates.size;
+    thin.corners = 0;
+    thin.x_list = thin.y_list = candidates.ids;
+    thin.point_regions = candidates.segments;
+    thin.point_offsets = candidates.first;
+    const Paths chords = chord_paths(work, table, thin, statistics);
+    candidates = gather(work, thin, prune(work, table, thin, chords, false).flags, thin.points);
+  }
+  int rounds = 0;
+  const Paths paths = quickhull(work, table, level, candidates, rounds);
+  statistics.candidate_rounds += rounds;
+  return paths;
+}
 
+}  // namespace
+
+Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
+  const Paths chords = chord_paths(work, table, level, statistics);
   const Pruned pruned = prune(work, table, level, chords, false);
   const HullPoints survivors = gather(work, level, pruned.flags, pruned.elements);
   statistics.survivors = survivors.size;
-  return strict(work, table, level, quickhull(work, table, level, survivors, statistics.hull_rounds));
+  Paths paths = strict(work, table, level, quickhull(work, table, level, survivors, statistics.hull_rounds));
+  paths.flags = pruned.flags;
+  return paths;
 }
 
 }  // namespace flaunay::flattened

@@ -85,6 +85,8 @@ struct Paths {
   Buffer<cl_double> u{};
   Buffer<cl_int> regions{};
   Buffer<cl_int> offsets{};  ///< regions + 1
+  /// Prune's flags of internal points and corners: 0 is not on the path.
+  Buffer<cl_uchar> flags{};
 };
 
 /// The borders of all sets, and what the host must know of them.

@@ -20,7 +20,7 @@ double now() {
 constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 1;
 // What the arenas hold for each input point, at most, on any input measured (docs/performance.md), and at first.
 constexpr std::size_t kBytesPerPoint = 300;
-constexpr std::size_t kPersistentBytesPerPoint = 88;
+constexpr std::size_t kPersistentBytesPerPoint = 56;
 constexpr std::size_t kStateBytesPerPoint = 26;
 constexpr std::size_t kScratchBytesPerPoint = 96;
 

@@ -1,0 +1,80 @@
+// The shared predicates on arrays of cases, one case a work-item, for predicates_test.cpp.
+//
+// A case is its points' coordinates one after the other (and the cut). `bound_scale` times the predicate's own bound is
+// the filter's bound: 1 as usual, 0 for coarse input. The signs: -1, 0, 1 or UNDECIDED.
+
+#include "shared/hull_height.h"
+#include "shared/planar.h"
+
+// Cases of 7: a, b, p, cut. The filter is that of hull_depths in quickhull.cl.
+kernel void hull_filtered(int n, int axis, double bound_scale, global const double* restrict cases,
+                          global double* restrict depth, global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 7 * i;
+    const double2 d = hull_depth(to_frame((double2)(c[0], c[1]), axis), to_frame((double2)(c[2], c[3]), axis),
+                                 to_frame((double2)(c[4], c[5]), axis), c[6], is_planar(axis));
+    const double bound = bound_scale * HULL_DEPTH_BOUND;
+    const double error = bound * d.y;
+    depth[i] = d.x;
+    signs[i] = d.x > error ? 1 : d.x < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+  }
+}
+
+kernel void hull_exact(int n, int axis, global const double* restrict cases, global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 7 * i;
+    signs[i] = hull_depth_sign(to_frame((double2)(c[0], c[1]), axis), to_frame((double2)(c[2], c[3]), axis),
+                               to_frame((double2)(c[4], c[5]), axis), c[6], is_planar(axis));
+  }
+}
+
+// Cases of 5: p, v, cut.
+kernel void lower_cases(int n, int axis, global const double* restrict cases, global char* restrict lower) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 5 * i;
+    lower[i] = is_lower(to_frame((double2)(c[0], c[1]), axis), to_frame((double2)(c[2], c[3]), axis), c[4],
+                        is_planar(axis));
+  }
+}
+
+// Cases of 6: a, b, c.
+kernel void orient_filtered_cases(int n, double bound_scale, global const double* restrict cases,
+                                  global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 6 * i;
+    signs[i] = orient_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
+                               bound_scale * ORIENT_BOUND);
+  }
+}
+
+kernel void orient_exact_cases(int n, global const double* restrict cases, global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 6 * i;
+    signs[i] = orient_exact((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]));
+  }
+}
+
+// Cases of 8: a, b, c, d.
+kernel void circle_filtered_cases(int n, double bound_scale, global const double* restrict cases,
+                                  global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 8 * i;
+    signs[i] = circle_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
+                               (double2)(c[6], c[7]), bound_scale * CIRCLE_BOUND);
+  }
+}
+
+kernel void circle_exact_cases(int n, global const double* restrict cases, global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 8 * i;
+    signs[i] = circle_exact((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
+                            (double2)(c[6], c[7]));
+  }
+}
