@@ -186,8 +186,10 @@ kernel void begin_segments(int n, int points_count, int kept, global const int* 
   const int r = get_global_id(0);
   if (r <= n) {
     const int points = positions_below(point_offsets[r], kept, positions);
-    const int corners = positions_below(points_count + corner_offsets[r], kept, positions) -
-                        positions_below(points_count, kept, positions);
+    const int all_points = positions_below(points_count, kept, positions);
+    // Without kept corners there is nothing to look for.
+    const int corners =
+        all_points == kept ? 0 : positions_below(points_count + corner_offsets[r], kept, positions) - all_points;
     before[r] = (int2)(points, corners);
     first[r] = points + corners;
     if (r < n) {

@@ -1,1 +1,677 @@
-// to be written
+// The device's predicates against GMP: what a filter decides is right, what the exact versions say is always right, and
+// the depth below a chord is monotone as quickhull needs it. Each class of input prints how much its filter leaves.
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/device.hpp"
+#include "tests/support/reference.hpp"
+
+namespace flaunay {
+namespace {
+
+using host::Arena;
+using host::Runtime;
+using testing::download;
+using testing::guarded;
+using testing::reference_incircle;
+using testing::reference_orient2d;
+using testing::ScopedEnvironment;
+using testing::TemporaryFolder;
+using testing::upload;
+
+constexpr int kUndecided = 2;
+
+// What ingest accepts: multiples of 2^-255 below 2^250.
+constexpr int kLowestExponent = -255;
+constexpr int kLargestExponent = 249;
+
+// The axes of kernels/shared/frame.h.
+constexpr int kAxisX = 0, kAxisY = 1, kPlanarLower = 2, kPlanarUpper = 3;
+constexpr int kAxes[] = {kAxisX, kAxisY, kPlanarLower, kPlanarUpper};
+const char* const kAxisNames[] = {"x", "y", "planar lower", "planar upper"};
+bool is_planar(int axis) { return axis >= kPlanarLower; }
+
+/// A runtime whose kernel files are the shared headers and tests/kernels; destroyed before the OpenCL
+/// implementation leaves.
+class PredicateRuntime : public ::testing::Environment {
+ public:
+  void TearDown() override { state().reset(); }
+  static Runtime& get() {
+    if (!state()) state() = std::make_unique<State>();
+    return state()->runtime;
+  }
+
+ private:
+  struct State {
+    State() : environment("FLAUNAY_KERNEL_PATH", folder.path().c_str()), runtime(host::find_device("")) {
+      namespace fs = std::filesystem;
+      const fs::path source = fs::path(FLAUNAY_TEST_DATA) / ".." / "..";
+      fs::copy(source / "kernels" / "shared", fs::path(folder.path()) / "shared");
+      fs::copy(source / "tests" / "kernels" / "predicates.cl", folder.path());
+    }
+    TemporaryFolder folder;
+    ScopedEnvironment environment;
+    Runtime runtime;
+  };
+  static std::unique_ptr<State>& state() {
+    static std::unique_ptr<State> one;
+    return one;
+  }
+};
+[[maybe_unused]] ::testing::Environment* const kRuntime =
+    ::testing::AddGlobalTestEnvironment(new PredicateRuntime);
+
+// ---------------------------------------------------------------------------------------------------------
+// Numbers to make cases of
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  std::uint64_t bits() { return engine_(); }
+  /// From 0 to n - 1.
+  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
+  int between(int low, int high) { return low + below(high - low + 1); }
+  bool coin() { return (engine_() & 1) != 0; }
+  double sign() { return coin() ? 1.0 : -1.0; }
+  /// In [0, 1), a multiple of 2^-53.
+  double unit() { return std::ldexp(static_cast<double>(engine_() >> 11), -53); }
+  /// An integer of at most `count` bits, of either sign.
+  double integer(int count) {
+    return sign() * static_cast<double>(engine_() & ((std::uint64_t{1} << count) - 1));
+  }
+  /// Any supported number: all exponents are equally likely, and all lengths of the mantissa.
+  double wide() { return wide(kLowestExponent, kLargestExponent); }
+  double wide(int low, int high) {
+    if (below(16) == 0) return 0.0;
+    const int top = between(low, high);
+    const int length = between(1, std::min(53, top - kLowestExponent + 1));
+    const std::uint64_t leading = std::uint64_t{1} << (length - 1);
+    return sign() * std::ldexp(static_cast<double>(leading | (engine_() & (leading - 1))), top - length + 1);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// The nearest supported number: the identity unless x is tiny.
+double supported(double x) { return std::ldexp(std::nearbyint(std::ldexp(x, 255)), -255); }
+
+/// x moved by some units in the last place, up to `most`.
+double nudged(double x, int most, Random& random) {
+  const int steps = random.between(-most, most);
+  for (int k = 0; k < std::abs(steps); ++k) x = std::nextafter(x, steps < 0 ? -HUGE_VAL : HUGE_VAL);
+  return supported(x);
+}
+
+/// Points on the circle of radius 65 about 0; some have a coordinate 0.
+std::array<double, 2> on_circle(Random& random) {
+  static constexpr int kPoints[][2] = {{0, 65}, {16, 63}, {25, 60}, {33, 56}, {39, 52}};
+  const auto& p = kPoints[random.below(5)];
+  const bool turned = random.coin();
+  return {random.sign() * p[turned], random.sign() * p[!turned]};
+}
+
+/// As an integer, in units of 2^-255.
+void set_scaled(mpz_class& to, double x) { mpz_set_d(to.get_mpz_t(), std::ldexp(x, 255)); }
+
+std::string text_of(const double* values, std::size_t count) {
+  std::string text;
+  char number[40];
+  for (std::size_t i = 0; i < count; ++i) {
+    std::snprintf(number, sizeof number, "%s%a", i ? ", " : "", values[i]);
+    text += number;
+  }
+  return text;
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Running cases
+
+/// What is known of a class of cases, so that it stays what it is meant to be.
+struct Class {
+  const char* name;
+  int bound_scale = 1;       ///< 0: coarse, the filter decides all
+  double undecided_least = 0;
+  double undecided_most = 1;
+  double zeros_least = 0;
+  bool misleads = false;  ///< some signs are wrong without a bound
+};
+
+struct Tally {
+  std::size_t cases = 0, undecided = 0, zeros = 0, misled = 0;
+  double share(std::size_t part) const { return static_cast<double>(part) / static_cast<double>(cases); }
+};
+
+std::size_t total_cases = 0;
+
+void report(const std::string& predicate, const Class& of, const Tally& tally) {
+  total_cases += tally.cases;
+  std::printf("  %-22s %-34s %8zu cases, undecided %7.3f%%, zero %7.3f%%, wrong without bound %7.3f%%\n",
+              predicate.c_str(), of.name, tally.cases, 100 * tally.share(tally.undecided),
+              100 * tally.share(tally.zeros), 100 * tally.share(tally.misled));
+  EXPECT_GE(tally.share(tally.undecided), of.undecided_least) << of.name;
+  EXPECT_LE(tally.share(tally.undecided), of.undecided_most) << of.name;
+  EXPECT_GE(tally.share(tally.zeros), of.zeros_least) << of.name;
+  if (of.misleads) {
+    EXPECT_GT(tally.misled, 0u) << of.name << ": too easy";
+  }
+}
+
+constexpr std::size_t kBatch = 1 << 15;
+
+/// Compares, batch by batch. make fills a case; filter and exact run a batch (and give its signs without and
+/// with a bound, and exactly); reference is GMP's sign of a case.
+struct Predicate {
+  std::string name;
+  std::size_t width;
+  std::function<void(const host::Buffer<cl_double>&, std::size_t, double, const host::Buffer<cl_char>&)> filter;
+  std::function<void(const host::Buffer<cl_double>&, std::size_t, const host::Buffer<cl_char>&)> exact;
+  std::function<int(const double*)> reference;
+};
+
+void check(const Predicate& predicate, const Class& of, std::size_t count, Random& random,
+           const std::function<void(Random&, double*)>& make) {
+  Runtime& runtime = PredicateRuntime::get();
+  Tally tally;
+  int failures = 0;
+  for (std::size_t done = 0; done < count;) {
+    const std::size_t n = std::min(kBatch, count - done);
+    done += n;
+    std::vector<cl_double> cases(predicate.width * n);
+    for (std::size_t i = 0; i < n; ++i) make(random, &cases[predicate.width * i]);
+
+    const Arena::Scope scope(runtime.arena());
+    const auto device_cases = upload(runtime, cases);
+    const auto filtered = guarded<cl_char>(runtime, n);
+    const auto bare = guarded<cl_char>(runtime, n);
+    const auto exact = guarded<cl_char>(runtime, n);
+    predicate.filter(device_cases, n, of.bound_scale, filtered);
+    predicate.filter(device_cases, n, 0.0, bare);
+    predicate.exact(device_cases, n, exact);
+    const auto filtered_signs = download(runtime, filtered, n);
+    const auto bare_signs = download(runtime, bare, n);
+    const auto exact_signs = download(runtime, exact, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double* const c = &cases[predicate.width * i];
+      const int expected = predicate.reference(c);
+      ++tally.cases;
+      tally.zeros += expected == 0;
+      tally.undecided += filtered_signs[i] == kUndecided;
+      tally.misled += bare_signs[i] != expected;
+      const bool right = exact_signs[i] == expected &&
+                         (filtered_signs[i] == expected || (of.bound_scale && filtered_signs[i] == kUndecided));
+      if (right || ++failures > 3) continue;
+      ADD_FAILURE() << predicate.name << ", " << of.name << ": the sign is " << expected << ", the filter says "
+                    << +filtered_signs[i] << ", the exact version " << +exact_signs[i] << "\n"
+                    << text_of(c, predicate.width);
+    }
+  }
+  EXPECT_EQ(failures, 0) << predicate.name << ", " << of.name;
+  report(predicate.name, of, tally);
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Depth below a chord
+
+/// In the frame: s across the cut, u along it; and the cut.
+struct Chord {
+  double as, au, bs, bu, ps, pu, q;
+};
+
+/// From the frame to the plane.
+std::array<double, 2> from_frame(double s, double u, int axis) {
+  switch (axis) {
+    case kAxisX:
+      return {s, u};
+    case kAxisY:
+      return {-u, s};
+    case kPlanarLower:
+      return {u, s};
+    default:
+      return {-u, -s};
+  }
+}
+
+void write_case(const Chord& chord, int axis, double* out) {
+  const auto a = from_frame(chord.as, chord.au, axis);
+  const auto b = from_frame(chord.bs, chord.bu, axis);
+  const auto p = from_frame(chord.ps, chord.pu, axis);
+  const double all[] = {a[0], a[1], b[0], b[1], p[0], p[1], chord.q};
+  std::copy(all, all + 7, out);
+}
+
+/// The sign by its definition: whether p's projection (u, (s - q)^2 + u^2), or (u, s), is below the chord.
+class HullReference {
+ public:
+  explicit HullReference(int axis) : axis_(axis) {}
+  int operator()(const double* c) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = c[2 * k], y = c[2 * k + 1];
+      switch (axis_) {
+        case kAxisX:
+          set_scaled(s_, x), set_scaled(u_[k], y);
+          break;
+        case kAxisY:
+          set_scaled(s_, y), set_scaled(u_[k], -x);
+          break;
+        case kPlanarLower:
+          set_scaled(s_, y), set_scaled(u_[k], x);
+          break;
+        default:
+          set_scaled(s_, -y), set_scaled(u_[k], -x);
+      }
+      w_[k] = s_;
+      if (!is_planar(axis_)) {
+        set_scaled(q_, c[6]);
+        s_ -= q_;
+        w_[k] = s_ * s_;
+        w_[k] += u_[k] * u_[k];
+      }
+    }
+    left_ = (u_[1] - u_[0]) * (w_[2] - w_[0]);
+    right_ = (w_[1] - w_[0]) * (u_[2] - u_[0]);
+    return sgn(right_ - left_);
+  }
+
+ private:
+  int axis_;
+  mpz_class s_, q_, u_[3], w_[3], left_, right_;
+};
+
+void sort_along(Chord& c) {
+  if (c.au > c.bu) std::swap(c.au, c.bu);
+  if (c.pu < c.au) std::swap(c.pu, c.au);
+  if (c.pu > c.bu) std::swap(c.pu, c.bu);
+}
+
+/// The s (on a side of q) at which p is on the chord, as well as floating point finds it.
+double s_on_chord(const Chord& c, bool planar, double side) {
+  const long double to_b = static_cast<long double>(c.bu) - c.pu;
+  const long double from_a = static_cast<long double>(c.pu) - c.au;
+  const long double length = static_cast<long double>(c.bu) - c.au;
+  if (length == 0) return c.as;
+  if (planar) return static_cast<double>((c.as * to_b + c.bs * from_a) / length);
+  const long double as = static_cast<long double>(c.as) - c.q;
+  const long double bs = static_cast<long double>(c.bs) - c.q;
+  const long double height = (as * as * to_b + bs * bs * from_a) / length + from_a * to_b;
+  return static_cast<double>(c.q + side * std::sqrt(height));
+}
+
+Chord random_chord(Random& random) {
+  Chord c{random.unit(), random.unit(), random.unit(), random.unit(), random.unit(), random.unit(), 0};
+  sort_along(c);
+  c.q = random.coin() ? random.unit() : random.coin() ? c.as : c.ps;
+  return c;
+}
+
+/// Three points whose projections are on one line exactly: on a circle about a point of the cut, or collinear.
+/// Small integers, about an origin of the given bits.
+Chord straight_chord(Random& random, bool planar, int origin_bits) {
+  const double q = random.integer(origin_bits), u = random.integer(origin_bits);
+  Chord c{};
+  c.q = q;
+  if (planar) {
+    const double ds = random.integer(5), du = 1 + random.below(31);
+    int steps[] = {random.below(60), random.below(60), random.below(60)};
+    std::sort(steps, steps + 3);
+    c.as = q + ds * steps[0], c.au = u + du * steps[0];
+    c.ps = q + ds * steps[1], c.pu = u + du * steps[1];
+    c.bs = q + ds * steps[2], c.bu = u + du * steps[2];
+    return c;
+  }
+  std::array<double, 2> points[] = {on_circle(random), on_circle(random), on_circle(random)};
+  std::sort(points, points + 3, [](const auto& a, const auto& b) { return a[1] < b[1]; });
+  c.as = q + points[0][0], c.au = u + points[0][1];
+  c.ps = q + points[1][0], c.pu = u + points[1][1];
+  c.bs = q + points[2][0], c.bu = u + points[2][1];
+  return c;
+}
+
+void scale(Chord& c, int exponent) {
+  for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q}) *x = std::ldexp(*x, exponent);
+}
+
+void nudge_one(Chord& c, int most, Random& random) {
+  double* const all[] = {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q};
+  double* const x = all[random.below(7)];
+  *x = nudged(*x, most, random);
+}
+
+Predicate hull_predicate(int axis) {
+  Runtime& runtime = PredicateRuntime::get();
+  Predicate predicate;
+  predicate.name = std::string("hull depth, ") + kAxisNames[axis];
+  predicate.width = 7;
+  predicate.filter = [&runtime, axis](const auto& cases, std::size_t n, double bound_scale, const auto& signs) {
+    const Arena::Scope scope(runtime.arena());
+    const auto depth = guarded<cl_double>(runtime, n);
+    runtime.map("predicates", "hull_filtered", n, cl_int{axis}, bound_scale, cases, depth, signs);
+  };
+  predicate.exact = [&runtime, axis](const auto& cases, std::size_t n, const auto& signs) {
+    runtime.map("predicates", "hull_exact", n, cl_int{axis}, cases, signs);
+  };
+  predicate.reference = HullReference(axis);
+  return predicate;
+}
+
+class HullDepth : public ::testing::TestWithParam<int> {
+ protected:
+  void check_class(const Class& of, std::size_t count, const std::function<Chord(Random&)>& make) {
+    check(predicate_, of, count, random_, [&](Random& random, double* out) {
+      write_case(make(random), axis_, out);
+    });
+  }
+  int axis_ = GetParam();
+  bool planar_ = is_planar(axis_);
+  Predicate predicate_ = hull_predicate(axis_);
+  Random random_{static_cast<std::uint64_t>(100 + axis_)};
+};
+INSTANTIATE_TEST_SUITE_P(Axes, HullDepth, ::testing::ValuesIn(kAxes));
+
+TEST_P(HullDepth, OfRandomPoints) {
+  check_class({"random", 1, 0, 0.001}, 40000, random_chord);
+}
+
+TEST_P(HullDepth, OfPointsThatAreNearlyOnTheChord) {
+  check_class({"nearly on the chord", 1, 0.1, 1, 0, true}, 40000, [&](Random& random) {
+    Chord c = random_chord(random);
+    c.ps = nudged(s_on_chord(c, planar_, random.sign()), 3, random);
+    return c;
+  });
+  // Differences that are not exact: coordinates of 53 bits about 0, of all exponents down to 2^-30.
+  check_class({"nearly on it, mixed magnitudes", 1, 0.1, 1, 0, true}, 40000, [&](Random& random) {
+    Chord c{};
+    for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.pu, &c.q}) {
+      *x = random.sign() * std::ldexp(1 + random.unit(), -random.below(30));
+    }
+    sort_along(c);
+    c.ps = nudged(s_on_chord(c, planar_, random.sign()), 2, random);
+    return c;
+  });
+}
+
+TEST_P(HullDepth, OfPointsThatAreNearlyMirrored) {
+  check_class({"nearly mirrored", 1, 0.1}, 30000, [&](Random& random) {
+    Chord c = random_chord(random);
+    const bool at_b = random.coin();
+    c.pu = nudged(at_b ? c.bu : c.au, 2, random);
+    const double s = at_b ? c.bs : c.as;
+    c.ps = nudged(planar_ ? s : 2 * c.q - s, 2, random);
+    return c;
+  });
+  check_class({"equal along the cut", 1, 0.1, 1, 0.01}, 30000, [&](Random& random) {
+    Chord c = random_chord(random);
+    const bool at_b = random.coin();
+    c.pu = at_b ? c.bu : c.au;
+    const double s = at_b ? c.bs : c.as;
+    if (random.coin()) c.ps = nudged(planar_ || random.coin() ? s : 2 * c.q - s, 2, random);
+    return c;
+  });
+}
+
+TEST_P(HullDepth, OfDegeneratePoints) {
+  check_class({"grid", 1, 0.02, 1, 0.02}, 30000, [](Random& random) {
+    Chord c{};
+    for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q}) *x = random.below(8);
+    sort_along(c);
+    return c;
+  });
+  check_class({"straight", 1, 1, 1, 1}, 30000, [&](Random& random) {
+    Chord c = straight_chord(random, planar_, random.below(46));
+    scale(c, random.between(-100, 100));
+    return c;
+  });
+  check_class({"straight but for some ulps", 1, 0.02, 1, 0.001}, 40000, [&](Random& random) {
+    Chord c = straight_chord(random, planar_, random.below(46));
+    nudge_one(c, 2, random);
+    return c;
+  });
+}
+
+TEST_P(HullDepth, OfExtremeMagnitudes) {
+  check_class({"extreme", 1, 0, 0.1}, 30000, [](Random& random) {
+    Chord c{};
+    for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q}) *x = random.wide();
+    sort_along(c);
+    return c;
+  });
+  check_class({"extreme, nearly on the chord", 1, 0.01}, 30000, [&](Random& random) {
+    Chord c{};
+    const int top = random.between(-150, 240);
+    for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.pu, &c.q}) {
+      *x = random.below(3) ? random.wide(top - 40, top) : random.wide(kLowestExponent, top);
+    }
+    sort_along(c);
+    c.ps = nudged(s_on_chord(c, planar_, random.sign()), 2, random);
+    return c;
+  });
+  check_class({"extreme, straight or next to it", 1, 0.5, 1, 0.05}, 30000, [&](Random& random) {
+    Chord c = straight_chord(random, planar_, 0);
+    const int exponent = random.between(-200, 240);
+    scale(c, exponent);
+    // A coordinate of 0 may become a tiny number: hundreds of binary places below the others.
+    for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q}) {
+      if (*x == 0 && random.coin()) *x = random.wide(kLowestExponent, std::max(kLowestExponent, exponent - 60));
+    }
+    return c;
+  });
+}
+
+TEST_P(HullDepth, OfCoarsePointsIsDecidedByTheFilter) {
+  for (const int exponent : {0, -255, 230, -17}) {
+    check_class({"coarse, 16 bits", 0, 0, 0}, 10000, [&](Random& random) {
+      Chord c{};
+      for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q}) *x = random.integer(16);
+      sort_along(c);
+      scale(c, exponent);
+      return c;
+    });
+    check_class({"coarse, the largest", 0, 0, 0, 0.001}, 10000, [&](Random& random) {
+      Chord c{};
+      for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.ps, &c.pu, &c.q}) {
+        *x = random.sign() * (65535 - random.below(3));
+      }
+      sort_along(c);
+      scale(c, exponent);
+      return c;
+    });
+    check_class({"coarse, nearly on the chord", 0, 0, 0, 0.0001}, 10000, [&](Random& random) {
+      Chord c{};
+      do {
+        for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.pu, &c.q}) *x = random.integer(15);
+        sort_along(c);
+        c.ps = std::nearbyint(s_on_chord(c, planar_, random.sign()));
+      } while (std::fabs(c.ps) > 65535);
+      scale(c, exponent);
+      return c;
+    });
+    check_class({"coarse, straight", 0, 0, 0, 1}, 10000, [&](Random& random) {
+      Chord c = straight_chord(random, planar_, 15);
+      scale(c, exponent);
+      return c;
+    });
+  }
+}
+
+// Of points with equal u, none lower has a smaller depth, and mirror images have the same: quickhull drops
+// what shares its u with the deepest point. And is_lower, which says which of them is lower.
+class HullHeight : public ::testing::TestWithParam<int> {
+ protected:
+  static constexpr std::size_t kColumn = 24;  // points that share u
+
+  void check_columns(const char* name, std::size_t chords,
+                     const std::function<void(Random&, Chord&, double*)>& make) {
+    Runtime& runtime = PredicateRuntime::get();
+    const int axis = GetParam();
+    Random random(static_cast<std::uint64_t>(200 + axis));
+    std::vector<Chord> column_chord(chords);
+    std::vector<double> s(chords * kColumn);
+    std::vector<cl_double> cases(7 * s.size()), pairs(5 * s.size());
+    for (std::size_t k = 0; k < chords; ++k) make(random, column_chord[k], &s[k * kColumn]);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      Chord c = column_chord[i / kColumn];
+      c.ps = s[i];
+      write_case(c, axis, &cases[7 * i]);
+      const auto p = from_frame(s[i], c.pu, axis);
+      const auto v = from_frame(s[partner(i)], c.pu, axis);
+      const double pair[] = {p[0], p[1], v[0], v[1], c.q};
+      std::copy(pair, pair + 5, &pairs[5 * i]);
+    }
+
+    const Arena::Scope scope(runtime.arena());
+    const auto device_cases = upload(runtime, cases);
+    const auto device_pairs = upload(runtime, pairs);
+    const auto device_depth = guarded<cl_double>(runtime, s.size());
+    const auto signs = guarded<cl_char>(runtime, s.size());
+    const auto device_lower = guarded<cl_char>(runtime, s.size());
+    runtime.map("predicates", "hull_filtered", s.size(), cl_int{axis}, 1.0, device_cases, device_depth, signs);
+    runtime.map("predicates", "lower_cases", s.size(), cl_int{axis}, device_pairs, device_lower);
+    const auto depth = download(runtime, device_depth, s.size());
+    const auto lower = download(runtime, device_lower, s.size());
+
+    std::size_t mirrored = 0, equal_depth = 0;
+    std::vector<mpz_class> height(s.size());
+    mpz_class q;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      set_scaled(height[i], s[i]);
+      if (is_planar(axis)) continue;
+      set_scaled(q, column_chord[i / kColumn].q);
+      height[i] = abs(height[i] - q);
+    }
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const double cut = column_chord[i / kColumn].q;
+      const std::size_t j = partner(i);
+      const bool expected = height[i] != height[j] ? height[i] < height[j] : s[i] < s[j];
+      ASSERT_EQ(lower[i] != 0, expected) << name << ": is_lower of s = " << text_of(&s[i], 1) << " and "
+                                         << text_of(&s[j], 1) << " for the cut " << text_of(&cut, 1);
+      // All pairs of the column.
+      for (std::size_t k = i / kColumn * kColumn; k < i; ++k) {
+        const int order = cmp(height[k], height[i]);
+        const bool fine = order < 0   ? depth[k] >= depth[i]
+                          : order > 0 ? depth[k] <= depth[i]
+                                      : depth[k] == depth[i];
+        ASSERT_TRUE(fine) << name << ": depths " << text_of(&depth[k], 1) << " and " << text_of(&depth[i], 1) << "\n"
+                          << text_of(&cases[7 * k], 7) << "\n"
+                          << text_of(&cases[7 * i], 7);
+        mirrored += order == 0 && s[k] != s[i];
+        equal_depth += order != 0 && depth[k] == depth[i];
+      }
+    }
+    std::printf("  %-22s %-34s %8zu points in columns of %zu; %zu mirrored pairs, %zu of equal depth\n",
+                (std::string("hull height, ") + kAxisNames[axis]).c_str(), name, s.size(), kColumn, mirrored,
+                equal_depth);
+    if (!is_planar(axis)) {
+      EXPECT_GT(mirrored, s.size() / 50) << name;
+    }
+    EXPECT_GT(equal_depth, 0u) << name << ": no two heights were near enough to be rounded to one depth";
+    total_cases += s.size();
+  }
+
+  /// Another point of the column.
+  static std::size_t partner(std::size_t i) { return i / kColumn * kColumn + (i + 1) % kColumn; }
+};
+INSTANTIATE_TEST_SUITE_P(Axes, HullHeight, ::testing::ValuesIn(kAxes));
+
+/// Heights about some base, a few ulps apart, on either side; mirror images of each other as far as they can be.
+void fill_column(Random& random, const Chord& c, double base, std::size_t count, double* s) {
+  for (std::size_t k = 0; k < count; ++k) {
+    switch (k == 0 ? 0 : random.below(4)) {
+      case 0:
+        s[k] = nudged(base, 4, random);
+        break;
+      case 1:
+        s[k] = supported(2 * c.q - s[random.below(static_cast<int>(k))]);
+        break;
+      case 2:
+        s[k] = nudged(s[random.below(static_cast<int>(k))], 2, random);
+        break;
+      default:
+        s[k] = nudged(2 * c.q - base, 4, random);
+    }
+  }
+}
+
+TEST_P(HullHeight, DepthIsMonotoneForUnitCoordinates) {
+  check_columns("unit", 3000, [](Random& random, Chord& c, double* s) {
+    c = random_chord(random);
+    fill_column(random, c, random.coin() ? random.unit() : nudged(c.q, 3, random), kColumn, s);
+  });
+}
+
+TEST_P(HullHeight, DepthIsMonotoneForExtremeMagnitudes) {
+  check_columns("extreme", 3000, [](Random& random, Chord& c, double* s) {
+    for (double* x : {&c.as, &c.au, &c.bs, &c.bu, &c.pu, &c.q}) *x = random.wide();
+    sort_along(c);
+    // Below 2^249, so that mirror images are below 2^250 and a cut too.
+    c.q = random.wide(kLowestExponent, 247);
+    fill_column(random, c, random.wide(kLowestExponent, 247), kColumn, s);
+    for (std::size_t k = 0; k < kColumn; k += 5) s[k] = random.coin() ? c.q : random.wide(kLowestExponent, 247);
+  });
+}
+
+TEST_P(HullHeight, DepthIsMonotoneForIntegersWithALongChord) {
+  check_columns("integers", 3000, [](Random& random, Chord& c, double* s) {
+    c = {random.integer(30), -random.unit(), random.integer(30), random.unit(), 0, 0, random.integer(20)};
+    if (c.au == c.bu) c.bu = 1;
+    c.pu = c.au + (c.bu - c.au) * 0.5;
+    const double base = random.integer(20);
+    for (std::size_t k = 0; k < kColumn; ++k) {
+      s[k] = random.coin() ? base + random.below(5) : 2 * c.q - base - random.below(5);
+      if (random.below(3) == 0) s[k] = nudged(s[k], 3, random);
+    }
+  });
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Orientation
+
+class Orientation : public ::testing::Test {
+ protected:
+  Orientation() {
+    Runtime& runtime = PredicateRuntime::get();
+    predicate_.name = "orientation";
+    predicate_.width = 6;
+    predicate_.filter = [&runtime](const auto& cases, std::size_t n, double bound_scale, const auto& signs) {
+      runtime.map("predicates", "orient_filtered_cases", n, bound_scale, cases, signs);
+    };
+    predicate_.exact = [&runtime](const auto& cases, std::size_t n, const auto& signs) {
+      runtime.map("predicates", "orient_exact_cases", n, cases, signs);
+    };
+    predicate_.reference = [](const double* c) { return reference_orient2d(c, c + 2, c + 4); };
+  }
+  Predicate predicate_;
+  Random random_{300};
+};
+
+/// Points in any order: which one the others are translated to matters.
+void shuffle_points(Random& random, double* c, int points) {
+  for (int k = points - 1; k > 0; --k) std::swap_ranges(c + 2 * k, c + 2 * k + 2, c + 2 * random.below(k + 1));
+}
+
+/// swap_ranges must not get the same range twice; this is the safe way.
+void permute_points(Random& random, double* c, int points) {
+  for (int k = points - 1; k > 0; --k) {
+    const int j = random.below(k + 1);
+    std::swap(c[2 * k], c[2 * j]);
+    std::swap(c[2 * k + 1], c[2 * j + 1]);
+  }
+}
+
+TEST_F(Orientation, OfRandomPoints) {
+  check(predicate_, {"random", 1, 0, 0.001}, 100000, random_, [](Random& random, double* c) {
+    for (int k = 0; k < 6; ++k) c[k] = random.unit();
+  });
+}

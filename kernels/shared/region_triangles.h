@@ -22,6 +22,13 @@
 #define REGION_TRIANGLES(NAME, ORIENT, CIRCLE)                                                                       \
   static inline int NAME(global const int* corners, int count, global const double2* restrict points,                \
                          double orient_bound, double circle_bound, global int* triangles) {                          \
+    if (count == 3) {                                                                                                \
+      const int3 t = (int3)(corners[0], corners[1], corners[2]);                                                     \
+      triangles[0] = t.x;                                                                                            \
+      triangles[1] = t.y;                                                                                            \
+      triangles[2] = t.z;                                                                                            \
+      return 1;                                                                                                      \
+    }                                                                                                                \
     int ids[SMALL_REGION];                                                                                           \
     double2 p[SMALL_REGION];                                                                                         \
     uchar of_corner[SMALL_REGION];                                                                                   \

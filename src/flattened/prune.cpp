@@ -5,7 +5,7 @@ namespace {
 
 constexpr std::size_t kBucket = 8;  // BUCKET in prune.cl
 // Candidates a region from which on it pays to prune them by candidates of their own.
-constexpr std::size_t kManyCandidates = 32;
+constexpr std::size_t kManyCandidates = 256;
 
 // Brings flagged internal points and corners together by region. elements: level.points, or with the corners.
 HullPoints gather(Workspace& work, const Level& level, const Buffer<cl_uchar>& flags, std::size_t elements) {

@@ -79,8 +79,8 @@ struct Triangulator::Implementation {
 
   std::size_t capacity() const {
     const std::size_t by_memory = runtime.device().global_memory_size() / kBytesPerPoint;
-    // The arenas are made of blocks, but one array must be in one piece: twins and triangles, 24 bytes a point.
-    const std::size_t by_buffer = runtime.device().max_memory_alloc_size() / 32;
+    // The arenas are made of blocks, but one array must be in one piece: at most 48 bytes a point, in strips.
+    const std::size_t by_buffer = runtime.device().max_memory_alloc_size() / 48;
     return std::min({kMostPoints, by_memory, by_buffer});
   }
 
