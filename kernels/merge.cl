@@ -76,19 +76,16 @@ static inline int code_from_turns(const int* turns, const direction* d) {
 }
 
 static inline void corner_directions(global const int* restrict corner, int a, int place, int first, int last,
-                                     global const int* restrict path, global const double2* restrict points,
-                                     direction* d) {
+                                     global const int* restrict path, global const double2* restrict path_places,
+                                     global const double2* restrict points, direction* d) {
   d[DIRECTION_AFTER].id = corner[2];
   d[DIRECTION_BEFORE].id = corner[0];
   d[DIRECTION_PREVIOUS].id = place > first ? path[place - 1] : -1;
   d[DIRECTION_NEXT].id = place < last ? path[place + 1] : -1;
-  for (int k = 0; k < 4; ++k) {
-    if (d[k].id >= 0) {
-      d[k].p = to_frame(points[d[k].id], a);
-    } else {
-      d[k].p = (double2)(0.0, k == DIRECTION_NEXT ? 1.0 : -1.0);
-    }
-  }
+  d[DIRECTION_AFTER].p = to_frame(points[corner[2]], a);
+  d[DIRECTION_BEFORE].p = to_frame(points[corner[0]], a);
+  d[DIRECTION_PREVIOUS].p = place > first ? path_places[place - 1] : (double2)(0.0, -1.0);
+  d[DIRECTION_NEXT].p = place < last ? path_places[place + 1] : (double2)(0.0, 1.0);
 }
 
 // place: the corner's vertex on its region's path, or -1.
@@ -97,7 +94,7 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
                          global const int* restrict corners, global const int* restrict regions,
                          global const int* restrict axis, global const double* restrict cut,
                          global const double2* restrict points, global const int* restrict path_offsets,
-                         global const int* restrict path, global const double* restrict path_u,
+                         global const int* restrict path, global const double2* restrict path_places,
                          global int* restrict places, global uchar* restrict codes) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -110,7 +107,7 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
     int low = first, high = kept[points_count + i] ? last + 1 : first;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
-      if (path_u[middle] <= m.y) {
+      if (path_places[middle].y <= m.y) {
         low = middle;
       } else {
         high = middle;
@@ -121,7 +118,7 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
     if (path[low] == vertex) {
       place = low;
       direction d[4];
-      corner_directions(corners + 3 * i, a, place, first, last, path, points, d);
+      corner_directions(corners + 3 * i, a, place, first, last, path, path_places, points, d);
       int turns[PAIRS];
       int undecided = 0;
       for (int k = 0; k < PAIRS; ++k) {
@@ -141,7 +138,8 @@ kernel void corner_codes_exact(global const uint* restrict count, global const i
                                global const int* restrict corners, global const int* restrict regions,
                                global const int* restrict axis, global const double2* restrict points,
                                global const int* restrict path_offsets, global const int* restrict path,
-                               global const int* restrict places, global uchar* restrict codes) {
+                               global const double2* restrict path_places, global const int* restrict places,
+                               global uchar* restrict codes) {
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int i = list[k];
@@ -149,7 +147,8 @@ kernel void corner_codes_exact(global const uint* restrict count, global const i
     const int a = axis[r];
     const double2 m = to_frame(points[corners[3 * i + 1]], a);
     direction d[4];
-    corner_directions(corners + 3 * i, a, places[i], path_offsets[r], path_offsets[r + 1] - 1, path, points, d);
+    corner_directions(corners + 3 * i, a, places[i], path_offsets[r], path_offsets[r + 1] - 1, path, path_places, points,
+                      d);
     int turns[PAIRS];
     for (int t = 0; t < PAIRS; ++t) {
       const int2 pair = pair_of(t);

@@ -62,25 +62,25 @@ kernel void candidate_flags(int n, int elements, global const int* restrict regi
 
 // A point against the path's chord over it. flag: 1 keep, 0 drop, 2 undecided, FLAG_END on the hull as its end. keep_on also keeps what lies on the path
 // and, of the column of the path's last vertex, all. low: the last vertex with u no greater than p's.
-static inline int held_against(int id, double2 p, int low, int first, int last, int a, double q, int keep_on,
-                               double bound, global const int* restrict path, global const double* restrict path_u,
-                               global const double2* restrict points) {
-  const int v = path[low];
-  // The path's ends are known to be on the hull, and need no finding.
-  if (id == v) return keep_on || (low != first && low != last) ? 1 : FLAG_END;
-  if (path_u[low] == p.y) {
-    return keep_on ? low == last : is_lower(p, to_frame(points[v], a), q, is_planar(a));
+static inline int held_against(int id, double2 p, int low, int first, int last, int planar, double q, int keep_on,
+                               double bound, global const int* restrict path,
+                               global const double2* restrict path_places) {
+  const double2 v = path_places[low];
+  if (v.y == p.y) {
+    // The path's ends are known to be on the hull, and need no finding.
+    if (id == path[low]) return keep_on || (low != first && low != last) ? 1 : FLAG_END;
+    return keep_on ? low == last : is_lower(p, v, q, planar);
   }
-  const double2 d = hull_depth(to_frame(points[v], a), to_frame(points[path[low + 1]], a), p, q, is_planar(a));
+  const double2 d = hull_depth(v, path_places[low + 1], p, q, planar);
   const double error = bound * d.y;
   return d.x > error ? 1 : d.x < -error ? 0 : bound == 0.0 ? (keep_on && d.x == 0.0) : 2;
 }
 
-static inline int search_path(double u, int first, int last, global const double* restrict path_u) {
+static inline int search_path(double u, int first, int last, global const double2* restrict path_places) {
   int low = first, high = last + 1;
   while (high - low > 1) {
     const int middle = (low + high) / 2;
-    if (path_u[middle] <= u) {
+    if (path_places[middle].y <= u) {
       low = middle;
     } else {
       high = middle;
@@ -95,7 +95,7 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
                          global const int* restrict x_list, global const int* restrict y_list,
                          global const int* restrict axis, global const double* restrict cut,
                          global const double2* restrict points, global const int* restrict path_offsets,
-                         global const int* restrict path, global const double* restrict path_u,
+                         global const int* restrict path, global const double2* restrict path_places,
                          global int* restrict ids, global int* restrict chord, global uchar* restrict flags) {
   const int bucket = get_global_id(0);
   if (bucket < n) {
@@ -114,12 +114,12 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
       const int id = a == AXIS_Y ? x_list[i] : y_list[i];
       const double2 p = to_frame(points[id], a);
       if (fresh) {
-        low = search_path(p.y, first, last, path_u);
+        low = search_path(p.y, first, last, path_places);
       } else {
-        while (low < last && path_u[low + 1] <= p.y) ++low;
-        while (low > first && path_u[low] > p.y) --low;
+        while (low < last && path_places[low + 1].y <= p.y) ++low;
+        while (low > first && path_places[low].y > p.y) --low;
       }
-      const int keep = held_against(id, p, low, first, last, a, q, keep_on, bound, path, path_u, points);
+      const int keep = held_against(id, p, low, first, last, is_planar(a), q, keep_on, bound, path, path_places);
       flags[i] = keep;
       if (keep == 2) {
         ids[i] = id;
@@ -134,7 +134,7 @@ kernel void prune_corners(int n, int points_count, double bound, global const in
                           global const int* restrict corners, global const int* restrict axis,
                           global const double* restrict cut, global const double2* restrict points,
                           global const int* restrict path_offsets, global const int* restrict path,
-                          global const double* restrict path_u, global int* restrict ids,
+                          global const double2* restrict path_places, global int* restrict ids,
                           global int* restrict chord, global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -144,8 +144,8 @@ kernel void prune_corners(int n, int points_count, double bound, global const in
     const double2 p = to_frame(points[id], a);
     const int first = path_offsets[r];
     const int last = path_offsets[r + 1] - 1;
-    const int low = search_path(p.y, first, last, path_u);
-    const int keep = held_against(id, p, low, first, last, a, cut[r], 0, bound, path, path_u, points);
+    const int low = search_path(p.y, first, last, path_places);
+    const int keep = held_against(id, p, low, first, last, is_planar(a), cut[r], 0, bound, path, path_places);
     flags[points_count + i] = keep;
     if (keep == 2) {
       ids[points_count + i] = id;
@@ -180,21 +180,26 @@ static inline int positions_below(int i, int kept, global const int* restrict po
 kernel void begin_segments(int n, int points_count, int kept, global const int* restrict positions,
                            global const int* restrict point_offsets, global const int* restrict corner_offsets,
                            global const int* restrict first_end, global const int* restrict last_end,
+                           global const int* restrict axis, global const double2* restrict points,
                            global int* restrict chord_a, global int* restrict chord_b,
-                           global int* restrict chord_region, global int* restrict first,
-                           global int2* restrict before) {
+                           global double4* restrict chord_places, global int* restrict chord_region,
+                           global int* restrict first, global int2* restrict before) {
   const int r = get_global_id(0);
   if (r <= n) {
-    const int points = positions_below(point_offsets[r], kept, positions);
+    const int point_count = positions_below(point_offsets[r], kept, positions);
     const int all_points = positions_below(points_count, kept, positions);
     // Without kept corners there is nothing to look for.
-    const int corners =
+    const int corner_count =
         all_points == kept ? 0 : positions_below(points_count + corner_offsets[r], kept, positions) - all_points;
-    before[r] = (int2)(points, corners);
-    first[r] = points + corners;
+    before[r] = (int2)(point_count, corner_count);
+    first[r] = point_count + corner_count;
     if (r < n) {
-      chord_a[r] = first_end[r];
-      chord_b[r] = last_end[r];
+      const int a = first_end[r];
+      const int b = last_end[r];
+      chord_a[r] = a;
+      chord_b[r] = b;
+      // Sets without points have no ends.
+      chord_places[r] = a < 0 ? (double4)(0.0) : (double4)(to_frame(points[a], axis[r]), to_frame(points[b], axis[r]));
       chord_region[r] = r;
     }
   }
@@ -205,7 +210,8 @@ kernel void gather_points(int n, int points_count, int regions_count, global con
                           global const int2* restrict before, global const int* restrict regions,
                           global const int* restrict x_list, global const int* restrict y_list,
                           global const int* restrict corner_regions, global const int* restrict corners,
-                          global const int* restrict axis, global int* restrict ids, global int* restrict segment) {
+                          global const int* restrict axis, global const double2* restrict points,
+                          global int* restrict ids, global int* restrict segment, global double2* restrict places) {
   const int k = get_global_id(0);
   if (k < n) {
     const int i = positions[k];
@@ -221,5 +227,6 @@ kernel void gather_points(int n, int points_count, int regions_count, global con
     }
     ids[to] = id;
     segment[to] = r;
+    places[to] = to_frame(points[id], axis[r]);
   }
 }

@@ -12,19 +12,19 @@
 #include "shared/hull_height.h"
 #include "shared/segmented_arg_reduce.h"
 
-// flags: 1 strictly below the chord, 0 not, 2 undecided.
-kernel void hull_depths(int n, double bound, global const int* restrict ids, global const int* restrict segment,
-                        global const int* restrict chord_a, global const int* restrict chord_b,
+// places[i]: point i in its region's frame; chord_places[s]: both ends of chord s. flags: 1 strictly below the
+// chord, 0 not, 2 undecided.
+kernel void hull_depths(int n, double bound, global const int* restrict segment,
+                        global const double2* restrict places, global const double4* restrict chord_places,
                         global const int* restrict chord_region, global const int* restrict axis,
-                        global const double* restrict cut, global const double2* restrict points,
-                        global double* restrict depth, global uchar* restrict flags) {
+                        global const double* restrict cut, global double* restrict depth,
+                        global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) {
     const int s = segment[i];
     const int r = chord_region[s];
-    const int a = axis[r];
-    const double2 d = hull_depth(to_frame(points[chord_a[s]], a), to_frame(points[chord_b[s]], a),
-                                 to_frame(points[ids[i]], a), cut[r], is_planar(a));
+    const double4 chord = chord_places[s];
+    const double2 d = hull_depth(chord.lo, chord.hi, places[i], cut[r], is_planar(axis[r]));
     const double error = bound * d.y;
     depth[i] = d.x;
     flags[i] = d.x > error ? 1 : d.x < -error || bound == 0.0 ? 0 : 2;
@@ -63,27 +63,26 @@ static inline ulong scramble(double u) {
 // equal u, the lower projection, so that what else shares that u can be dropped. `balanced` ranks by the hash alone: a
 // random split, for input on which the deepest points are always next to the ends.
 static inline int is_deeper(int s, int i, int j, int balanced, global const int* restrict ids,
-                            global const double* restrict depth, global const int* restrict chord_region,
-                            global const int* restrict axis, global const double* restrict cut,
-                            global const double2* restrict points) {
+                            global const double* restrict depth, global const double2* restrict places,
+                            global const int* restrict chord_region, global const int* restrict axis,
+                            global const double* restrict cut) {
   if (!balanced && depth[i] != depth[j]) return depth[i] > depth[j];
   const int r = chord_region[s];
-  const int a = axis[r];
-  const double2 p = to_frame(points[ids[i]], a);
-  const double2 v = to_frame(points[ids[j]], a);
+  const double2 p = places[i];
+  const double2 v = places[j];
   if (p.y != v.y) {
     const ulong hp = scramble(p.y);
     const ulong hv = scramble(v.y);
     return hp != hv ? hp < hv : p.y < v.y;
   }
-  return ids[i] == ids[j] ? i < j : is_lower(p, v, cut[r], is_planar(a));
+  return ids[i] == ids[j] ? i < j : is_lower(p, v, cut[r], is_planar(axis[r]));
 }
 #define KEPT(i) flags[i] == 1 ? i : -1
-#define DEEPER(s, i, j) is_deeper(s, i, j, balanced, ids, depth, chord_region, axis, cut, points)
+#define DEEPER(s, i, j) is_deeper(s, i, j, balanced, ids, depth, places, chord_region, axis, cut)
 SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, int balanced, global const uchar* restrict flags,
                      global const int* restrict ids, global const double* restrict depth,
-                     global const int* restrict chord_region, global const int* restrict axis,
-                     global const double* restrict cut, global const double2* restrict points)
+                     global const double2* restrict places, global const int* restrict chord_region,
+                     global const int* restrict axis, global const double* restrict cut)
 
 kernel void split_flags(int n, global const int* restrict deepest, global uint* restrict splits) {
   const int s = get_global_id(0);
@@ -91,18 +90,15 @@ kernel void split_flags(int n, global const int* restrict deepest, global uint* 
 }
 
 // Which half of its segment a kept point goes to; points that share u with the new vertex are above it, and go.
-kernel void side_flags(int n, global const int* restrict ids, global const int* restrict segment,
+kernel void side_flags(int n, global const int* restrict segment, global const double2* restrict places,
                        global const uchar* restrict flags, global const int* restrict deepest,
-                       global const int* restrict chord_region, global const int* restrict axis,
-                       global const double2* restrict points, global uint2* restrict sides) {
+                       global uint2* restrict sides) {
   const int i = get_global_id(0);
   if (i < n) {
     uint2 side = (uint2)(0, 0);
     if (flags[i] == 1) {
-      const int s = segment[i];
-      const int a = axis[chord_region[s]];
-      const double u = to_frame(points[ids[i]], a).y;
-      const double middle = to_frame(points[ids[deepest[s]]], a).y;
+      const double u = places[i].y;
+      const double middle = places[deepest[segment[i]]].y;
       side = (uint2)(u < middle, u > middle);
     }
     sides[i] = side;
@@ -110,33 +106,33 @@ kernel void side_flags(int n, global const int* restrict ids, global const int* 
 }
 
 kernel void advance_points(int n, global const int* restrict ids, global const int* restrict segment,
-                           global const int* restrict first, global const uint2* restrict sides,
-                           global const uint* restrict splits, global int* restrict new_ids,
-                           global int* restrict new_segment) {
+                           global const double2* restrict places, global const int* restrict first,
+                           global const uint2* restrict sides, global const uint* restrict splits,
+                           global int* restrict new_ids, global int* restrict new_segment,
+                           global double2* restrict new_places) {
   const int i = get_global_id(0);
   if (i < n) {
     const uint2 before = sides[i];
     const uint2 after = sides[i + 1];
-    const int s = segment[i];
-    if (after.x != before.x) {
-      const int to = before.x + sides[first[s]].y;
+    if (after.x != before.x || after.y != before.y) {
+      const int s = segment[i];
+      const int right = after.y != before.y;
+      const int to = right ? before.y + sides[first[s + 1]].x : before.x + sides[first[s]].y;
       new_ids[to] = ids[i];
-      new_segment[to] = s + splits[s];
-    } else if (after.y != before.y) {
-      const int to = before.y + sides[first[s + 1]].x;
-      new_ids[to] = ids[i];
-      new_segment[to] = s + splits[s] + 1;
+      new_segment[to] = s + splits[s] + right;
+      new_places[to] = places[i];
     }
   }
 }
 
 // sizes: the new number of points and of segments.
 kernel void advance_segments(int n, int points_count, global const int* restrict ids,
-                             global const int* restrict deepest, global const int* restrict first,
+                             global const double2* restrict places, global const int* restrict deepest, global const int* restrict first,
                              global const uint2* restrict sides, global const uint* restrict splits,
                              global const int* restrict chord_a, global const int* restrict chord_b,
-                             global const int* restrict chord_region, global int* restrict new_a,
-                             global int* restrict new_b, global int* restrict new_region,
+                             global const double4* restrict chord_places, global const int* restrict chord_region,
+                             global int* restrict new_a, global int* restrict new_b,
+                             global double4* restrict new_places, global int* restrict new_region,
                              global int* restrict new_first, global uint* restrict sizes) {
   const int s = get_global_id(0);
   if (s < n) {
@@ -147,6 +143,9 @@ kernel void advance_segments(int n, int points_count, global const int* restrict
     new_first[to] = begin.x + begin.y;
     if (deepest[s] >= 0) {
       const int middle = ids[deepest[s]];
+      const double2 place = places[deepest[s]];
+      new_places[to] = (double4)(chord_places[s].lo, place);
+      new_places[to + 1] = (double4)(place, chord_places[s].hi);
       new_b[to] = middle;
       new_a[to + 1] = middle;
       new_b[to + 1] = chord_b[s];
@@ -154,6 +153,7 @@ kernel void advance_segments(int n, int points_count, global const int* restrict
       new_first[to + 1] = sides[first[s + 1]].x + begin.y;
     } else {
       new_b[to] = chord_b[s];
+      new_places[to] = chord_places[s];
     }
     if (s == n - 1) {
       const uint2 total = sides[points_count];
@@ -167,22 +167,20 @@ kernel void advance_segments(int n, int points_count, global const int* restrict
 // Every region has at least one segment, so its path begins after as many vertices as there are segments and
 // regions before. Regions of no points have ends -1.
 kernel void write_path(int n, global const int* restrict chord_a, global const int* restrict chord_b,
-                       global const int* restrict chord_region, global const int* restrict axis,
-                       global const double2* restrict points, global int* restrict path,
-                       global double* restrict path_u, global int* restrict path_region,
-                       global int* restrict path_offsets) {
+                       global const double4* restrict chord_places, global const int* restrict chord_region,
+                       global int* restrict path, global double2* restrict path_places,
+                       global int* restrict path_region, global int* restrict path_offsets) {
   const int s = get_global_id(0);
   if (s < n) {
     const int r = chord_region[s];
     const int to = s + r;
-    const int a = axis[r];
     path[to] = chord_a[s];
-    path_u[to] = chord_a[s] >= 0 ? to_frame(points[chord_a[s]], a).y : 0.0;
+    path_places[to] = chord_places[s].lo;
     path_region[to] = r;
     if (s == 0 || chord_region[s - 1] != r) path_offsets[r] = to;
     if (s == n - 1 || chord_region[s + 1] != r) {
       path[to + 1] = chord_b[s];
-      path_u[to + 1] = chord_b[s] >= 0 ? to_frame(points[chord_b[s]], a).y : 0.0;
+      path_places[to + 1] = chord_places[s].hi;
       path_region[to + 1] = r;
       if (s == n - 1) path_offsets[r + 1] = to + 2;
     }
@@ -190,18 +188,17 @@ kernel void write_path(int n, global const int* restrict chord_a, global const i
 }
 
 // flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours.
-kernel void path_flags(int n, double bound, global const int* restrict path, global const int* restrict path_region,
-                       global const int* restrict path_offsets, global const int* restrict axis,
-                       global const double* restrict cut, global const double2* restrict points,
+kernel void path_flags(int n, double bound, global const double2* restrict path_places,
+                       global const int* restrict path_region, global const int* restrict path_offsets,
+                       global const int* restrict axis, global const double* restrict cut,
                        global uchar* restrict flags) {
   const int k = get_global_id(0);
   if (k < n) {
     const int r = path_region[k];
     uchar flag = 1;
     if (k > path_offsets[r] && k < path_offsets[r + 1] - 1) {
-      const int a = axis[r];
-      const double2 d = hull_depth(to_frame(points[path[k - 1]], a), to_frame(points[path[k + 1]], a),
-                                   to_frame(points[path[k]], a), cut[r], is_planar(a));
+      const double2 d =
+          hull_depth(path_places[k - 1], path_places[k + 1], path_places[k], cut[r], is_planar(axis[r]));
       const double error = bound * d.y;
       flag = d.x > error ? 1 : d.x < -error || bound == 0.0 ? 0 : 2;
     }
@@ -210,15 +207,15 @@ kernel void path_flags(int n, double bound, global const int* restrict path, glo
 }
 
 kernel void compact_path(int n, int old_n, global const int* restrict kept, global const int* restrict path,
-                         global const double* restrict path_u, global const int* restrict path_region,
-                         global int* restrict new_path, global double* restrict new_u,
+                         global const double2* restrict path_places, global const int* restrict path_region,
+                         global int* restrict new_path, global double2* restrict new_places,
                          global int* restrict new_region, global int* restrict new_offsets) {
   const int k = get_global_id(0);
   if (k < n) {
     const int from = kept[k];
     const int r = path_region[from];
     new_path[k] = path[from];
-    new_u[k] = path_u[from];
+    new_places[k] = path_places[from];
     new_region[k] = r;
     // A path's ends are always kept.
     if (from == 0 || path_region[from - 1] != r) new_offsets[r] = k;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <set>
 #include <string>
@@ -28,11 +29,24 @@ using ::testing::AssertionFailure;
 using ::testing::AssertionResult;
 using ::testing::AssertionSuccess;
 
-/// One per process: building its programs takes longer than most tests.
-Triangulator& triangulator() {
-  static Triangulator instance;
-  return instance;
-}
+/// One per process: building its programs takes longer than most tests. It ends with the tests and not among
+/// the process's statics, since some OpenCL implementations (oclgrind) have destroyed theirs by then.
+class SharedTriangulator : public ::testing::Environment {
+ public:
+  static Triangulator& get() {
+    if (!instance_) instance_ = std::make_unique<Triangulator>();
+    return *instance_;
+  }
+  void TearDown() override { instance_.reset(); }
+
+ private:
+  static std::unique_ptr<Triangulator> instance_;
+};
+std::unique_ptr<Triangulator> SharedTriangulator::instance_;
+[[maybe_unused]] const ::testing::Environment* const kShared =
+    ::testing::AddGlobalTestEnvironment(new SharedTriangulator);
+
+Triangulator& triangulator() { return SharedTriangulator::get(); }
 
 Triangulation triangulate(const Coordinates& points, const Options& options = {}) {
   return triangulator().triangulate(points.data(), points.size() / 2, options);

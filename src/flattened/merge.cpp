@@ -40,12 +40,12 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
   runtime.map("merge", "corner_codes", level.corners, static_cast<cl_int>(level.points), work.bounds.orient, paths.flags,
-              level.corner_ids, level.corner_regions, level.axis, level.cut, table.points, paths.offsets, paths.vertices, paths.u, places, codes);
+              level.corner_ids, level.corner_regions, level.axis, level.cut, table.points, paths.offsets, paths.vertices, paths.places, places, codes);
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, codes, level.corners);
     run_list(work, "merge", "corner_codes_exact", list, level.corner_ids, level.corner_regions, level.axis,
-             table.points, paths.offsets, paths.vertices, places, codes);
+             table.points, paths.offsets, paths.vertices, paths.places, places, codes);
   }
   const auto corner_sides = scratch.allocate<cl_uint2>(level.corners + 1);
   runtime.map("merge", "corner_counts", level.corners, codes, corner_sides);

@@ -8,7 +8,7 @@ constexpr std::size_t kBucket = 8;  // BUCKET in prune.cl
 constexpr std::size_t kManyCandidates = 256;
 
 // Brings flagged internal points and corners together by region. elements: level.points, or with the corners.
-HullPoints gather(Workspace& work, const Level& level, const Buffer<cl_uchar>& flags, std::size_t elements) {
+HullPoints gather(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags, std::size_t elements) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   const auto points_count = static_cast<cl_int>(level.points);
@@ -18,18 +18,21 @@ HullPoints gather(Workspace& work, const Level& level, const Buffer<cl_uchar>& f
   points.size = kept;
   points.ids = scratch.allocate<cl_int>(kept);
   points.segments = scratch.allocate<cl_int>(kept);
+  points.places = scratch.allocate<cl_double2>(kept);
   points.chord_a = scratch.allocate<cl_int>(level.regions);
   points.chord_b = scratch.allocate<cl_int>(level.regions);
   points.chord_region = scratch.allocate<cl_int>(level.regions);
+  points.chord_places = scratch.allocate<cl_double4>(level.regions);
   points.first = scratch.allocate<cl_int>(level.regions + 1);
   const auto before = scratch.allocate<cl_int2>(level.regions + 1);
   const std::size_t group = runtime.tuning().map_group;
   runtime.launch("prune", "begin_segments", level.regions + 1, group, regions, points_count, static_cast<cl_int>(kept),
-                 positions, level.point_offsets, level.corner_offsets, level.first_end, level.last_end, points.chord_a,
-                 points.chord_b, points.chord_region, points.first, before);
+                 positions, level.point_offsets, level.corner_offsets, level.first_end, level.last_end, level.axis,
+                 table.points, points.chord_a, points.chord_b, points.chord_places, points.chord_region, points.first,
+                 before);
   runtime.map("prune", "gather_points", kept, points_count, regions, positions, before, level.point_regions,
-              level.x_list, level.y_list, level.corner_regions, level.corner_ids, level.axis, points.ids,
-              points.segments);
+              level.x_list, level.y_list, level.corner_regions, level.corner_ids, level.axis, table.points, points.ids,
+              points.segments, points.places);
   return points;
 }
 
@@ -46,10 +49,10 @@ Pruned prune(Workspace& work, const PointTable& table, const Level& level, const
   const auto chord = scratch.allocate<cl_int>(pruned.elements);
   runtime.map("prune", "prune_points", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
               cl_int{keep_on}, work.bounds.hull, level.point_regions, level.x_list, level.y_list, level.axis, level.cut,
-              table.points, paths.offsets, paths.vertices, paths.u, ids, chord, pruned.flags);
+              table.points, paths.offsets, paths.vertices, paths.places, ids, chord, pruned.flags);
   runtime.map("prune", "prune_corners", level.corners, static_cast<cl_int>(level.points), work.bounds.hull,
               level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, paths.offsets,
-              paths.vertices, paths.u, ids, chord, pruned.flags);
+              paths.vertices, paths.places, ids, chord, pruned.flags);
   const auto list = pack_undecided(work, pruned.flags, pruned.elements);
   run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, cl_int{1}, ids, chord,
            paths.vertices, paths.vertices, paths.regions, level.axis, level.cut, table.points, pruned.flags);
@@ -65,7 +68,7 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
   const auto flags = work.scratch().allocate<cl_uchar>(level.points);
   runtime.map("prune", "candidate_flags", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
               level.point_regions, level.x_list, level.y_list, level.axis, level.cut, table.points, flags);
-  HullPoints candidates = gather(work, level, flags, level.points);
+  HullPoints candidates = gather(work, table, level, flags, level.points);
   statistics.candidates += candidates.size;
   if (candidates.size > kManyCandidates * level.regions) {
     Level thin = level;
@@ -75,7 +78,7 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
     thin.point_regions = candidates.segments;
     thin.point_offsets = candidates.first;
     const Paths chords = chord_paths(work, table, thin, statistics);
-    candidates = gather(work, thin, prune(work, table, thin, chords, false).flags, thin.points);
+    candidates = gather(work, table, thin, prune(work, table, thin, chords, false).flags, thin.points);
   }
   int rounds = 0;
   const Paths paths = quickhull(work, table, level, candidates, rounds);
@@ -88,7 +91,7 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
   const Paths chords = chord_paths(work, table, level, statistics);
   const Pruned pruned = prune(work, table, level, chords, false);
-  const HullPoints survivors = gather(work, level, pruned.flags, pruned.elements);
+  const HullPoints survivors = gather(work, table, level, pruned.flags, pruned.elements);
   statistics.survivors = survivors.size;
   Paths paths = strict(work, table, level, quickhull(work, table, level, survivors, statistics.hull_rounds));
   paths.flags = pruned.flags;

@@ -17,7 +17,7 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   const std::size_t most_segments = level.regions + start.size;
   Paths paths;
   paths.vertices = scratch.allocate<cl_int>(most_segments + level.regions);
-  paths.u = scratch.allocate<cl_double>(most_segments + level.regions);
+  paths.places = scratch.allocate<cl_double2>(most_segments + level.regions);
   paths.regions = scratch.allocate<cl_int>(most_segments + level.regions);
   paths.offsets = scratch.allocate<cl_int>(level.regions + 1);
 
@@ -26,16 +26,19 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   HullPoints next;
   next.ids = scratch.allocate<cl_int>(start.size);
   next.segments = scratch.allocate<cl_int>(start.size);
+  next.places = scratch.allocate<cl_double2>(start.size);
   const auto allocate_segments = [&](HullPoints& points) {
     points.chord_a = scratch.allocate<cl_int>(most_segments);
     points.chord_b = scratch.allocate<cl_int>(most_segments);
     points.chord_region = scratch.allocate<cl_int>(most_segments);
+    points.chord_places = scratch.allocate<cl_double4>(most_segments);
     points.first = scratch.allocate<cl_int>(most_segments + 1);
   };
   allocate_segments(next);
   HullPoints spare;
   spare.ids = start.ids;
   spare.segments = start.segments;
+  spare.places = start.places;
   allocate_segments(spare);
   const auto depth = scratch.allocate<cl_double>(start.size);
   const auto flags = scratch.allocate<cl_uchar>(start.size);
@@ -48,25 +51,24 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   std::size_t segments = level.regions;
   for (rounds = 0; points > 0; ++rounds) {
     Arena::Scope round_scope(scratch);
-    runtime.map("quickhull", "hull_depths", points, work.bounds.hull, now.ids, now.segments, now.chord_a, now.chord_b,
-                now.chord_region, level.axis, level.cut, table.points, depth, flags);
+    runtime.map("quickhull", "hull_depths", points, work.bounds.hull, now.segments, now.places, now.chord_places,
+                now.chord_region, level.axis, level.cut, depth, flags);
     const auto list = pack_undecided(work, flags, points);
     run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{0}, cl_int{0}, now.ids, now.segments,
              now.chord_a, now.chord_b, now.chord_region, level.axis, level.cut, table.points, flags);
     runtime.fill(deepest, segments, cl_int{-1});
     host::segmented_arg_reduce(runtime, "quickhull", "deepest_points", now.segments, points, deepest,
-                               cl_int{rounds >= kRoundsBeforeBalance}, flags, now.ids, depth, now.chord_region,
-                               level.axis, level.cut, table.points);
+                               cl_int{rounds >= kRoundsBeforeBalance}, flags, now.ids, depth, now.places,
+                               now.chord_region, level.axis, level.cut);
     runtime.map("quickhull", "split_flags", segments, deepest, splits);
     host::exclusive_scan(runtime, splits, segments, splits);
-    runtime.map("quickhull", "side_flags", points, now.ids, now.segments, flags, deepest, now.chord_region, level.axis,
-                table.points, sides);
+    runtime.map("quickhull", "side_flags", points, now.segments, now.places, flags, deepest, sides);
     host::exclusive_scan(runtime, sides, points, sides);
-    runtime.map("quickhull", "advance_points", points, now.ids, now.segments, now.first, sides, splits, next.ids,
-                next.segments);
-    runtime.map("quickhull", "advance_segments", segments, static_cast<cl_int>(points), now.ids, deepest, now.first,
-                sides, splits, now.chord_a, now.chord_b, now.chord_region, next.chord_a, next.chord_b,
-                next.chord_region, next.first, sizes);
+    runtime.map("quickhull", "advance_points", points, now.ids, now.segments, now.places, now.first, sides, splits,
+                next.ids, next.segments, next.places);
+    runtime.map("quickhull", "advance_segments", segments, static_cast<cl_int>(points), now.ids, now.places, deepest,
+                now.first, sides, splits, now.chord_a, now.chord_b, now.chord_places, now.chord_region, next.chord_a,
+                next.chord_b, next.chord_places, next.chord_region, next.first, sizes);
     cl_uint new_sizes[2];
     runtime.read(sizes, 0, 2, new_sizes);
     points = new_sizes[0];
@@ -78,8 +80,8 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
     std::swap(now, next);
   }
 
-  runtime.map("quickhull", "write_path", segments, now.chord_a, now.chord_b, now.chord_region, level.axis, table.points,
-              paths.vertices, paths.u, paths.regions, paths.offsets);
+  runtime.map("quickhull", "write_path", segments, now.chord_a, now.chord_b, now.chord_places, now.chord_region,
+              paths.vertices, paths.places, paths.regions, paths.offsets);
   paths.size = segments + level.regions;
   return paths;
 }
@@ -89,8 +91,8 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
   Arena& scratch = work.scratch();
   while (true) {
     const auto flags = scratch.allocate<cl_uchar>(paths.size);
-    runtime.map("quickhull", "path_flags", paths.size, work.bounds.hull, paths.vertices, paths.regions, paths.offsets,
-                level.axis, level.cut, table.points, flags);
+    runtime.map("quickhull", "path_flags", paths.size, work.bounds.hull, paths.places, paths.regions, paths.offsets,
+                level.axis, level.cut, flags);
     {
       Arena::Scope scope(scratch);
       const auto list = pack_undecided(work, flags, paths.size);
@@ -103,11 +105,11 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
     Paths shorter;
     shorter.size = kept_count;
     shorter.vertices = scratch.allocate<cl_int>(kept_count);
-    shorter.u = scratch.allocate<cl_double>(kept_count);
+    shorter.places = scratch.allocate<cl_double2>(kept_count);
     shorter.regions = scratch.allocate<cl_int>(kept_count);
     shorter.offsets = scratch.allocate<cl_int>(level.regions + 1);
     runtime.map("quickhull", "compact_path", kept_count, static_cast<cl_int>(paths.size), kept, paths.vertices,
-                paths.u, paths.regions, shorter.vertices, shorter.u, shorter.regions, shorter.offsets);
+                paths.places, paths.regions, shorter.vertices, shorter.places, shorter.regions, shorter.offsets);
     paths = shorter;
   }
 }

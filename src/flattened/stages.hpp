@@ -82,7 +82,7 @@ struct RetiredRegions {
 struct Paths {
   std::size_t size = 0;
   Buffer<cl_int> vertices{};
-  Buffer<cl_double> u{};
+  Buffer<cl_double2> places{};  ///< in their regions' frames: (s, u)
   Buffer<cl_int> regions{};
   Buffer<cl_int> offsets{};  ///< regions + 1
   /// Prune's flags of internal points and corners: 0 is not on the path.
@@ -122,7 +122,9 @@ Pruned prune(Workspace& work, const PointTable& table, const Level& level, const
 struct HullPoints {
   std::size_t size = 0;
   Buffer<cl_int> ids{}, segments{};
+  Buffer<cl_double2> places{};  ///< in their regions' frames: (s, u)
   Buffer<cl_int> chord_a{}, chord_b{}, chord_region{}, first{};
+  Buffer<cl_double4> chord_places{};
 };
 Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& points,
                 int& rounds);
