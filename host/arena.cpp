@@ -3,13 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "host/error.hpp"
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
 namespace flaunay::host {
 namespace {
 
 constexpr std::size_t kSmallestBlock = std::size_t{1} << 20;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
 std::shared_ptr<_cl_mem> own(cl_mem memory) {
   return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
@@ -19,6 +25,7 @@ std::shared_ptr<_cl_mem> own(cl_mem memory) {
 
 Arena::Arena(boost::compute::context context, const boost::compute::device& device)
     : context_(std::move(context)),
+      in_host_memory_(device.type() & CL_DEVICE_TYPE_CPU),
       // At least a cache line, so that kernels' vector loads never straddle a neighbour's.
       alignment_(std::max<std::size_t>(128, device.get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8)),
       largest_(device.max_memory_alloc_size()),
@@ -40,6 +47,25 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
                       CL_INVALID_BUFFER_SIZE);
   }
   cl_int code = CL_SUCCESS;
+#ifdef __linux__
+  // Kernels jump about in these blocks: with pages of 4 KiB the translation of addresses would cost more than the loads.
+  if (in_host_memory_ && bytes >= kHugePage) {
+    const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+    if (void* pages = std::aligned_alloc(kHugePage, rounded)) {
+      madvise(pages, rounded, MADV_HUGEPAGE);
+      cl_mem memory =
+          clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
+      if (code == CL_SUCCESS) {
+        ++block_allocations_;
+        return std::shared_ptr<_cl_mem>(memory, [pages](cl_mem m) {
+          clReleaseMemObject(m);
+          std::free(pages);
+        });
+      }
+      std::free(pages);
+    }
+  }
+#endif
   cl_mem memory = clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code);
   check_call(code, "clCreateBuffer");
   ++block_allocations_;

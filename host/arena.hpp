@@ -27,7 +27,7 @@ class Buffer {
 
 /// A stack: what was allocated last is released first, by scopes. Work already enqueued on an in-order queue
 /// may go on using released memory, since whatever reuses it is enqueued later. If the blocks do not suffice,
-/// a further block is allocated, and kept.
+/// a further block is allocated, and kept. A CPU's blocks are in huge pages where the system gives them.
 class Arena {
  public:
   Arena(boost::compute::context context, const boost::compute::device& device);
@@ -77,6 +77,7 @@ class Arena {
   void release(std::size_t block, std::size_t used);
 
   boost::compute::context context_;
+  bool in_host_memory_;
   std::size_t alignment_;
   std::size_t largest_;
   std::vector<Block> blocks_;

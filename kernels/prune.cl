@@ -174,16 +174,15 @@ static inline int positions_below(int i, int kept, global const int* restrict po
   return low;
 }
 
-// The first segments of quickhull: one a region, from end to end, with the kept points, whose positions among all
-// elements are given. before[r]: kept internal points and kept corners of the regions before r; internal points come
-// first in each region.
-kernel void begin_segments(int n, int points_count, int kept, global const int* restrict positions,
-                           global const int* restrict point_offsets, global const int* restrict corner_offsets,
-                           global const int* restrict first_end, global const int* restrict last_end,
-                           global const int* restrict axis, global const double2* restrict points,
-                           global int* restrict chord_a, global int* restrict chord_b,
-                           global double4* restrict chord_places, global int* restrict chord_region,
-                           global int* restrict first, global int2* restrict before) {
+// The first paths of quickhull: each region's two ends, the kept points being below the chord between them. Their
+// positions among all elements are given. before[r]: kept internal points and kept corners of the regions before r;
+// internal points come first in each region. first: where the points below each path vertex's chord begin.
+kernel void begin_paths(int n, int points_count, int kept, global const int* restrict positions,
+                        global const int* restrict point_offsets, global const int* restrict corner_offsets,
+                        global const int* restrict first_end, global const int* restrict last_end,
+                        global const int* restrict axis, global const double2* restrict points,
+                        global int* restrict path, global double2* restrict path_places,
+                        global int* restrict path_region, global int* restrict first, global int2* restrict before) {
   const int r = get_global_id(0);
   if (r <= n) {
     const int point_count = positions_below(point_offsets[r], kept, positions);
@@ -192,15 +191,17 @@ kernel void begin_segments(int n, int points_count, int kept, global const int* 
     const int corner_count =
         all_points == kept ? 0 : positions_below(points_count + corner_offsets[r], kept, positions) - all_points;
     before[r] = (int2)(point_count, corner_count);
-    first[r] = point_count + corner_count;
+    first[2 * r] = point_count + corner_count;
+    if (r > 0) first[2 * r - 1] = point_count + corner_count;
     if (r < n) {
       const int a = first_end[r];
       const int b = last_end[r];
-      chord_a[r] = a;
-      chord_b[r] = b;
+      path[2 * r] = a;
+      path[2 * r + 1] = b;
       // Sets without points have no ends.
-      chord_places[r] = a < 0 ? (double4)(0.0) : (double4)(to_frame(points[a], axis[r]), to_frame(points[b], axis[r]));
-      chord_region[r] = r;
+      path_places[2 * r] = a < 0 ? (double2)(0.0) : to_frame(points[a], axis[r]);
+      path_places[2 * r + 1] = b < 0 ? (double2)(0.0) : to_frame(points[b], axis[r]);
+      path_region[2 * r] = path_region[2 * r + 1] = r;
     }
   }
 }
@@ -226,7 +227,18 @@ kernel void gather_points(int n, int points_count, int regions_count, global con
       to = k - before[regions_count].x + before[r + 1].x;
     }
     ids[to] = id;
-    segment[to] = r;
+    segment[to] = 2 * r;
     places[to] = to_frame(points[id], axis[r]);
   }
+}
+
+// The candidates as a level's lists of their own: their regions, and where each region's begin.
+kernel void thin_regions(int n, global const int* restrict segment, global int* restrict regions) {
+  const int i = get_global_id(0);
+  if (i < n) regions[i] = segment[i] / 2;
+}
+
+kernel void thin_offsets(int n, global const int* restrict first, global int* restrict offsets) {
+  const int r = get_global_id(0);
+  if (r <= n) offsets[r] = first[2 * r];
 }

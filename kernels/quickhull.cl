@@ -1,51 +1,49 @@
 // Segmented quickhull: the strict lower hull of every region's points at once, as a path in the order of u.
 //
-// Points lie in segments, segment s being what is left below the chord (chord_a[s], chord_b[s]); segments are in the
-// order of (region, u). A round: hull_depths holds each point against its chord; hull_depth_exact decides what
-// floating point could not (a packed list); deepest_points takes each segment's deepest point (passes of a
-// segmented arg-reduce); segments with such a point split there, and the points go to either half, stably: split_flags
-// and side_flags make counts for scans (scan.cl), advance_segments and advance_points move. When no points are left,
-// write_path lists the ends. The deepest point is chosen by rounded depths and may be no vertex of the hull: path_flags
-// (and hull_depth_exact) find vertices on or above the segment of their neighbours, compact_path drops them,
-// until there are none.
+// Paths grow from each region's two ends. Points lie in segments, segment v being what is left below the chord from path
+// vertex v to the next one; path vertices are in the order of (region, u), and the last of a region has no points. A
+// round: hull_depths holds each point against its chord; hull_depth_exact decides what floating point could not (a packed
+// list); deepest_points takes each segment's deepest point (passes of a segmented arg-reduce), which becomes a vertex; the
+// segment's points go to either side of it, stably: split_flags and side_flags make counts for scans (scan.cl),
+// advance_paths and advance_points move. The deepest point is chosen by rounded depths and may be no vertex of the
+// hull: when no points are left, path_flags (and hull_depth_exact) find vertices on or above the segment of their
+// neighbours, compact_path drops them, until there are none.
 
 #include "shared/hull_height.h"
 #include "shared/segmented_arg_reduce.h"
 
-// places[i]: point i in its region's frame; chord_places[s]: both ends of chord s. flags: 1 strictly below the
-// chord, 0 not, 2 undecided.
+// places[i]: point i in its region's frame, as path_places. flags: 1 strictly below the chord, 0 not, 2 undecided.
 kernel void hull_depths(int n, double bound, global const int* restrict segment,
-                        global const double2* restrict places, global const double4* restrict chord_places,
-                        global const int* restrict chord_region, global const int* restrict axis,
+                        global const double2* restrict places, global const double2* restrict path_places,
+                        global const int* restrict path_region, global const int* restrict axis,
                         global const double* restrict cut, global double* restrict depth,
                         global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) {
-    const int s = segment[i];
-    const int r = chord_region[s];
-    const double4 chord = chord_places[s];
-    const double2 d = hull_depth(chord.lo, chord.hi, places[i], cut[r], is_planar(axis[r]));
+    const int v = segment[i];
+    const int r = path_region[v];
+    const double2 d = hull_depth(path_places[v], path_places[v + 1], places[i], cut[r], is_planar(axis[r]));
     const double error = bound * d.y;
     depth[i] = d.x;
     flags[i] = d.x > error ? 1 : d.x < -error || bound == 0.0 ? 0 : 2;
   }
 }
 
-// Decides the listed elements: point ids[i] against (chord_a[c], chord_b[c + b_offset]), c = chord[i] (or i - 1 for a
-// path's own vertices). Work-items share the list, whose length only the device knows.
+// Decides the listed elements: point ids[i] against the chord from path vertex chord[i] to the next one; with own_path,
+// path vertex i against the chord of its neighbours. Work-items share the list, whose length only the device knows.
 kernel void hull_depth_exact(global const uint* restrict count, global const int* restrict list, int keep_on,
-                             int own_path, int b_offset, global const int* restrict ids,
-                             global const int* restrict chord, global const int* restrict chord_a,
-                             global const int* restrict chord_b, global const int* restrict chord_region,
+                             int own_path, global const int* restrict ids, global const int* restrict chord,
+                             global const int* restrict path, global const int* restrict path_region,
                              global const int* restrict axis, global const double* restrict cut,
                              global const double2* restrict points, global uchar* restrict flags) {
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int i = list[k];
-    const int c = own_path ? i - 1 : chord[i];
-    const int r = chord_region[c];
+    const int from = own_path ? i - 1 : chord[i];
+    const int to = own_path ? i + 1 : from + 1;
+    const int r = path_region[from];
     const int a = axis[r];
-    const int sign = hull_depth_sign(to_frame(points[chord_a[c]], a), to_frame(points[chord_b[c + b_offset]], a),
+    const int sign = hull_depth_sign(to_frame(points[path[from]], a), to_frame(points[path[to]], a),
                                      to_frame(points[ids[i]], a), cut[r], is_planar(a));
     flags[i] = sign > 0 || (keep_on && sign == 0);
   }
@@ -64,10 +62,10 @@ static inline ulong scramble(double u) {
 // random split, for input on which the deepest points are always next to the ends.
 static inline int is_deeper(int s, int i, int j, int balanced, global const int* restrict ids,
                             global const double* restrict depth, global const double2* restrict places,
-                            global const int* restrict chord_region, global const int* restrict axis,
+                            global const int* restrict path_region, global const int* restrict axis,
                             global const double* restrict cut) {
   if (!balanced && depth[i] != depth[j]) return depth[i] > depth[j];
-  const int r = chord_region[s];
+  const int r = path_region[s];
   const double2 p = places[i];
   const double2 v = places[j];
   if (p.y != v.y) {
@@ -78,10 +76,10 @@ static inline int is_deeper(int s, int i, int j, int balanced, global const int*
   return ids[i] == ids[j] ? i < j : is_lower(p, v, cut[r], is_planar(axis[r]));
 }
 #define KEPT(i) flags[i] == 1 ? i : -1
-#define DEEPER(s, i, j) is_deeper(s, i, j, balanced, ids, depth, places, chord_region, axis, cut)
+#define DEEPER(s, i, j) is_deeper(s, i, j, balanced, ids, depth, places, path_region, axis, cut)
 SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, int balanced, global const uchar* restrict flags,
                      global const int* restrict ids, global const double* restrict depth,
-                     global const double2* restrict places, global const int* restrict chord_region,
+                     global const double2* restrict places, global const int* restrict path_region,
                      global const int* restrict axis, global const double* restrict cut)
 
 kernel void split_flags(int n, global const int* restrict deepest, global uint* restrict splits) {
@@ -125,37 +123,31 @@ kernel void advance_points(int n, global const int* restrict ids, global const i
   }
 }
 
-// sizes: the new number of points and of segments.
-kernel void advance_segments(int n, int points_count, global const int* restrict ids,
-                             global const double2* restrict places, global const int* restrict deepest, global const int* restrict first,
-                             global const uint2* restrict sides, global const uint* restrict splits,
-                             global const int* restrict chord_a, global const int* restrict chord_b,
-                             global const double4* restrict chord_places, global const int* restrict chord_region,
-                             global int* restrict new_a, global int* restrict new_b,
-                             global double4* restrict new_places, global int* restrict new_region,
-                             global int* restrict new_first, global uint* restrict sizes) {
-  const int s = get_global_id(0);
-  if (s < n) {
-    const int to = s + splits[s];
-    const uint2 begin = sides[first[s]];
-    new_a[to] = chord_a[s];
-    new_region[to] = chord_region[s];
+// sizes: the new number of points and of path vertices.
+kernel void advance_paths(int n, int points_count, global const int* restrict ids,
+                          global const double2* restrict places, global const int* restrict deepest,
+                          global const int* restrict first, global const uint2* restrict sides,
+                          global const uint* restrict splits, global const int* restrict path,
+                          global const double2* restrict path_places, global const int* restrict path_region,
+                          global int* restrict new_path, global double2* restrict new_places,
+                          global int* restrict new_region, global int* restrict new_first,
+                          global uint* restrict sizes) {
+  const int v = get_global_id(0);
+  if (v < n) {
+    const int to = v + splits[v];
+    const uint2 begin = sides[first[v]];
+    new_path[to] = path[v];
+    new_places[to] = path_places[v];
+    new_region[to] = path_region[v];
     new_first[to] = begin.x + begin.y;
-    if (deepest[s] >= 0) {
-      const int middle = ids[deepest[s]];
-      const double2 place = places[deepest[s]];
-      new_places[to] = (double4)(chord_places[s].lo, place);
-      new_places[to + 1] = (double4)(place, chord_places[s].hi);
-      new_b[to] = middle;
-      new_a[to + 1] = middle;
-      new_b[to + 1] = chord_b[s];
-      new_region[to + 1] = chord_region[s];
-      new_first[to + 1] = sides[first[s + 1]].x + begin.y;
-    } else {
-      new_b[to] = chord_b[s];
-      new_places[to] = chord_places[s];
+    const int i = deepest[v];
+    if (i >= 0) {
+      new_path[to + 1] = ids[i];
+      new_places[to + 1] = places[i];
+      new_region[to + 1] = path_region[v];
+      new_first[to + 1] = sides[first[v + 1]].x + begin.y;
     }
-    if (s == n - 1) {
+    if (v == n - 1) {
       const uint2 total = sides[points_count];
       sizes[0] = total.x + total.y;
       sizes[1] = n + splits[n];
@@ -164,26 +156,13 @@ kernel void advance_segments(int n, int points_count, global const int* restrict
   }
 }
 
-// Every region has at least one segment, so its path begins after as many vertices as there are segments and
-// regions before. Regions of no points have ends -1.
-kernel void write_path(int n, global const int* restrict chord_a, global const int* restrict chord_b,
-                       global const double4* restrict chord_places, global const int* restrict chord_region,
-                       global int* restrict path, global double2* restrict path_places,
-                       global int* restrict path_region, global int* restrict path_offsets) {
-  const int s = get_global_id(0);
-  if (s < n) {
-    const int r = chord_region[s];
-    const int to = s + r;
-    path[to] = chord_a[s];
-    path_places[to] = chord_places[s].lo;
-    path_region[to] = r;
-    if (s == 0 || chord_region[s - 1] != r) path_offsets[r] = to;
-    if (s == n - 1 || chord_region[s + 1] != r) {
-      path[to + 1] = chord_b[s];
-      path_places[to + 1] = chord_places[s].hi;
-      path_region[to + 1] = r;
-      if (s == n - 1) path_offsets[r + 1] = to + 2;
-    }
+// Where each region's path begins, closed by the number of all vertices.
+kernel void find_path_offsets(int n, global const int* restrict path_region, global int* restrict path_offsets) {
+  const int v = get_global_id(0);
+  if (v < n) {
+    const int r = path_region[v];
+    if (v == 0 || path_region[v - 1] != r) path_offsets[r] = v;
+    if (v == n - 1) path_offsets[r + 1] = n;
   }
 }
 
@@ -206,19 +185,15 @@ kernel void path_flags(int n, double bound, global const double2* restrict path_
   }
 }
 
-kernel void compact_path(int n, int old_n, global const int* restrict kept, global const int* restrict path,
+kernel void compact_path(int n, global const int* restrict kept, global const int* restrict path,
                          global const double2* restrict path_places, global const int* restrict path_region,
                          global int* restrict new_path, global double2* restrict new_places,
-                         global int* restrict new_region, global int* restrict new_offsets) {
+                         global int* restrict new_region) {
   const int k = get_global_id(0);
   if (k < n) {
     const int from = kept[k];
-    const int r = path_region[from];
     new_path[k] = path[from];
     new_places[k] = path_places[from];
-    new_region[k] = r;
-    // A path's ends are always kept.
-    if (from == 0 || path_region[from - 1] != r) new_offsets[r] = k;
-    if (from == old_n - 1) new_offsets[r + 1] = n;
+    new_region[k] = path_region[from];
   }
 }

@@ -19,17 +19,16 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
   points.ids = scratch.allocate<cl_int>(kept);
   points.segments = scratch.allocate<cl_int>(kept);
   points.places = scratch.allocate<cl_double2>(kept);
-  points.chord_a = scratch.allocate<cl_int>(level.regions);
-  points.chord_b = scratch.allocate<cl_int>(level.regions);
-  points.chord_region = scratch.allocate<cl_int>(level.regions);
-  points.chord_places = scratch.allocate<cl_double4>(level.regions);
-  points.first = scratch.allocate<cl_int>(level.regions + 1);
+  points.ends.size = 2 * level.regions;
+  points.ends.vertices = scratch.allocate<cl_int>(points.ends.size);
+  points.ends.places = scratch.allocate<cl_double2>(points.ends.size);
+  points.ends.regions = scratch.allocate<cl_int>(points.ends.size);
+  points.first = scratch.allocate<cl_int>(points.ends.size + 1);
   const auto before = scratch.allocate<cl_int2>(level.regions + 1);
   const std::size_t group = runtime.tuning().map_group;
-  runtime.launch("prune", "begin_segments", level.regions + 1, group, regions, points_count, static_cast<cl_int>(kept),
+  runtime.launch("prune", "begin_paths", level.regions + 1, group, regions, points_count, static_cast<cl_int>(kept),
                  positions, level.point_offsets, level.corner_offsets, level.first_end, level.last_end, level.axis,
-                 table.points, points.chord_a, points.chord_b, points.chord_places, points.chord_region, points.first,
-                 before);
+                 table.points, points.ends.vertices, points.ends.places, points.ends.regions, points.first, before);
   runtime.map("prune", "gather_points", kept, points_count, regions, positions, before, level.point_regions,
               level.x_list, level.y_list, level.corner_regions, level.corner_ids, level.axis, table.points, points.ids,
               points.segments, points.places);
@@ -54,8 +53,8 @@ Pruned prune(Workspace& work, const PointTable& table, const Level& level, const
               level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, paths.offsets,
               paths.vertices, paths.places, ids, chord, pruned.flags);
   const auto list = pack_undecided(work, pruned.flags, pruned.elements);
-  run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, cl_int{1}, ids, chord,
-           paths.vertices, paths.vertices, paths.regions, level.axis, level.cut, table.points, pruned.flags);
+  run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, ids, chord, paths.vertices,
+           paths.regions, level.axis, level.cut, table.points, pruned.flags);
   return pruned;
 }
 
@@ -75,8 +74,12 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
     thin.points = candidates.size;
     thin.corners = 0;
     thin.x_list = thin.y_list = candidates.ids;
-    thin.point_regions = candidates.segments;
-    thin.point_offsets = candidates.first;
+    thin.point_regions = work.scratch().allocate<cl_int>(candidates.size);
+    thin.point_offsets = work.scratch().allocate<cl_int>(level.regions + 1);
+    runtime.map("prune", "thin_regions", candidates.size, candidates.segments, thin.point_regions);
+    const std::size_t group = runtime.tuning().map_group;
+    runtime.launch("prune", "thin_offsets", level.regions + 1, group, static_cast<cl_int>(level.regions), candidates.first,
+                   thin.point_offsets);
     const Paths chords = chord_paths(work, table, thin, statistics);
     candidates = gather(work, table, thin, prune(work, table, thin, chords, false).flags, thin.points);
   }

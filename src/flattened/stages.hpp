@@ -118,13 +118,14 @@ struct Pruned {
 };
 Pruned prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on);
 
-/// The points of quickhull: those flagged, with one segment per region.
+/// What quickhull starts from: each region's two ends as its path, and points grouped by segment, segment v being
+/// below the chord from path vertex v to the next.
 struct HullPoints {
   std::size_t size = 0;
   Buffer<cl_int> ids{}, segments{};
   Buffer<cl_double2> places{};  ///< in their regions' frames: (s, u)
-  Buffer<cl_int> chord_a{}, chord_b{}, chord_region{}, first{};
-  Buffer<cl_double4> chord_places{};
+  Paths ends{};                 ///< two vertices a region; no offsets
+  Buffer<cl_int> first{};       ///< where each segment's points begin, closed by their number
 };
 Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& points,
                 int& rounds);
