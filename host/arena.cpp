@@ -88,8 +88,8 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t bytes) {
     if (current_ + 1 == blocks_.size()) blocks_.emplace_back();
     Block& next = blocks_[current_ + 1];
     if (next.size < rounded) {
-      // A quarter of what is held now: few blocks, and not too much in vain.
-      std::size_t size = std::max({rounded, kSmallestBlock, held_bytes() / 4});
+      // An eighth of what is held now: few blocks, and not too much in vain.
+      std::size_t size = std::max({rounded, kSmallestBlock, held_bytes() / 8});
       size = std::max(rounded, std::min(size, largest_));
       next.memory.reset();
       next.memory = allocate_block(size);

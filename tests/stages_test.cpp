@@ -224,44 +224,66 @@ struct Met {
   MergeCounts merge;
 };
 
-/// Paths made by hand: ids in the order of u for each region.
-Paths upload_paths(Call& call, const ExactPoints& points, const std::vector<Frame>& frames,
-                   const std::vector<std::vector<int>>& paths) {
-  std::vector<cl_int> vertices, regions, offsets{0};
-  std::vector<cl_double> u;
-  for (std::size_t r = 0; r < paths.size(); ++r) {
-    for (const int id : paths[r]) {
-      vertices.push_back(id);
-      regions.push_back(static_cast<cl_int>(r));
-      u.push_back(frames[r].u(points[id]));
+cl_double2 framed(const Frame& frame, const cl_double2& p) { return {{frame.s(p), frame.u(p)}}; }
+
+/// Paths as they should be, or made by hand: ids in the order of u for each region.
+struct HostPaths {
+  HostPaths(const ExactPoints& points, const std::vector<Frame>& frames,
+            const std::vector<std::vector<int>>& paths) {
+    for (std::size_t r = 0; r < paths.size(); ++r) {
+      for (const int id : paths[r]) {
+        vertices.push_back(id);
+        regions.push_back(static_cast<cl_int>(r));
+        places.push_back(framed(frames[r], points[id]));
+      }
+      offsets.push_back(static_cast<cl_int>(vertices.size()));
     }
-    offsets.push_back(static_cast<cl_int>(vertices.size()));
   }
+  std::vector<cl_int> vertices, regions, offsets{0};
+  std::vector<cl_double2> places;
+};
+
+Paths upload_paths(Call& call, const HostPaths& paths) {
   Paths uploaded;
-  uploaded.size = vertices.size();
-  uploaded.vertices = testing::upload(call.runtime, vertices);
-  uploaded.u = testing::upload(call.runtime, u);
-  uploaded.regions = testing::upload(call.runtime, regions);
-  uploaded.offsets = testing::upload(call.runtime, offsets);
+  uploaded.size = paths.vertices.size();
+  uploaded.vertices = testing::upload(call.runtime, paths.vertices);
+  uploaded.places = testing::upload(call.runtime, paths.places);
+  uploaded.regions = testing::upload(call.runtime, paths.regions);
+  uploaded.offsets = testing::upload(call.runtime, paths.offsets);
   return uploaded;
 }
 
-void expect_paths(Call& call, const ExactPoints& points, const std::vector<Frame>& frames, const Paths& paths,
-                  const std::vector<std::vector<int>>& expected) {
-  std::vector<cl_int> vertices, regions, offsets{0};
-  std::vector<cl_double> u;
-  for (std::size_t r = 0; r < expected.size(); ++r) {
-    for (const int id : expected[r]) {
-      vertices.push_back(id);
-      regions.push_back(static_cast<cl_int>(r));
-      u.push_back(frames[r].u(points[id]));
+void expect_paths(Call& call, const Paths& paths, const HostPaths& expected) {
+  EXPECT_TRUE(same(call.read(paths.vertices, paths.size), expected.vertices));
+  EXPECT_TRUE(same(call.read(paths.places, paths.size), expected.places));
+  EXPECT_TRUE(same(call.read(paths.regions, paths.size), expected.regions));
+  EXPECT_TRUE(same(call.read(paths.offsets, expected.offsets.size()), expected.offsets));
+}
+
+/// All points of each region in any order, below the chord between its ends.
+HullPoints upload_hull_points(Call& call, const ExactPoints& points, const std::vector<Frame>& frames,
+                              const std::vector<std::vector<int>>& ids_of_regions,
+                              const std::vector<std::vector<int>>& ends) {
+  std::vector<cl_int> ids, segments, first;
+  std::vector<cl_double2> places;
+  for (std::size_t r = 0; r < ids_of_regions.size(); ++r) {
+    first.push_back(static_cast<cl_int>(ids.size()));
+    for (const int id : ids_of_regions[r]) {
+      ids.push_back(id);
+      segments.push_back(static_cast<cl_int>(2 * r));
+      places.push_back(framed(frames[r], points[id]));
     }
-    offsets.push_back(static_cast<cl_int>(vertices.size()));
+    first.push_back(static_cast<cl_int>(ids.size()));
   }
-  EXPECT_TRUE(same(call.read(paths.vertices, paths.size), vertices));
-  EXPECT_TRUE(same(call.read(paths.u, paths.size), u));
-  EXPECT_TRUE(same(call.read(paths.regions, paths.size), regions));
-  EXPECT_TRUE(same(call.read(paths.offsets, expected.size() + 1), offsets));
+  first.push_back(static_cast<cl_int>(ids.size()));
+  HullPoints uploaded;
+  uploaded.size = ids.size();
+  uploaded.ids = testing::upload(call.runtime, ids);
+  uploaded.segments = testing::upload(call.runtime, segments);
+  uploaded.places = testing::upload(call.runtime, places);
+  uploaded.ends = upload_paths(call, HostPaths(points, frames, ends));
+  uploaded.first = testing::upload(call.runtime, first);
+  return uploaded;
 }
 
 /// The flag that prune should give: 0 dropped, 1 kept, 3 an end of the path.
@@ -284,8 +306,9 @@ void check_prune(Call& call, const ExactPoints& points, const PointTable& table,
                  const std::vector<std::vector<int>>& paths, bool keep_on) {
   Arena::Scope scope(call.work.scratch());
   if (keep_on) level.corners = 0;  // as initial_borders has it
-  const Paths uploaded = upload_paths(call, points, frames, paths);
-  const Pruned pruned = prune(call.work, table, level, uploaded, keep_on);
+  const Paths uploaded = upload_paths(call, HostPaths(points, frames, paths));
+  const Pruned pruned = allocate_pruned(call.work, level);
+  prune(call.work, table, level, uploaded, keep_on, pruned);
   ASSERT_EQ(pruned.elements, level.points + level.corners);
   const auto flags = call.read(pruned.flags, pruned.elements);
   const auto corner_ids = call.read(level.corner_ids, 3 * level.corners);
@@ -310,43 +333,31 @@ void check_quickhull(Call& call, const ExactPoints& points, const PointTable& ta
                      const std::vector<Region>& regions, const std::vector<Frame>& frames,
                      const std::vector<std::vector<int>>& expected, FixtureRandom& random) {
   Arena::Scope scope(call.work.scratch());
-  std::vector<cl_int> ids, segments, chord_a, chord_b, chord_region, first{0};
-  std::vector<std::vector<int>> columns;
+  std::vector<std::vector<int>> shuffled, columns, ends;
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    std::vector<int> all = regions[r].points();
-    random.shuffle(all);
-    ids.insert(ids.end(), all.begin(), all.end());
-    segments.insert(segments.end(), all.size(), static_cast<cl_int>(r));
-    chord_a.push_back(expected[r].front());
-    chord_b.push_back(expected[r].back());
-    chord_region.push_back(static_cast<cl_int>(r));
-    first.push_back(static_cast<cl_int>(ids.size()));
-    columns.push_back(points.lowest_by_u(frames[r], all));
+    shuffled.push_back(regions[r].points());
+    random.shuffle(shuffled.back());
+    ends.push_back({expected[r].front(), expected[r].back()});
+    columns.push_back(points.lowest_by_u(frames[r], shuffled.back()));
   }
-  HullPoints hull_points;
-  hull_points.size = ids.size();
-  hull_points.ids = testing::upload(call.runtime, ids);
-  hull_points.segments = testing::upload(call.runtime, segments);
-  hull_points.chord_a = testing::upload(call.runtime, chord_a);
-  hull_points.chord_b = testing::upload(call.runtime, chord_b);
-  hull_points.chord_region = testing::upload(call.runtime, chord_region);
-  hull_points.first = testing::upload(call.runtime, first);
+  const HostPaths expected_paths(points, frames, expected);
   int rounds = 0;
-  const Paths path = quickhull(call.work, table, level, hull_points, rounds);
+  const Paths path =
+      quickhull(call.work, table, level, upload_hull_points(call, points, frames, shuffled, ends), rounds);
   {
     SCOPED_TRACE("quickhull");
-    expect_paths(call, points, frames, strict(call.work, table, level, path), expected);
+    expect_paths(call, strict(call.work, table, level, path), expected_paths);
   }
   SCOPED_TRACE("strict");
-  expect_paths(call, points, frames,
-               strict(call.work, table, level, upload_paths(call, points, frames, columns)), expected);
+  const Paths all_columns = upload_paths(call, HostPaths(points, frames, columns));
+  expect_paths(call, strict(call.work, table, level, all_columns), expected_paths);
 }
 
 void check_hulls(Call& call, const ExactPoints& points, const Level& level,
                  const std::vector<Region>& regions, const std::vector<Frame>& frames, const Paths& paths,
                  const std::vector<std::vector<int>>& expected, Met& met) {
   SCOPED_TRACE("hulls");
-  expect_paths(call, points, frames, paths, expected);
+  expect_paths(call, paths, HostPaths(points, frames, expected));
   // Nothing on the path is dropped by prune.
   const auto flags = call.read(paths.flags, level.points + level.corners);
   const auto corner_ids = call.read(level.corner_ids, 3 * level.corners);
@@ -707,6 +718,41 @@ TEST(Borders, AreConvexHullsWithThePointsOnTheirEdges) {
   });
 }
 
+/// The ends of the lower and of the upper hull, of which the hull stages would also mend others.
+TEST(Borders, SetEndsAreTheLowestOfTheOutermostColumns) {
+  under_each_tuning([](Runtime& runtime) {
+    FixtureRandom random(28);
+    for (const int values : {1, 3, 50}) {
+      Call call(runtime);
+      const auto offsets = random_offsets(500, 15, random);
+      const Coordinates coordinates = coarse_points(offsets.back(), values, random);
+      std::vector<std::int32_t> representatives(offsets.back());
+      const PointTable table = ingest(call.work, coordinates.data(), offsets, representatives.data());
+      const ExactPoints points(call.read(table.points, table.count));
+      const auto ids = call.read(table.set_offsets, table.sets + 1);
+      std::vector<cl_int> axes, first_ends, last_ends;
+      for (std::size_t s = 0; s < table.sets; ++s) {
+        std::vector<int> all(static_cast<std::size_t>(ids[s + 1] - ids[s]));
+        std::iota(all.begin(), all.end(), ids[s]);
+        for (const int axis : {2, 3}) {
+          const std::vector<int> columns = points.lowest_by_u({axis, 0.0}, all);
+          axes.push_back(axis);
+          first_ends.push_back(all.empty() ? -1 : columns.front());
+          last_ends.push_back(all.empty() ? -1 : columns.back());
+        }
+      }
+      const auto axis = testing::guarded<cl_int>(runtime, 2 * table.sets);
+      const auto cuts = testing::guarded<cl_double>(runtime, 2 * table.sets);
+      const auto first = testing::guarded<cl_int>(runtime, 2 * table.sets);
+      const auto last = testing::guarded<cl_int>(runtime, 2 * table.sets);
+      runtime.map("border", "set_ends", table.sets, table.set_offsets, table.points, axis, cuts, first, last);
+      EXPECT_TRUE(same(testing::download(runtime, axis, 2 * table.sets), axes));
+      EXPECT_TRUE(same(testing::download(runtime, first, 2 * table.sets), first_ends));
+      EXPECT_TRUE(same(testing::download(runtime, last, 2 * table.sets), last_ends));
+    }
+  });
+}
+
 // ---------------------------------------------------------------------------------------------------------------
 // The level loop: cut, hulls, prune, quickhull, merge, end game
 
@@ -873,21 +919,14 @@ TEST(Quickhull, SplitsAtRandomAfterManyRounds) {
     level.regions = 1;
     level.axis = testing::upload(runtime, std::vector<cl_int>{2});
     level.cut = testing::upload(runtime, std::vector<cl_double>{0.0});
-    HullPoints hull_points;
-    hull_points.size = kPoints;
-    hull_points.ids = testing::upload(runtime, std::vector<cl_int>(all));
-    hull_points.segments = testing::upload(runtime, std::vector<cl_int>(kPoints, 0));
-    hull_points.chord_a = testing::upload(runtime, std::vector<cl_int>{0});
-    hull_points.chord_b = testing::upload(runtime, std::vector<cl_int>{kPoints - 1});
-    hull_points.chord_region = testing::upload(runtime, std::vector<cl_int>{0});
-    hull_points.first = testing::upload(runtime, std::vector<cl_int>{0, kPoints});
+    const HullPoints hull_points = upload_hull_points(call, points, frames, {all}, {{0, kPoints - 1}});
     call.work.bounds = {1e-14, 1e-14, 1e-14};
     int rounds = 0;
     const Paths paths = quickhull(call.work, table, level, hull_points, rounds);
     EXPECT_GT(rounds, 64);   // so the balanced ones were met
     EXPECT_LT(rounds, 100);  // and were fewer
     ASSERT_EQ(points.lower_hull(frames[0], all), all);
-    expect_paths(call, points, frames, strict(call.work, table, level, paths), {all});
+    expect_paths(call, strict(call.work, table, level, paths), HostPaths(points, frames, {all}));
   });
 }
 

@@ -1,8 +1,8 @@
 // The vector operations against plain loops, under every kind of tuning; and what they stand on: memory,
 // errors, the choice of the device, the accounts.
 //
-// Suites named Small... have tiny inputs, for slow simulators: oclgrind test_vector_operations
-// --gtest_filter='Small*'
+// Suites named Small... have tiny inputs and make no OpenCL call fail: tests/oclgrind.sh runs them in a
+// simulator.
 #include "host/vector_operations.hpp"
 
 #include <gtest/gtest.h>
@@ -396,11 +396,10 @@ std::vector<cl_ulong> random_keys(std::size_t n, const Pattern& pattern, Random&
 TEST(SmallSort, IsTheStableSort) {
   Random random(5);
   under_each_tuning([&](Runtime& runtime) {
-    for (const Pattern& pattern : kPatterns) {
-      for (const std::size_t n : {3, 40}) check_sort(runtime, random_keys(n, pattern, random), pattern.name);
-    }
-    for (const std::size_t n : {0, 1, 2, 12, 13}) {
-      check_sort(runtime, random_keys(n, kPatterns[0], random), kPatterns[0].name);
+    check_sort(runtime, random_keys(40, kPatterns[0], random), kPatterns[0].name);
+    // Few digits vary: few passes.
+    for (const std::size_t n : {0, 1, 2, 3, 12, 13, 40}) {
+      check_sort(runtime, random_keys(n, kPatterns[2], random), kPatterns[2].name);
     }
   });
 }
@@ -788,7 +787,7 @@ TEST(SmallSegmentedSelect, IsNthElement) {
   Random random(21);
   under_each_tuning([&](Runtime& runtime) {
     const std::vector<Shape> shapes = small_shapes();
-    for (const std::size_t k : {0, 1, 3, 6, 10, 13}) {
+    for (const std::size_t k : {1, 4, 6}) {
       check_select(runtime, shapes.at(k), kPatterns[k % 3], k % 2 ? Rank::median : Rank::random, random);
     }
   });
@@ -832,7 +831,7 @@ TEST(SegmentedSelect, IsNthElementForAllCutsOf7) {
 TEST(SmallTuning, MayChangeInALivingRuntime) {
   Runtime runtime(host::find_device(""));
   Random random(25);
-  for (const char* const tuning : {"gpu", "small", "cpu", "small", "gpu"}) {
+  for (const char* const tuning : {"small", "gpu", "small"}) {
     SCOPED_TRACE(tuning);
     runtime.set_tuning(tuning_named(tuning));
     check_sort(runtime, random_keys(40, kPatterns[0], random), tuning);
@@ -1086,16 +1085,16 @@ TEST(SmallError, NamesCallCodeKernelAndRemedy) {
   }
 }
 
-TEST(SmallError, ShowsTheCallsOwnText) {
+TEST(Error, ShowsTheCallsOwnText) {
   const std::string message = message_of([] { FLAUNAY_CL(clFinish(nullptr)); }, CL_INVALID_COMMAND_QUEUE);
   EXPECT_TRUE(contains(message, "CL_INVALID_COMMAND_QUEUE")) << message;
   EXPECT_TRUE(contains(message, "-36")) << message;
   EXPECT_TRUE(contains(message, "clFinish(nullptr)")) << message;
 }
 
-class SmallLaunchError : public ::testing::Test {
+class LaunchError : public ::testing::Test {
  protected:
-  SmallLaunchError() : runtime_(host::find_device("")), kernel_path_("FLAUNAY_KERNEL_PATH", nullptr) {
+  LaunchError() : runtime_(host::find_device("")), kernel_path_("FLAUNAY_KERNEL_PATH", nullptr) {
     buffer_ = runtime_.arena().allocate<cl_int>(10);
   }
   Runtime runtime_;
@@ -1103,7 +1102,7 @@ class SmallLaunchError : public ::testing::Test {
   Buffer<cl_int> buffer_;
 };
 
-TEST_F(SmallLaunchError, UnknownKernel) {
+TEST_F(LaunchError, UnknownKernel) {
   const std::string message =
       message_of([&] { runtime_.map("scan", "no_such_kernel", 10, buffer_); }, CL_INVALID_KERNEL_NAME);
   for (const char* const part :
@@ -1112,13 +1111,13 @@ TEST_F(SmallLaunchError, UnknownKernel) {
   }
 }
 
-TEST_F(SmallLaunchError, UnknownFile) {
+TEST_F(LaunchError, UnknownFile) {
   const std::string message =
       message_of([&] { runtime_.map("no_such_file", "kernel", 10, buffer_); }, CL_SUCCESS);
   EXPECT_TRUE(contains(message, "no_such_file.cl")) << message;
 }
 
-TEST_F(SmallLaunchError, TooFewArguments) {
+TEST_F(LaunchError, TooFewArguments) {
   const std::string message =
       message_of([&] { runtime_.map("split", "permute_int", 10, buffer_, buffer_); }, CL_INVALID_KERNEL_ARGS);
   for (const char* const part :
@@ -1127,7 +1126,7 @@ TEST_F(SmallLaunchError, TooFewArguments) {
   }
 }
 
-TEST_F(SmallLaunchError, TooManyArguments) {
+TEST_F(LaunchError, TooManyArguments) {
   const std::string message =
       message_of([&] { runtime_.map("split", "permute_int", 10, buffer_, buffer_, buffer_, cl_int{4}); },
                  CL_INVALID_ARG_INDEX);
@@ -1136,7 +1135,7 @@ TEST_F(SmallLaunchError, TooManyArguments) {
   }
 }
 
-TEST_F(SmallLaunchError, ArgumentOfAnotherSize) {
+TEST_F(LaunchError, ArgumentOfAnotherSize) {
   const std::string message =
       message_of([&] { runtime_.map("pack", "pack_count", 10, cl_double{1}, buffer_, cl_int{4}, buffer_); },
                  CL_INVALID_ARG_SIZE);
@@ -1145,7 +1144,7 @@ TEST_F(SmallLaunchError, ArgumentOfAnotherSize) {
   }
 }
 
-TEST_F(SmallLaunchError, TheRuntimeGoesOn) {
+TEST_F(LaunchError, TheRuntimeGoesOn) {
   EXPECT_THROW(runtime_.map("scan", "no_such_kernel", 10, buffer_), DeviceError);
   EXPECT_THROW(runtime_.map("split", "permute_int", 10, buffer_, buffer_), DeviceError);
   Random random(26);
@@ -1318,7 +1317,7 @@ TEST(SmallAccounts, CountLaunchesAndWaits) {
   EXPECT_EQ(runtime.build_seconds(), 0.0);  // built already
 }
 
-TEST(SmallAccounts, ProfilingCountsEachKernel) {
+TEST(Accounts, ProfilingCountsEachKernel) {
   Runtime runtime(host::find_device(""));
   const auto places = upload(runtime, std::vector<cl_int>(10, -1));
   const auto a = upload(runtime, std::vector<cl_uchar>(10));

@@ -32,7 +32,8 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   LevelStatistics ignored;
   const Paths paths = hulls(work, table, planar, ignored);
 
-  const Pruned on = prune(work, table, planar, paths, true);
+  const Pruned on = allocate_pruned(work, planar);
+  prune(work, table, planar, paths, true, on);
   const auto counts = scratch.allocate<cl_uint>(2 * n + 1);
   runtime.map("prune", "flag_counts", 2 * n, on.flags, counts);
   host::exclusive_scan(runtime, counts, 2 * n, counts);

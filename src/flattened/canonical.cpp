@@ -39,24 +39,29 @@ void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>
   const auto [cell_triangles, cell_triangle_count] = host::pack_positions(runtime, in_cell, count, 1);
   const auto [list, list_count] = host::pack_positions(runtime, border, halfedges, 1);
 
-  Buffer<cl_int> next = scratch.allocate<cl_int>(list_count);
-  Buffer<cl_int> label = scratch.allocate<cl_int>(list_count);
+  const Buffer<cl_int> label = scratch.allocate<cl_int>(list_count);
   {
-    Arena::Scope place_scope(scratch);
-    const auto place = scratch.allocate<cl_int>(halfedges);
-    runtime.map("canonical", "cell_places", list_count, list, place);
-    runtime.map("canonical", "cell_links", list_count, list, place, triangles, twins, dissolved, next, label);
-  }
-  Buffer<cl_int> other_next = scratch.allocate<cl_int>(list_count);
-  Buffer<cl_int> other_label = scratch.allocate<cl_int>(list_count);
-  const auto changed = scratch.allocate<cl_int>(1);
-  // When doubling the reach changes no label, every label is its whole cycle's.
-  for (cl_int any = 1; any != 0;) {
-    runtime.fill(changed, 1, cl_int{0});
-    runtime.map("canonical", "jump_labels", list_count, next, label, other_next, other_label, changed);
-    std::swap(next, other_next);
-    std::swap(label, other_label);
-    any = runtime.read_one(changed, 0);
+    Arena::Scope label_scope(scratch);
+    Buffer<cl_int> next = scratch.allocate<cl_int>(list_count);
+    Buffer<cl_int> now = label;
+    {
+      Arena::Scope place_scope(scratch);
+      const auto place = scratch.allocate<cl_int>(halfedges);
+      runtime.map("canonical", "cell_places", list_count, list, place);
+      runtime.map("canonical", "cell_links", list_count, list, place, triangles, twins, dissolved, next, now);
+    }
+    Buffer<cl_int> other_next = scratch.allocate<cl_int>(list_count);
+    Buffer<cl_int> other = scratch.allocate<cl_int>(list_count);
+    const auto changed = scratch.allocate<cl_int>(1);
+    // When doubling the reach changes no label, every label is its whole cycle's.
+    for (cl_int any = 1; any != 0;) {
+      runtime.fill(changed, 1, cl_int{0});
+      runtime.map("canonical", "jump_labels", list_count, next, now, other_next, other, changed);
+      std::swap(next, other_next);
+      std::swap(now, other);
+      any = runtime.read_one(changed, 0);
+    }
+    if (now.memory() != label.memory()) runtime.copy(now, 0, label, 0, list_count);
   }
 
   const auto counts = scratch.allocate<cl_uint>(list_count + 1);

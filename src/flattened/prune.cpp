@@ -37,12 +37,15 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
 
 }  // namespace
 
-Pruned prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on) {
+Pruned allocate_pruned(Workspace& work, const Level& level) {
+  const std::size_t elements = level.points + level.corners;
+  return {elements, work.scratch().allocate<cl_uchar>(elements)};
+}
+
+void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
+           const Pruned& pruned) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  Pruned pruned;
-  pruned.elements = level.points + level.corners;
-  pruned.flags = scratch.allocate<cl_uchar>(pruned.elements);
   Arena::Scope scope(scratch);
   const auto ids = scratch.allocate<cl_int>(pruned.elements);
   const auto chord = scratch.allocate<cl_int>(pruned.elements);
@@ -55,7 +58,6 @@ Pruned prune(Workspace& work, const PointTable& table, const Level& level, const
   const auto list = pack_undecided(work, pruned.flags, pruned.elements);
   run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, ids, chord, paths.vertices,
            paths.regions, level.axis, level.cut, table.points, pruned.flags);
-  return pruned;
 }
 
 namespace {
@@ -80,8 +82,12 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
     const std::size_t group = runtime.tuning().map_group;
     runtime.launch("prune", "thin_offsets", level.regions + 1, group, static_cast<cl_int>(level.regions), candidates.first,
                    thin.point_offsets);
-    const Paths chords = chord_paths(work, table, thin, statistics);
-    candidates = gather(work, table, thin, prune(work, table, thin, chords, false).flags, thin.points);
+    const Pruned pruned = allocate_pruned(work, thin);
+    {
+      Arena::Scope scope(work.scratch());
+      prune(work, table, thin, chord_paths(work, table, thin, statistics), false, pruned);
+    }
+    candidates = gather(work, table, thin, pruned.flags, thin.points);
   }
   int rounds = 0;
   const Paths paths = quickhull(work, table, level, candidates, rounds);
@@ -92,8 +98,11 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
 }  // namespace
 
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
-  const Paths chords = chord_paths(work, table, level, statistics);
-  const Pruned pruned = prune(work, table, level, chords, false);
+  const Pruned pruned = allocate_pruned(work, level);
+  {
+    Arena::Scope scope(work.scratch());
+    prune(work, table, level, chord_paths(work, table, level, statistics), false, pruned);
+  }
   const HullPoints survivors = gather(work, table, level, pruned.flags, pruned.elements);
   statistics.survivors = survivors.size;
   Paths paths = strict(work, table, level, quickhull(work, table, level, survivors, statistics.hull_rounds));

@@ -111,12 +111,15 @@ void cut(Workspace& work, const PointTable& table, Level& level, int alternate_a
 /// The strict hulls of a level's regions, whose ends are known: prune, quickhull, clean-up.
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics);
 
-/// What prune keeps of internal points (and corners), as flags: against paths; keep_on also keeps what lies on them.
+/// What prune says of internal points, and behind them of corners: 0 not on the hull, 1 perhaps, 3 an end of it.
 struct Pruned {
   std::size_t elements = 0;
   Buffer<cl_uchar> flags{};
 };
-Pruned prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on);
+Pruned allocate_pruned(Workspace& work, const Level& level);
+/// Holds all elements against paths; keep_on also keeps what lies on them.
+void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
+           const Pruned& pruned);
 
 /// What quickhull starts from: each region's two ends as its path, and points grouped by segment, segment v being
 /// below the chord from path vertex v to the next.

@@ -18,11 +18,12 @@ double now() {
 
 // Corners, triangles and half-edges are counted in 32 bits, six half-edges a point and some slack.
 constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 1;
-// What the arenas hold for each input point, at most, on any input measured (docs/performance.md), and at first.
-constexpr std::size_t kBytesPerPoint = 300;
-constexpr std::size_t kPersistentBytesPerPoint = 56;
-constexpr std::size_t kStateBytesPerPoint = 26;
-constexpr std::size_t kScratchBytesPerPoint = 96;
+// What the arenas are made to hold for each input point; enough for all inputs measured (docs/performance.md). An
+// input that needs more gets further blocks.
+constexpr std::size_t kPersistentBytesPerPoint = 54;
+constexpr std::size_t kStateBytesPerPoint = 36;  // twice: of the level at work and of the next
+constexpr std::size_t kScratchBytesPerPoint = 172;
+constexpr std::size_t kBytesPerPoint = kPersistentBytesPerPoint + 2 * kStateBytesPerPoint + kScratchBytesPerPoint;
 
 host::Runtime make_runtime(const std::string& wanted) {
   try {
