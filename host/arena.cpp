@@ -73,7 +73,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
 }
 
 void Arena::reserve(std::size_t bytes) {
-  if (current_ != 0 || blocks_[0].used != 0 || blocks_[0].size >= bytes) return;
+  if (current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
   bytes = std::min(std::max(bytes, kSmallestBlock), largest_);
   blocks_.clear();
   blocks_.resize(1);
@@ -81,7 +81,12 @@ void Arena::reserve(std::size_t bytes) {
   blocks_[0].size = bytes;
 }
 
-std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t bytes) {
+std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t size) {
+  if (count > (std::size_t{1} << 62) / size) {
+    throw DeviceError(fmt::format("a buffer of {} elements of {} bytes is more than can be addressed", count, size),
+                      CL_INVALID_BUFFER_SIZE);
+  }
+  const std::size_t bytes = count * size;
   // OpenCL has no empty buffers; an array of no elements still needs an address.
   const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
   while (blocks_[current_].used + rounded > blocks_[current_].size) {
@@ -89,11 +94,12 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t bytes) {
     Block& next = blocks_[current_ + 1];
     if (next.size < rounded) {
       // An eighth of what is held now: few blocks, and not too much in vain.
-      std::size_t size = std::max({rounded, kSmallestBlock, held_bytes() / 8});
-      size = std::max(rounded, std::min(size, largest_));
+      std::size_t block_size = std::max({rounded, kSmallestBlock, held_bytes() / 8});
+      block_size = std::max(rounded, std::min(block_size, largest_));
       next.memory.reset();
-      next.memory = allocate_block(size);
-      next.size = size;
+      next.size = 0;
+      next.memory = allocate_block(block_size);
+      next.size = block_size;
     }
     next.used = 0;
     ++current_;

@@ -35,13 +35,13 @@ class Arena {
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
-  /// Makes one block of at least `bytes`, if nothing is allocated and the blocks are smaller.
-  /// Throws DeviceError if the device cannot give it.
+  /// Makes one block of `bytes`, or of as many as the device allows in one piece, if nothing is allocated and the blocks
+  /// hold less. Throws DeviceError if the device cannot give it.
   void reserve(std::size_t bytes);
 
   template <typename T>
   Buffer<T> allocate(std::size_t count) {
-    return Buffer<T>(allocate_bytes(count * sizeof(T)), count);
+    return Buffer<T>(allocate_bytes(count, sizeof(T)), count);
   }
 
   /// Releases, at its end, all that was allocated since its begin.
@@ -58,7 +58,7 @@ class Arena {
     std::size_t used_;
   };
 
-  /// Bytes in use at most since reset_peak, gaps at the ends of blocks included.
+  /// Bytes in use at most since reset_peak, without gaps at the ends of blocks.
   std::size_t peak_bytes() const { return peak_; }
   /// Bytes of all blocks.
   std::size_t held_bytes() const;
@@ -72,7 +72,7 @@ class Arena {
     std::size_t size = 0;
     std::size_t used = 0;
   };
-  std::shared_ptr<_cl_mem> allocate_bytes(std::size_t bytes);
+  std::shared_ptr<_cl_mem> allocate_bytes(std::size_t count, std::size_t size);
   std::shared_ptr<_cl_mem> allocate_block(std::size_t bytes);
   void release(std::size_t block, std::size_t used);
 

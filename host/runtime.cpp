@@ -63,6 +63,18 @@ Runtime::Runtime(const boost::compute::device& device)
     : device_(device), tuning_(tuning_for(device)), context_(device), queue_(context_, device_,
       CL_QUEUE_PROFILING_ENABLE), arena_(context_, device) {}
 
+Runtime::~Runtime() {
+  for (const auto& [event, name] : events_) clReleaseEvent(event);
+}
+
+void Runtime::set_tuning(const Tuning& tuning) {
+  // Pending events refer to kernels by name.
+  collect_times();
+  tuning_ = tuning;
+  kernels_.clear();
+  programs_.clear();
+}
+
 const boost::compute::program& Runtime::find_program(const std::string& file) {
   const auto found = programs_.find(file);
   if (found != programs_.end()) return found->second;

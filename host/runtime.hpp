@@ -27,16 +27,18 @@ struct KernelTime {
 class Runtime {
  public:
   explicit Runtime(const boost::compute::device& device);
+  ~Runtime();
 
   const boost::compute::device& device() const { return device_; }
   const boost::compute::context& context() const { return context_; }
   const Tuning& tuning() const { return tuning_; }
   /// For tests of boundaries: results must not depend on it.
-  void set_tuning(const Tuning& tuning) { tuning_ = tuning; programs_.clear(); kernels_.clear(); }
+  void set_tuning(const Tuning& tuning);
   Arena& arena() { return arena_; }
   cl_command_queue queue() const { return queue_.get(); }
 
-  /// Launches a kernel with one work-item per element. file: "scan" for kernels/scan.cl. The kernel's first
+  /// Launches a kernel with one work-item per element. file: "scan" for kernels/scan.cl; both names are literals, whose
+  /// addresses kernels are found by. The kernel's first
   /// argument is the number of elements as int; surplus work-items of the last group must do nothing.
   template <typename... Arguments>
   void map(const char* file, const char* name, std::size_t n, const Arguments&... arguments) {

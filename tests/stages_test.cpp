@@ -710,7 +710,7 @@ TEST(Borders, AreConvexHullsWithThePointsOnTheirEdges) {
            {"uniform", "grid", "rotated-grid", "collinear", "apex", "triangle-edges", "circle",
             "integer-circle", "columns", "parabola", "slender", "two-lines"}) {
         SCOPED_TRACE(name);
-        check_levels(runtime, make_fixture(name, 2000, 6), with, met);
+        check_levels(runtime, make_fixture(name, 2500, 6), with, met);
       }
     }
     EXPECT_EQ(met.levels, 0u);
@@ -865,14 +865,21 @@ TEST(LevelLoop, ManySets) {
   EXPECT_GT(met.equal_projections, 0u);
 }
 
+/// So large that prune thins its candidates by candidates of their own.
 TEST(LevelLoop, OneHugeRegion) {
+  const LoopOptions options{false, false, false, 2};
   Met met;
   for (const char* const name : {"kuzmin", "random-integers"}) {
     SCOPED_TRACE(name);
-    check_levels(Runtimes::get(false), make_fixture(name, 100000, 11), {false, false, false, 2}, met);
-    check_levels(Runtimes::get(true), make_fixture(name, 10000, 12), {false, false, false, 2}, met);
+    check_levels(Runtimes::get(false), make_fixture(name, 100000, 11), options, met);
+    check_levels(Runtimes::get(true), make_fixture(name, 10000, 12), options, met);
   }
-  EXPECT_EQ(met.levels, 8u);
+  for (const char* const name : {"grid", "columns", "rotated-grid", "half-duplicates", "line"}) {
+    SCOPED_TRACE(name);
+    check_levels(Runtimes::get(false), make_fixture(name, 20000, 29), options, met);
+    check_levels(Runtimes::get(true), make_fixture(name, 6000, 30), options, met);
+  }
+  EXPECT_EQ(met.levels, 28u);
 }
 
 /// Squares with one or two points inside, and some without: as many regions as sets.
@@ -1085,16 +1092,20 @@ TEST(Endgame, CocircularRegionsWhoseBordersAreDiagonals) {
 /// A border that does not close is found out, not triangulated.
 TEST(SmallEndgame, ReportsABrokenBorder) {
   under_each_tuning([](Runtime& runtime) {
-    Call call(runtime);
-    PointTable table;
-    table.points = testing::upload(runtime, std::vector<cl_double2>{{{0, 0}}, {{4, 0}}, {{4, 4}}, {{0, 4}}});
-    Region clockwise;
-    add_polygon({0, 3, 2, 1}, clockwise.corners);
-    const RetiredRegions retired = upload_retired(call, {clockwise});
-    const auto triangles = testing::guarded<cl_int>(runtime, 12);
-    endgame(call.work, table, retired, triangles, 0);
-    EXPECT_EQ(call.broken(), 2);
-    EXPECT_THROW(check_invariants(call.work), Error);
+    for (const Bounds& bounds : {Bounds{0, 0, 0}, kUndecided}) {
+      Call call(runtime);
+      call.work.bounds = bounds;
+      PointTable table;
+      table.points =
+          testing::upload(runtime, std::vector<cl_double2>{{{0, 0}}, {{4, 0}}, {{4, 4}}, {{0, 4}}});
+      Region clockwise;
+      add_polygon({0, 3, 2, 1}, clockwise.corners);
+      const RetiredRegions retired = upload_retired(call, {clockwise});
+      const auto triangles = testing::guarded<cl_int>(runtime, 12);
+      endgame(call.work, table, retired, triangles, 0);
+      EXPECT_EQ(call.broken(), 2);
+      EXPECT_THROW(check_invariants(call.work), Error);
+    }
   });
 }
 
@@ -1524,7 +1535,7 @@ TEST(SmallTwins, PredicatesAreTheReferences) {
 
 /// Whatever a stage launches on ordinary and degenerate input is all there is: no kernel is left over, none
 /// untested.
-TEST(SmallKernels, AllAreLaunched) {
+TEST(Kernels, AllAreLaunched) {
   std::set<std::string> launched;
   for (const bool small : kSmall) {
     Runtime& runtime = Runtimes::get(small);
@@ -1532,6 +1543,7 @@ TEST(SmallKernels, AllAreLaunched) {
     Met met;
     FixtureRandom random(26);
     check_levels(runtime, coarse_points(40, 3, random), {0, 0, 9, 12, 40}, {}, met);
+    check_levels(runtime, make_fixture("uniform", 5000, 31), {false, false, false, 1}, met);
     std::vector<cl_double2> places;
     std::vector<std::vector<int>> cells;
     make_cells(25 * 13, {5}, random, places, cells);

@@ -21,8 +21,8 @@ constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 1;
 // What the arenas are made to hold for each input point; enough for all inputs measured (docs/performance.md). An
 // input that needs more gets further blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 54;
-constexpr std::size_t kStateBytesPerPoint = 36;  // twice: of the level at work and of the next
-constexpr std::size_t kScratchBytesPerPoint = 172;
+constexpr std::size_t kStateBytesPerPoint = 37;  // twice: of the level at work and of the next
+constexpr std::size_t kScratchBytesPerPoint = 170;
 constexpr std::size_t kBytesPerPoint = kPersistentBytesPerPoint + 2 * kStateBytesPerPoint + kScratchBytesPerPoint;
 
 host::Runtime make_runtime(const std::string& wanted) {
