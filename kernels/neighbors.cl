@@ -1,8 +1,8 @@
 // Twins: for each half-edge the same edge in the triangle beyond it, or -1.
 //
-// One pass, a work-item a half-edge, over a hash table of undirected edges: the first of an
-// edge's two half-edges takes a slot, the second finds it there. Which of them is first depends on scheduling; the
-// result does not, since each edge has two half-edges at most.
+// Two passes, a work-item a half-edge, over a hash table of undirected edges: insert_edges puts the half-edges that
+// ascend (from a smaller to a larger vertex) into free slots, match_edges looks for the others' twins there. Which slot
+// an edge gets depends on scheduling; the result does not, since each edge is in the table once.
 
 #include "shared/halfedges.h"
 
@@ -23,25 +23,35 @@ static inline uint edge_slot(int low, int high, uint attempt) {
   return hash + (attempt - SLOTS_NEAR) * (hash >> 7 | 1);
 }
 
-// table: mask + 1 slots (a power of two), -1 throughout; twins: -1 throughout.
-kernel void match_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table,
+// table: mask + 1 slots (a power of two, more than there are edges), -1 throughout.
+kernel void insert_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table) {
+  const int h = get_global_id(0);
+  if (h < n) {
+    const int from = halfedge_from(triangles, h);
+    const int to = halfedge_to(triangles, h);
+    int searching = from < to;
+    for (uint attempt = 0; searching; ++attempt) {
+      searching = atomic_cmpxchg(&table[edge_slot(from, to, attempt) & mask], -1, h) != -1;
+    }
+  }
+}
+
+// twins: -1 throughout.
+kernel void match_edges(int n, uint mask, global const int* restrict triangles, global const int* restrict table,
                         global int* restrict twins) {
   const int h = get_global_id(0);
   if (h < n) {
     const int from = halfedge_from(triangles, h);
     const int to = halfedge_to(triangles, h);
-    uint attempt = 0;
-    int searching = 1;
-    while (searching) {
-      const int other = atomic_cmpxchg(&table[edge_slot(min(from, to), max(from, to), attempt) & mask], -1, h);
-      if (other == -1) {
+    int searching = from > to;
+    for (uint attempt = 0; searching; ++attempt) {
+      const int other = table[edge_slot(to, from, attempt) & mask];
+      if (other < 0) {
         searching = 0;
       } else if (halfedge_from(triangles, other) == to && halfedge_to(triangles, other) == from) {
         twins[h] = other;
         twins[other] = h;
         searching = 0;
-      } else {
-        ++attempt;
       }
     }
   }

@@ -10,11 +10,13 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <regex>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -115,12 +117,12 @@ class Call {
   Workspace work;
 };
 
-bool operator_equal(const cl_double2& a, const cl_double2& b) {
+bool equal_elements(const cl_double2& a, const cl_double2& b) {
   return a.s[0] == b.s[0] && a.s[1] == b.s[1] && std::signbit(a.s[0]) == std::signbit(b.s[0]) &&
          std::signbit(a.s[1]) == std::signbit(b.s[1]);
 }
 template <typename T>
-bool operator_equal(const T& a, const T& b) {
+bool equal_elements(const T& a, const T& b) {
   return a == b;
 }
 
@@ -131,7 +133,7 @@ template <typename T>
     return ::testing::AssertionFailure() << found.size() << " elements instead of " << expected.size();
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!operator_equal(found[i], expected[i])) {
+    if (!equal_elements(found[i], expected[i])) {
       auto result = ::testing::AssertionFailure() << "element " << i << " of " << found.size();
       if constexpr (std::is_arithmetic_v<T>) result << " is " << +found[i] << " instead of " << +expected[i];
       return result;
@@ -221,6 +223,7 @@ struct Met {
   std::size_t equal_projections = 0;  ///< mirror images in the line
   std::size_t on_chord = 0;           ///< points on the path that are no vertices
   std::size_t undecided_hull = 0, undecided_merge = 0, undecided_endgame = 0;
+  std::size_t survivors = 0, path_vertices = 0;  ///< of prune, and of the hulls they were for
   MergeCounts merge;
 };
 
@@ -326,6 +329,39 @@ void check_prune(Call& call, const ExactPoints& points, const PointTable& table,
         prune_flag_twin(points, frames[region_of], paths[region_of], corner_ids[3 * c + 1], false)));
   }
   EXPECT_TRUE(same(flags, expected)) << (keep_on ? "keep_on" : "");
+}
+
+/// Prune's candidates: of each region's points in a bucket, the first of those nearest to the line.
+void check_candidates(Call& call, const ExactPoints& points, const PointTable& table, const Level& level,
+                      const std::vector<Region>& regions, const std::vector<Frame>& frames) {
+  const std::string source = host::kernel_source("prune");
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(source, match, std::regex("#define BUCKET (\\d+)")));
+  const auto bucket = static_cast<std::size_t>(std::stoi(match[1]));
+  Arena::Scope scope(call.work.scratch());
+  const auto flags = testing::guarded<cl_uchar>(call.runtime, level.points);
+  call.runtime.map("prune", "candidate_flags", (level.points + bucket - 1) / bucket,
+                   static_cast<cl_int>(level.points), level.point_regions, level.x_list, level.y_list,
+                   level.axis, level.cut, table.points, flags);
+  std::vector<cl_uchar> expected;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const auto& list = frames[r].axis == 1 ? regions[r].x_list : regions[r].y_list;
+    std::size_t best = 0;
+    double best_distance = HUGE_VAL;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      expected.push_back(0);
+      const double distance = std::fabs(frames[r].s(points[list[i]]) - frames[r].q);
+      if (distance < best_distance) {
+        best = expected.size() - 1;
+        best_distance = distance;
+      }
+      if (expected.size() % bucket == 0 || i + 1 == list.size()) {
+        expected[best] = 1;
+        best_distance = HUGE_VAL;
+      }
+    }
+  }
+  EXPECT_TRUE(same(testing::download(call.runtime, flags, level.points), expected)) << "candidates";
 }
 
 /// Quickhull with nothing pruned and points in any order; then the clean-up of a path of all columns.
@@ -528,6 +564,7 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::v
         }
         rough.push_back(some);
       }
+      check_candidates(call, points, table, level, regions.open, frames);
       check_prune(call, points, table, level, regions.open, frames, rough, false);
       check_prune(call, points, table, level, regions.open, frames, expected_paths, true);
       check_quickhull(call, points, table, level, regions.open, frames, expected_paths, random);
@@ -537,6 +574,8 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::v
     LevelStatistics statistics;
     const Paths paths = hulls(work, table, level, statistics);
     met.undecided_hull += call.undecided() - undecided;
+    met.survivors += statistics.survivors;
+    met.path_vertices += paths.size;
     check_hulls(call, points, level, regions.open, frames, paths, expected_paths, met);
     if (::testing::Test::HasFailure()) return;
 
@@ -568,7 +607,7 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const LoopOp
   check_levels(runtime, coordinates, {0, coordinates.size() / 2}, options, met);
 }
 
-/// A small chain of coordinate values, so that points coincide and line up.
+/// Few values of coordinates, so that points coincide and line up.
 Coordinates coarse_points(std::size_t n, int values, FixtureRandom& random) {
   Coordinates points;
   for (std::size_t i = 0; i < 2 * n; ++i) {
@@ -880,6 +919,7 @@ TEST(LevelLoop, OneHugeRegion) {
     check_levels(Runtimes::get(true), make_fixture(name, 6000, 30), options, met);
   }
   EXPECT_EQ(met.levels, 28u);
+  EXPECT_LT(met.survivors, 2 * met.path_vertices);  // prune leaves little more than the hulls
 }
 
 /// Squares with one or two points inside, and some without: as many regions as sets.

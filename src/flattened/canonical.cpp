@@ -13,7 +13,9 @@ void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t c
   const auto table = work.scratch().allocate<cl_int>(slots);
   runtime.fill(table, slots, cl_int{-1});
   runtime.fill(twins, 3 * count, cl_int{-1});
-  runtime.map("neighbors", "match_edges", 3 * count, static_cast<cl_uint>(slots - 1), triangles, table, twins);
+  const auto mask = static_cast<cl_uint>(slots - 1);
+  runtime.map("neighbors", "insert_edges", 3 * count, mask, triangles, table);
+  runtime.map("neighbors", "match_edges", 3 * count, mask, triangles, table, twins);
 }
 
 void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles, std::size_t count,
