@@ -574,6 +574,13 @@ TEST_F(CommandDeviceTest, UnknownDevice) {
   }
 }
 
+TEST_F(CommandDeviceTest, TooManyPointsSaysHowManyWouldFit) {
+  // PoCL can be told to have one GiB.
+  run_well({"generate", "uniform", "4000000", "-o", path("points.npy")}, {});
+  expect_error(kDevice, {"4000000 points", "would fit", "bytes of memory"},
+               {"triangulate", path("points.npy"), "-o", path("mesh.off")}, {{"POCL_MEMORY_LIMIT", "1"}});
+}
+
 TEST_F(CommandDeviceTest, TheOptionGoesBeforeTheEnvironment) {
   const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
   run_well({"triangulate", points, "--device", "#0"}, {{"FLAUNAY_DEVICE", "no such device"}});
