@@ -7,6 +7,11 @@
 #include "host/error.hpp"
 
 namespace flaunay::host {
+namespace {
+
+constexpr int kSmallRegion = 48;
+
+}  // namespace
 
 std::size_t Tuning::chunk(std::size_t n) const {
   if (chunks_most == 0) return chunk_least;
@@ -17,11 +22,11 @@ Tuning tuning_for(const boost::compute::device& device) {
   // A CPU's work-item walks a long chunk: a core each, with a few to spare for balance. Wide digits, since a
   // core's first-level cache holds the counters.
   const std::size_t cores = std::max<std::size_t>(1, device.compute_units());
-  const Tuning cpu{256, 1, 1024, 8 * cores, 8, 1, 0, 48, 16 * cores};
+  const Tuning cpu{256, 1, 1024, 8 * cores, 8, 1, 0, kSmallRegion, 16 * cores};
   // A GPU wants many short chunks; its counters live in local memory.
-  const Tuning gpu{256, 64, 32, 0, 4, 128, 16, 32, 16384};
+  const Tuning gpu{256, 64, 32, 0, 4, 128, 16, kSmallRegion, 16384};
   // Odd sizes that make every boundary occur on small inputs.
-  const Tuning small{3, 2, 5, 0, 3, 4, 3, 4, 7};
+  const Tuning small{3, 2, 5, 0, 3, 4, 3, kSmallRegion, 7};
 
   if (const char* kind = std::getenv("FLAUNAY_TUNING"); kind != nullptr && *kind != '\0') {
     if (std::string(kind) == "cpu") return cpu;

@@ -6,10 +6,11 @@
 
 #include "shared/frame.h"
 
-kernel void cut_regions(int n, int alternate_axis, global const int* restrict point_offsets,
+kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets,
                         global const int* restrict x_list, global const int* restrict y_list,
                         global const double2* restrict points, global int* restrict axis,
-                        global double* restrict cut, global int* restrict first_end, global int* restrict last_end) {
+                        global double* restrict cut, global int* restrict first_end, global int* restrict last_end,
+                        global volatile int* restrict largest) {
   const int r = get_global_id(0);
   if (r < n) {
     const int low = point_offsets[r];
@@ -22,6 +23,8 @@ kernel void cut_regions(int n, int alternate_axis, global const int* restrict po
       const double y_range = points[y_list[q3]].y - points[y_list[q1]].y;
       chosen = y_range > x_range ? AXIS_Y : AXIS_X;
     }
+    // For the statistics.
+    atomic_max(&largest[level], count);
     const int median = low + count / 2;
     axis[r] = chosen;
     cut[r] = chosen == AXIS_X ? points[x_list[median]].x : points[y_list[median]].y;

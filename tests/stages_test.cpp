@@ -58,6 +58,12 @@ class Runtimes : public ::testing::Environment {
       const char* const before = std::getenv("FLAUNAY_TUNING");
       const testing::ScopedEnvironment kind("FLAUNAY_TUNING", small ? "small" : before);
       runtime = std::make_unique<Runtime>(host::find_device(""));
+      if (small || (before != nullptr && std::string(before) == "small")) {
+        // Small regions so small that many others count as large.
+        host::Tuning tuning = runtime->tuning();
+        tuning.small_region = 4;
+        runtime->set_tuning(tuning);
+      }
     }
     return *runtime;
   }
@@ -96,8 +102,10 @@ class Call {
     work.broken = persistent_.allocate<cl_int>(1);
     work.list_length = persistent_.allocate<cl_uint>(1);
     work.undecided = persistent_.allocate<cl_uint>(1);
+    work.largest = persistent_.allocate<cl_int>(kMostLevels);
     runtime.fill(work.broken, 1, cl_int{0});
     runtime.fill(work.undecided, 1, cl_uint{0});
+    runtime.fill(work.largest, kMostLevels, cl_int{0});
   }
 
   template <typename T>
@@ -526,7 +534,7 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::v
     ++met.levels;
     met.regions += level.regions;
     const int alternate = options.alternate ? static_cast<int>(depth % 2) : -1;
-    cut(work, table, level, alternate);
+    cut(work, table, level, 0, alternate);
     std::vector<Frame> frames;
     std::vector<cl_int> axes, first_ends, last_ends;
     std::vector<cl_double> cuts;

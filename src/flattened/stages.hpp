@@ -37,6 +37,8 @@ struct Workspace {
   Buffer<cl_uint> list_length{};
   /// Sum of list lengths.
   Buffer<cl_uint> undecided{};
+  /// Internal points of each level's largest region; kMostLevels of them.
+  Buffer<cl_int> largest{};
 
   Arena& scratch() { return runtime.arena(); }
 };
@@ -105,8 +107,11 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
 /// The convex hulls, and the regions of level 0; sets without internal points retire at once.
 Borders initial_borders(Workspace& work, PointTable& table, Level& level, RetiredRegions& retired);
 
-/// Chooses the cuts of a level. alternate_axis: 0 or 1, or -1 for the interquartile rule.
-void cut(Workspace& work, const PointTable& table, Level& level, int alternate_axis);
+/// Every level halves the largest number of internal points.
+constexpr std::size_t kMostLevels = 32;
+
+/// Chooses the cuts of a level, the depth-th. alternate_axis: 0 or 1, or -1 for the interquartile rule.
+void cut(Workspace& work, const PointTable& table, Level& level, int depth, int alternate_axis);
 
 /// The strict hulls of a level's regions, whose ends are known: prune, quickhull, clean-up.
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics);

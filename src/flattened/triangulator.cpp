@@ -143,6 +143,8 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   work.broken = persistent.allocate<cl_int>(1);
   work.list_length = persistent.allocate<cl_uint>(1);
   work.undecided = persistent.allocate<cl_uint>(1);
+  work.largest = persistent.allocate<cl_int>(kMostLevels);
+  runtime.fill(work.largest, kMostLevels, cl_int{0});
   runtime.fill(work.broken, 1, cl_int{0});
   runtime.fill(work.undecided, 1, cl_uint{0});
   report("sorting", -1, 0.0);
@@ -173,7 +175,7 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
       level_statistics.regions = level.regions;
       level_statistics.internal_points = level.points;
       level_statistics.corners = level.corners;
-      cut(work, table, level, options.cut == Cut::alternate ? depth % 2 : -1);
+      cut(work, table, level, depth, options.cut == Cut::alternate ? depth % 2 : -1);
       const Paths paths = hulls(work, table, level, level_statistics);
       level_statistics.path_vertices = paths.size;
       next = Level{};
@@ -189,6 +191,9 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   }
   state_scope.reset();
   check_invariants(work);
+  std::vector<cl_int> largest(statistics.levels.size());
+  runtime.read(work.largest, 0, largest.size(), largest.data());
+  for (std::size_t l = 0; l < largest.size(); ++l) statistics.levels[l].largest_region = static_cast<std::size_t>(largest[l]);
   if (done != triangle_count) {
     throw Error(ErrorKind::internal,
                 fmt::format("{} triangles instead of {}; please report the input", done, triangle_count));
