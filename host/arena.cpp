@@ -73,7 +73,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
 }
 
 void Arena::reserve(std::size_t bytes) {
-  if (current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
+  if (separate_ || current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
   bytes = std::min(std::max(bytes, kSmallestBlock), largest_);
   blocks_.clear();
   blocks_.resize(1);
@@ -87,6 +87,12 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
                       CL_INVALID_BUFFER_SIZE);
   }
   const std::size_t bytes = count * size;
+  if (separate_) {
+    cl_int code = CL_SUCCESS;
+    cl_mem memory = clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1), nullptr, &code);
+    check_call(code, "clCreateBuffer");
+    return own(memory);
+  }
   // OpenCL has no empty buffers; an array of no elements still needs an address.
   const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
   while (blocks_[current_].used + rounded > blocks_[current_].size) {

@@ -39,6 +39,10 @@ class Arena {
   /// hold less. Throws DeviceError if the device cannot give it.
   void reserve(std::size_t bytes);
 
+  /// From now on every allocation is an OpenCL buffer of its own and of its own size, so that a simulator sees every
+  /// access beyond it. Slow.
+  void separate_buffers() { separate_ = true; }
+
   template <typename T>
   Buffer<T> allocate(std::size_t count) {
     return Buffer<T>(allocate_bytes(count, sizeof(T)), count);
@@ -77,6 +81,7 @@ class Arena {
   void release(std::size_t block, std::size_t used);
 
   boost::compute::context context_;
+  bool separate_ = false;
   bool in_host_memory_;
   std::size_t alignment_;
   std::size_t largest_;

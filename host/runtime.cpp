@@ -61,7 +61,9 @@ std::string kernel_source(const std::string& file) {
 
 Runtime::Runtime(const boost::compute::device& device)
     : device_(device), tuning_(tuning_for(device)), context_(device), queue_(context_, device_,
-      CL_QUEUE_PROFILING_ENABLE), arena_(context_, device) {}
+      CL_QUEUE_PROFILING_ENABLE), arena_(context_, device) {
+  if (tuning_.separate_buffers) arena_.separate_buffers();
+}
 
 Runtime::~Runtime() {
   for (const auto& [event, name] : events_) clReleaseEvent(event);

@@ -25,8 +25,8 @@ Tuning tuning_for(const boost::compute::device& device) {
   const Tuning cpu{256, 1, 1024, 8 * cores, 8, 1, 0, kSmallRegion, 16 * cores};
   // A GPU wants many short chunks; its counters live in local memory.
   const Tuning gpu{256, 64, 32, 0, 4, 128, 16, kSmallRegion, 16384};
-  // Odd sizes that make every boundary occur on small inputs.
-  const Tuning small{3, 2, 5, 0, 3, 4, 3, kSmallRegion, 7};
+  // Odd sizes that make every boundary occur on small inputs, and buffers that show every access beyond them.
+  const Tuning small{3, 2, 5, 0, 3, 4, 3, kSmallRegion, 7, true};
 
   if (const char* kind = std::getenv("FLAUNAY_TUNING"); kind != nullptr && *kind != '\0') {
     if (std::string(kind) == "cpu") return cpu;

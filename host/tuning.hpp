@@ -24,6 +24,8 @@ struct Tuning {
   int small_region;
   /// Work-items that share a list whose length only the device knows.
   std::size_t list_workers;
+  /// Whether arrays are buffers of their own; see Arena::separate_buffers.
+  bool separate_buffers = false;
 
   /// Elements per chunk for n elements.
   std::size_t chunk(std::size_t n) const;

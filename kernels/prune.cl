@@ -89,31 +89,62 @@ static inline int search_path(double u, int first, int last, global const double
   return low;
 }
 
+// band[r]: a height, as the bits of a float, above which nothing can be below any chord of region r's path: a chord of
+// length l between heights h and k stays below max(h, k) + l^2 / 4. Rounded up, and by more than depth's error; infinite
+// where a float cannot hold it, and for planar hulls, whose heights have no zero. band holds 0 before.
+#define BAND_SLACK (1.0 + 0x1p-20)
+
+kernel void path_bands(int n, global const int* restrict path_region, global const double2* restrict path_places,
+                       global const int* restrict axis, global const double* restrict cut,
+                       global volatile int* restrict band) {
+  const int v = get_global_id(0);
+  if (v < n - 1) {
+    const int r = path_region[v];
+    if (path_region[v + 1] == r) {
+      const double2 a = path_places[v];
+      const double2 b = path_places[v + 1];
+      const double across = fmax(fabs(a.x - cut[r]), fabs(b.x - cut[r]));
+      const double along = b.y - a.y;
+      const double height = is_planar(axis[r]) ? INFINITY : BAND_SLACK * (across * across + 0.25 * along * along);
+      // No subnormal floats, which devices may flush to zero.
+      atomic_max(&band[r], as_int(convert_float_rtp(fmax(height, 0x1p-120))));
+    }
+  }
+}
+
+static inline int is_above_band(double s, double q, int band) { return (s - q) * (s - q) > (double)as_float(band); }
+
 // Internal points, by buckets: their neighbours in the list are their neighbours along the line, so only the first of a
 // region's in a bucket needs a search. ids and chord are written for the undecided alone.
 kernel void prune_points(int n, int elements, int keep_on, double bound, global const int* restrict regions,
                          global const int* restrict x_list, global const int* restrict y_list,
                          global const int* restrict axis, global const double* restrict cut,
-                         global const double2* restrict points, global const int* restrict path_offsets,
-                         global const int* restrict path, global const double2* restrict path_places,
-                         global int* restrict ids, global int* restrict chord, global uchar* restrict flags) {
+                         global const double2* restrict points, global const int* restrict band,
+                         global const int* restrict path_offsets, global const int* restrict path,
+                         global const double2* restrict path_places, global int* restrict ids,
+                         global int* restrict chord, global uchar* restrict flags) {
   const int bucket = get_global_id(0);
   if (bucket < n) {
-    int region = -1, a = 0, first = 0, last = 0, low = 0;
+    int region = -1, a = 0, first = 0, last = 0, low = -1, height = 0;
     double q = 0.0;
     for (int i = bucket * BUCKET; i < min(elements, (bucket + 1) * BUCKET); ++i) {
       const int r = regions[i];
-      const int fresh = r != region;
-      if (fresh) {
+      if (r != region) {
         region = r;
         a = axis[r];
         q = cut[r];
+        height = band[r];
+        low = -1;
         first = path_offsets[r];
         last = path_offsets[r + 1] - 1;
       }
       const int id = a == AXIS_Y ? x_list[i] : y_list[i];
       const double2 p = to_frame(points[id], a);
-      if (fresh) {
+      if (is_above_band(p.x, q, height)) {
+        flags[i] = 0;
+        continue;
+      }
+      if (low < 0) {
         low = search_path(p.y, first, last, path_places);
       } else {
         while (low < last && path_places[low + 1].y <= p.y) ++low;
@@ -133,7 +164,8 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
 kernel void prune_corners(int n, int points_count, double bound, global const int* restrict corner_regions,
                           global const int* restrict corners, global const int* restrict axis,
                           global const double* restrict cut, global const double2* restrict points,
-                          global const int* restrict path_offsets, global const int* restrict path,
+                          global const int* restrict band, global const int* restrict path_offsets,
+                          global const int* restrict path,
                           global const double2* restrict path_places, global int* restrict ids,
                           global int* restrict chord, global uchar* restrict flags) {
   const int i = get_global_id(0);
@@ -142,10 +174,14 @@ kernel void prune_corners(int n, int points_count, double bound, global const in
     const int a = axis[r];
     const int id = corners[3 * i + 1];
     const double2 p = to_frame(points[id], a);
-    const int first = path_offsets[r];
-    const int last = path_offsets[r + 1] - 1;
-    const int low = search_path(p.y, first, last, path_places);
-    const int keep = held_against(id, p, low, first, last, is_planar(a), cut[r], 0, bound, path, path_places);
+    int low = 0;
+    int keep = 0;
+    if (!is_above_band(p.x, cut[r], band[r])) {
+      const int first = path_offsets[r];
+      const int last = path_offsets[r + 1] - 1;
+      low = search_path(p.y, first, last, path_places);
+      keep = held_against(id, p, low, first, last, is_planar(a), cut[r], 0, bound, path, path_places);
+    }
     flags[points_count + i] = keep;
     if (keep == 2) {
       ids[points_count + i] = id;

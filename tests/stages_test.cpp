@@ -99,6 +99,10 @@ class Call {
         state_(used.context(), used.device()),
         scope_(used.arena()),
         work{used, persistent_, &state_, &state_, statistics_} {
+    if (used.tuning().separate_buffers) {
+      persistent_.separate_buffers();
+      state_.separate_buffers();
+    }
     work.broken = persistent_.allocate<cl_int>(1);
     work.list_length = persistent_.allocate<cl_uint>(1);
     work.undecided = persistent_.allocate<cl_uint>(1);

@@ -929,7 +929,8 @@ class SmallArena : public ::testing::Test {
  protected:
   SmallArena() : runtime_(host::find_device("")) {}
   Runtime runtime_;
-  Arena& arena_ = runtime_.arena();
+  // Not the runtime's, which may be told to keep buffers apart.
+  Arena arena_{runtime_.context(), runtime_.device()};
 };
 
 TEST_F(SmallArena, GivesAlignedBuffersThatDoNotOverlap) {

@@ -49,11 +49,14 @@ void prune(Workspace& work, const PointTable& table, const Level& level, const P
   Arena::Scope scope(scratch);
   const auto ids = scratch.allocate<cl_int>(pruned.elements);
   const auto chord = scratch.allocate<cl_int>(pruned.elements);
+  const auto band = scratch.allocate<cl_int>(level.regions);
+  runtime.fill(band, level.regions, cl_int{0});
+  runtime.map("prune", "path_bands", paths.size, paths.regions, paths.places, level.axis, level.cut, band);
   runtime.map("prune", "prune_points", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
               cl_int{keep_on}, work.bounds.hull, level.point_regions, level.x_list, level.y_list, level.axis, level.cut,
-              table.points, paths.offsets, paths.vertices, paths.places, ids, chord, pruned.flags);
+              table.points, band, paths.offsets, paths.vertices, paths.places, ids, chord, pruned.flags);
   runtime.map("prune", "prune_corners", level.corners, static_cast<cl_int>(level.points), work.bounds.hull,
-              level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, paths.offsets,
+              level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, band, paths.offsets,
               paths.vertices, paths.places, ids, chord, pruned.flags);
   const auto list = pack_undecided(work, pruned.flags, pruned.elements);
   run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, ids, chord, paths.vertices,

@@ -70,6 +70,9 @@ struct Triangulator::Implementation {
         persistent(runtime.context(), runtime.device()),
         even(runtime.context(), runtime.device()),
         odd(runtime.context(), runtime.device()) {
+    if (runtime.tuning().separate_buffers) {
+      for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
+    }
     const std::string failure = flattened::self_test_failure(runtime);
     if (!failure.empty()) {
       throw Error(ErrorKind::device, fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
