@@ -9,7 +9,7 @@
 #include "shared/hull_height.h"
 #include "shared/segmented_arg_reduce.h"
 
-#define BUCKET 8
+#define BUCKET 16
 
 // Corner i stands for its vertex.
 #define VERTEX_OF_CORNER(i) corners[3 * (i) + 1]

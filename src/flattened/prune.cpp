@@ -3,7 +3,7 @@
 namespace flaunay::flattened {
 namespace {
 
-constexpr std::size_t kBucket = 8;  // BUCKET in prune.cl
+constexpr std::size_t kBucket = 16;  // BUCKET in prune.cl
 // Candidates a region from which on it pays to prune them by candidates of their own.
 constexpr std::size_t kManyCandidates = 256;
 
