@@ -1,5 +1,6 @@
-// flaunay-bench: times whole triangulations, points in memory to triangles and neighbours in memory. Runs of all inputs
-// are interleaved, so that a machine's changing speed meets all of them alike; medians are to be quoted.
+// flaunay-bench: times whole triangulations, points in memory to triangles and neighbours in memory. Runs of
+// all inputs are interleaved, so that a machine's changing speed meets all of them alike; medians are to be
+// quoted.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -63,14 +64,15 @@ int main(int argc, char** argv) {
       }
     }
     nlohmann::json results = nlohmann::json::array();
-    fmt::print("{:<16} {:>9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>6} {:>7} {:>6}\n", "distribution", "n", "median s", "min s",
-               "max s", "ns/pt", "launches", "waits", "bytes/p", "levels");
+    fmt::print("{:<16} {:>9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>6} {:>7} {:>6}\n", "distribution", "n",
+               "median s", "min s", "max s", "ns/pt", "launches", "waits", "bytes/p", "levels");
     for (const Input& input : inputs) {
       const double middle = median(input.seconds);
       const auto [least, most] = std::minmax_element(input.seconds.begin(), input.seconds.end());
       const auto& s = input.statistics;
-      fmt::print("{:<16} {:>9} {:>9.4f} {:>9.4f} {:>9.4f} {:>7.0f} {:>9} {:>6} {:>7.0f} {:>6}\n", input.distribution, input.n,
-                 middle, *least, *most, 1e9 * middle / static_cast<double>(input.n), s.kernel_launches, s.host_waits,
+      fmt::print("{:<16} {:>9} {:>9.4f} {:>9.4f} {:>9.4f} {:>7.0f} {:>9} {:>6} {:>7.0f} {:>6}\n",
+                 input.distribution, input.n, middle, *least, *most,
+                 1e9 * middle / static_cast<double>(input.n), s.kernel_launches, s.host_waits,
                  static_cast<double>(s.device_bytes_peak) / static_cast<double>(input.n), s.levels.size());
       int candidate_rounds = 0, hull_rounds = 0, most_rounds = 0;
       for (const auto& level : s.levels) {
@@ -97,12 +99,9 @@ int main(int argc, char** argv) {
       std::string command = "flaunay-bench";
       for (int i = 1; i < argc; ++i) command += fmt::format(" {}", argv[i]);
       const flaunay::DeviceInfo info = triangulator.device();
-      std::ofstream(json_path) << nlohmann::json{{"device", info.name},
-                                                 {"driver", info.driver},
-                                                 {"platform", info.platform},
-                                                 {"commit", FLAUNAY_COMMIT},
-                                                 {"command", command},
-                                                 {"runs", runs},
+      std::ofstream(json_path) << nlohmann::json{{"device", info.name},       {"driver", info.driver},
+                                                 {"platform", info.platform}, {"commit", FLAUNAY_COMMIT},
+                                                 {"command", command},        {"runs", runs},
                                                  {"results", results}}
                                       .dump(2)
                                << "\n";

@@ -41,14 +41,16 @@ std::size_t Arena::held_bytes() const {
 
 std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
   if (bytes > largest_) {
-    throw DeviceError(fmt::format("a buffer of {} bytes is more than the device allows in one piece ({} bytes); "
-                                  "use fewer points, or another device (FLAUNAY_DEVICE)",
-                                  bytes, largest_),
-                      CL_INVALID_BUFFER_SIZE);
+    throw DeviceError(
+        fmt::format("a buffer of {} bytes is more than the device allows in one piece ({} bytes); "
+                    "use fewer points, or another device (FLAUNAY_DEVICE)",
+                    bytes, largest_),
+        CL_INVALID_BUFFER_SIZE);
   }
   cl_int code = CL_SUCCESS;
 #ifdef __linux__
-  // Kernels jump about in these blocks: with pages of 4 KiB the translation of addresses would cost more than the loads.
+  // Kernels jump about in these blocks: with pages of 4 KiB the translation of addresses would cost more than
+  // the loads.
   if (in_host_memory_ && bytes >= kHugePage) {
     const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     if (void* pages = std::aligned_alloc(kHugePage, rounded)) {
@@ -83,13 +85,15 @@ void Arena::reserve(std::size_t bytes) {
 
 std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t size) {
   if (count > (std::size_t{1} << 62) / size) {
-    throw DeviceError(fmt::format("a buffer of {} elements of {} bytes is more than can be addressed", count, size),
-                      CL_INVALID_BUFFER_SIZE);
+    throw DeviceError(
+        fmt::format("a buffer of {} elements of {} bytes is more than can be addressed", count, size),
+        CL_INVALID_BUFFER_SIZE);
   }
   const std::size_t bytes = count * size;
   if (separate_) {
     cl_int code = CL_SUCCESS;
-    cl_mem memory = clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1), nullptr, &code);
+    cl_mem memory =
+        clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1), nullptr, &code);
     check_call(code, "clCreateBuffer");
     return own(memory);
   }

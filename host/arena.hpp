@@ -35,12 +35,12 @@ class Arena {
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
-  /// Makes one block of `bytes`, or of as many as the device allows in one piece, if nothing is allocated and the blocks
-  /// hold less. Throws DeviceError if the device cannot give it.
+  /// Makes one block of `bytes`, or of as many as the device allows in one piece, if nothing is allocated and
+  /// the blocks hold less. Throws DeviceError if the device cannot give it.
   void reserve(std::size_t bytes);
 
-  /// From now on every allocation is an OpenCL buffer of its own and of its own size, so that a simulator sees every
-  /// access beyond it. Slow.
+  /// From now on every allocation is an OpenCL buffer of its own and of its own size, so that a simulator
+  /// sees every access beyond it. Slow.
   void separate_buffers() { separate_ = true; }
 
   template <typename T>

@@ -32,7 +32,8 @@ std::vector<boost::compute::device> all_devices() {
   const cl_int code = clGetPlatformIDs(0, nullptr, &platform_count);
   if (code != CL_SUCCESS || platform_count == 0) {
     throw DeviceError(
-        "no OpenCL platform found: install a driver. On Debian, for the CPU: apt-get install pocl-opencl-icd; "
+        "no OpenCL platform found: install a driver. On Debian, for the CPU: apt-get install "
+        "pocl-opencl-icd; "
         "for a GPU: its vendor's OpenCL driver (nvidia-opencl-icd, rocm-opencl-icd, intel-opencl-icd). "
         "If one is installed, see that /etc/OpenCL/vendors (or OCL_ICD_VENDORS) names it",
         code == CL_SUCCESS ? -1001 : code);
@@ -57,7 +58,8 @@ bool has_fp64(const boost::compute::device& device) {
 boost::compute::device find_device(const std::string& requested) {
   const std::vector<boost::compute::device> devices = all_devices();
   if (devices.empty()) {
-    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo", CL_DEVICE_NOT_FOUND);
+    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo",
+                      CL_DEVICE_NOT_FOUND);
   }
   std::string wanted = requested;
   std::string origin = "--device";
@@ -77,8 +79,10 @@ boost::compute::device find_device(const std::string& requested) {
   if (wanted[0] == '#') {
     std::size_t index = 0;
     for (const char c : wanted.substr(1)) {
-      if (!std::isdigit(static_cast<unsigned char>(c)) || index > devices.size()) index = devices.size();
-      else index = 10 * index + static_cast<std::size_t>(c - '0');
+      if (!std::isdigit(static_cast<unsigned char>(c)) || index > devices.size())
+        index = devices.size();
+      else
+        index = 10 * index + static_cast<std::size_t>(c - '0');
     }
     if (wanted.size() > 1 && index < devices.size()) return devices[index];
   } else {
@@ -89,8 +93,9 @@ boost::compute::device find_device(const std::string& requested) {
       }
     }
   }
-  throw DeviceError(fmt::format("no device matches '{}' ({}); there are: {}", wanted, origin, listing(devices)),
-                    CL_DEVICE_NOT_FOUND);
+  throw DeviceError(
+      fmt::format("no device matches '{}' ({}); there are: {}", wanted, origin, listing(devices)),
+      CL_DEVICE_NOT_FOUND);
 }
 
 }  // namespace flaunay::host

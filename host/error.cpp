@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-
 namespace flaunay::host {
 
 std::string error_name(cl_int code) {
-  // Boost.Compute knows the names of OpenCL 1.x, but says it in words; the constants are what one searches for.
+  // Boost.Compute knows the names of OpenCL 1.x, but says it in words; the constants are what one searches
+  // for.
   switch (code) {
 #define FLAUNAY_NAME(constant) \
   case constant:               \

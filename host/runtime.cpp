@@ -19,7 +19,8 @@ double now() {
 }
 
 std::string read_kernel_file(const std::string& name) {
-  if (const char* directory = std::getenv("FLAUNAY_KERNEL_PATH"); directory != nullptr && *directory != '\0') {
+  if (const char* directory = std::getenv("FLAUNAY_KERNEL_PATH");
+      directory != nullptr && *directory != '\0') {
     const std::string path = std::string(directory) + "/" + name;
     std::ifstream file(path, std::ios::binary);
     if (!file) throw DeviceError(fmt::format("cannot read {} (FLAUNAY_KERNEL_PATH={})", path, directory));
@@ -42,7 +43,8 @@ void append_with_includes(const std::string& name, std::set<std::string>& seen, 
   for (int number = 1; std::getline(lines, line); ++number) {
     const std::string prefix = "#include \"";
     if (line.compare(0, prefix.size(), prefix) == 0) {
-      append_with_includes(line.substr(prefix.size(), line.find('"', prefix.size()) - prefix.size()), seen, out);
+      append_with_includes(line.substr(prefix.size(), line.find('"', prefix.size()) - prefix.size()), seen,
+                           out);
       out += fmt::format("#line {} \"{}\"\n", number + 1, name);
     } else {
       out += line + "\n";
@@ -60,8 +62,11 @@ std::string kernel_source(const std::string& file) {
 }
 
 Runtime::Runtime(const boost::compute::device& device)
-    : device_(device), tuning_(tuning_for(device)), context_(device), queue_(context_, device_,
-      CL_QUEUE_PROFILING_ENABLE), arena_(context_, device) {
+    : device_(device),
+      tuning_(tuning_for(device)),
+      context_(device),
+      queue_(context_, device_, CL_QUEUE_PROFILING_ENABLE),
+      arena_(context_, device) {
   if (tuning_.separate_buffers) arena_.separate_buffers();
 }
 
@@ -82,9 +87,8 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   if (found != programs_.end()) return found->second;
   const double begin = now();
   auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
-  const std::string options =
-      fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={}", tuning_.sort_bits,
-                  tuning_.sort_group, tuning_.small_region);
+  const std::string options = fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={}",
+                                          tuning_.sort_bits, tuning_.sort_group, tuning_.small_region);
   const cl_device_id id = device_.id();
   const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
@@ -92,8 +96,8 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
     clGetProgramBuildInfo(program.get(), id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
     std::string log(size, '\0');
     clGetProgramBuildInfo(program.get(), id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-    throw DeviceError(fmt::format("{} ({}) from clBuildProgram of kernels/{}.cl; {}\n{}", error_name(code), code,
-                                  file, error_advice(code), log.c_str()),
+    throw DeviceError(fmt::format("{} ({}) from clBuildProgram of kernels/{}.cl; {}\n{}", error_name(code),
+                                  code, file, error_advice(code), log.c_str()),
                       code);
   }
   build_seconds_ += now() - begin;
@@ -142,8 +146,10 @@ void Runtime::collect_times() {
   FLAUNAY_CL(clFinish(queue_.get()));
   for (const auto& [event, name] : events_) {
     cl_ulong begin = 0, end = 0;
-    FLAUNAY_CL_KERNEL(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr), *name);
-    FLAUNAY_CL_KERNEL(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr), *name);
+    FLAUNAY_CL_KERNEL(
+        clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr), *name);
+    FLAUNAY_CL_KERNEL(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr),
+                      *name);
     clReleaseEvent(event);
     KernelTime& time = times_[*name];
     ++time.launches;

@@ -37,9 +37,9 @@ class Runtime {
   Arena& arena() { return arena_; }
   cl_command_queue queue() const { return queue_.get(); }
 
-  /// Launches a kernel with one work-item per element. file: "scan" for kernels/scan.cl; both names are literals, whose
-  /// addresses kernels are found by. The kernel's first
-  /// argument is the number of elements as int; surplus work-items of the last group must do nothing.
+  /// Launches a kernel with one work-item per element. file: "scan" for kernels/scan.cl; both names are
+  /// literals, whose addresses kernels are found by. The kernel's first argument is the number of elements as
+  /// int; surplus work-items of the last group must do nothing.
   template <typename... Arguments>
   void map(const char* file, const char* name, std::size_t n, const Arguments&... arguments) {
     if (n == 0) return;
@@ -49,7 +49,8 @@ class Runtime {
   /// Launches a kernel with one work-item per chunk. Its first two arguments are the number of elements and
   /// the number of elements per chunk, as int.
   template <typename... Arguments>
-  void chunks(const char* file, const char* name, std::size_t n, std::size_t chunk, const Arguments&... arguments) {
+  void chunks(const char* file, const char* name, std::size_t n, std::size_t chunk,
+              const Arguments&... arguments) {
     if (n == 0) return;
     launch(file, name, (n + chunk - 1) / chunk, tuning_.chunk_group, static_cast<cl_int>(n),
            static_cast<cl_int>(chunk), arguments...);
@@ -87,8 +88,8 @@ class Runtime {
   void fill(const Buffer<T>& to, std::size_t count, T value) {
     if (count == 0) return;
     ++launches_;
-    FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to.memory(), &value, sizeof(T), 0, count * sizeof(T), 0, nullptr,
-                                   nullptr));
+    FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to.memory(), &value, sizeof(T), 0, count * sizeof(T), 0,
+                                   nullptr, nullptr));
   }
   template <typename T>
   void copy(const Buffer<T>& from, std::size_t from_first, const Buffer<T>& to, std::size_t to_first,

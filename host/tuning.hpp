@@ -19,8 +19,8 @@ struct Tuning {
   int sort_bits;
   std::size_t sort_group;
   std::size_t sort_items;
-  /// Corners of a region that one work-item triangulates in private memory. The order of rows depends on it, so it is
-  /// the same for every device; only tests change it.
+  /// Corners of a region that one work-item triangulates in private memory. The order of rows depends on it,
+  /// so it is the same for every device; only tests change it.
   int small_region;
   /// Work-items that share a list whose length only the device knows.
   std::size_t list_workers;

@@ -76,7 +76,8 @@ std::pair<Buffer<cl_int>, std::size_t> pack_positions(Runtime& runtime, const Bu
   return {positions, total};
 }
 
-void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads, std::size_t n) {
+void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads,
+                 std::size_t n) {
   if (n < 2) return;
   Arena::Scope scope(runtime.arena());
   const Tuning& tuning = runtime.tuning();
@@ -102,8 +103,8 @@ void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl
     if (((differing >> shift) & digit_mask) == 0) continue;
     const cl_int n_argument = static_cast<cl_int>(n);
     const cl_int items_argument = static_cast<cl_int>(items);
-    runtime.launch("sort", "sort_count", work_items, tuning.sort_group, n_argument, items_argument, cl_int{shift},
-                   from_keys, table);
+    runtime.launch("sort", "sort_count", work_items, tuning.sort_group, n_argument, items_argument,
+                   cl_int{shift}, from_keys, table);
     exclusive_scan(runtime, table, entries, table);
     runtime.launch("sort", "sort_scatter", work_items, tuning.sort_group, n_argument, items_argument,
                    cl_int{shift}, from_keys, from_payloads, table, to_keys, to_payloads);
@@ -129,8 +130,9 @@ void segmented_arg_max(Runtime& runtime, const Buffer<cl_double>& values, const 
   segmented_arg_reduce(runtime, "segmented", "segmented_arg_max", segment, n, result, values);
 }
 
-void segmented_sum(Runtime& runtime, const Buffer<cl_long>& values, const Buffer<cl_int>& segment, std::size_t n,
-                   std::size_t segments, const Buffer<cl_long>& scanned, const Buffer<cl_long>& total) {
+void segmented_sum(Runtime& runtime, const Buffer<cl_long>& values, const Buffer<cl_int>& segment,
+                   std::size_t n, std::size_t segments, const Buffer<cl_long>& scanned,
+                   const Buffer<cl_long>& total) {
   runtime.fill(total, segments, cl_long{0});
   if (n == 0) return;
   Arena::Scope scope(runtime.arena());
@@ -140,7 +142,8 @@ void segmented_sum(Runtime& runtime, const Buffer<cl_long>& values, const Buffer
   const auto begins = runtime.arena().allocate<cl_int>(chunk_count);
   const auto carry = runtime.arena().allocate<cl_long>(chunk_count);
   runtime.chunks("segmented", "segmented_sum_reduce", n, chunk, segment, values, sums, begins);
-  runtime.launch("segmented", "segmented_sum_carry", 1, 1, static_cast<cl_int>(chunk_count), sums, begins, carry);
+  runtime.launch("segmented", "segmented_sum_carry", 1, 1, static_cast<cl_int>(chunk_count), sums, begins,
+                 carry);
   runtime.chunks("segmented", "segmented_sum_write", n, chunk, segment, values, carry, scanned, total);
 }
 
@@ -159,8 +162,9 @@ void permute(Runtime& runtime, const Buffer<cl_int>& places, const Buffer<cl_int
   runtime.map("split", "permute_int", n, places, values, moved);
 }
 
-void segmented_select(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& segment, std::size_t n,
-                      std::size_t segments, const Buffer<cl_long>& rank, const Buffer<cl_ulong>& found) {
+void segmented_select(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& segment,
+                      std::size_t n, std::size_t segments, const Buffer<cl_long>& rank,
+                      const Buffer<cl_ulong>& found) {
   runtime.fill(found, segments, cl_ulong{0});
   Arena::Scope scope(runtime.arena());
   const auto flags = runtime.arena().allocate<cl_long>(n);

@@ -1,9 +1,9 @@
 // The data-parallel vocabulary: the operations on whole arrays that everything else is made of.
 //
-// All enqueue on the runtime's in-order queue and do not wait, unless they say so. Results depend on the input
-// alone, never on scheduling, chunk sizes or work-group sizes. Temporary device memory comes from the arena and
-// is released on return; sizes are below 2^31. Work is O(n) unless stated; depth on c chunks is O(n / c + c).
-// A "segment" array gives each element's segment, without descent; segments may be empty.
+// All enqueue on the runtime's in-order queue and do not wait, unless they say so. Results depend on the
+// input alone, never on scheduling, chunk sizes or work-group sizes. Temporary device memory comes from the
+// arena and is released on return; sizes are below 2^31. Work is O(n) unless stated; depth on c chunks is O(n
+// / c + c). A "segment" array gives each element's segment, without descent; segments may be empty.
 #pragma once
 
 #include "host/runtime.hpp"
@@ -23,15 +23,17 @@ void pack_positions(Runtime& runtime, const Buffer<cl_uchar>& flags, std::size_t
 std::pair<Buffer<cl_int>, std::size_t> pack_positions(Runtime& runtime, const Buffer<cl_uchar>& flags,
                                                       std::size_t n, int wanted);
 
-/// Stable sort of keys (as unsigned numbers) with their payloads, in place. Digits in which no two keys differ
-/// are skipped; waits once to find them. Temporary: 12 n bytes. O(n) per digit that varies.
-void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads, std::size_t n);
+/// Stable sort of keys (as unsigned numbers) with their payloads, in place. Digits in which no two keys
+/// differ are skipped; waits once to find them. Temporary: 12 n bytes. O(n) per digit that varies.
+void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads,
+                 std::size_t n);
 
-/// One pass of a segmented arg-reduce after another, until nothing reaches beyond a chunk; for kernels made by
-/// shared/segmented_arg_reduce.h. result must hold a negative value for every segment.
+/// One pass of a segmented arg-reduce after another, until nothing reaches beyond a chunk; for kernels made
+/// by shared/segmented_arg_reduce.h. result must hold a negative value for every segment.
 template <typename... Extra>
-void segmented_arg_reduce(Runtime& runtime, const char* file, const char* kernel, const Buffer<cl_int>& segment,
-                          std::size_t n, const Buffer<cl_int>& result, const Extra&... extra) {
+void segmented_arg_reduce(Runtime& runtime, const char* file, const char* kernel,
+                          const Buffer<cl_int>& segment, std::size_t n, const Buffer<cl_int>& result,
+                          const Extra&... extra) {
   if (n == 0) return;
   Arena::Scope scope(runtime.arena());
   Buffer<cl_int> segments = segment;
@@ -50,16 +52,17 @@ void segmented_arg_reduce(Runtime& runtime, const char* file, const char* kernel
   }
 }
 
-/// The index of each segment's smallest (greatest) value, the first of them if there are several; -1 for an empty
-/// segment. result: one per segment.
+/// The index of each segment's smallest (greatest) value, the first of them if there are several; -1 for an
+/// empty segment. result: one per segment.
 void segmented_arg_min(Runtime& runtime, const Buffer<cl_double>& values, const Buffer<cl_int>& segment,
                        std::size_t n, std::size_t segments, const Buffer<cl_int>& result);
 void segmented_arg_max(Runtime& runtime, const Buffer<cl_double>& values, const Buffer<cl_int>& segment,
                        std::size_t n, std::size_t segments, const Buffer<cl_int>& result);
 
 /// Inclusive prefix sums within each segment, and each segment's sum (0 for an empty one).
-void segmented_sum(Runtime& runtime, const Buffer<cl_long>& values, const Buffer<cl_int>& segment, std::size_t n,
-                   std::size_t segments, const Buffer<cl_long>& scanned, const Buffer<cl_long>& total);
+void segmented_sum(Runtime& runtime, const Buffer<cl_long>& values, const Buffer<cl_int>& segment,
+                   std::size_t n, std::size_t segments, const Buffer<cl_long>& scanned,
+                   const Buffer<cl_long>& total);
 
 /// The new position of each element when every segment is split stably into side 0, then side 1; -1 for other
 /// sides. offsets: segments + 1 positions at which segments begin. Temporary: 8 n bytes.
@@ -72,7 +75,8 @@ void permute(Runtime& runtime, const Buffer<cl_int>& places, const Buffer<cl_int
 
 /// The key of rank rank[s] (from 0) of each non-empty segment of unsorted keys, into found; rank is used up.
 /// The median of a segment of m keys is the one of rank m / 2. 64 rounds of O(n). Temporary: 16 n bytes.
-void segmented_select(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& segment, std::size_t n,
-                      std::size_t segments, const Buffer<cl_long>& rank, const Buffer<cl_ulong>& found);
+void segmented_select(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& segment,
+                      std::size_t n, std::size_t segments, const Buffer<cl_long>& rank,
+                      const Buffer<cl_ulong>& found);
 
 }  // namespace flaunay::host

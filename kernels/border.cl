@@ -6,6 +6,7 @@
 // counter-clockwise, the smallest and the largest id being on both. Collinear sets have all points on both.
 
 #include "shared/frame.h"
+#include "shared/search.h"
 
 // Elements [2 * offsets[s], 2 * offsets[s + 1]) of the doubled list: the set's ids up, then down.
 kernel void doubled_lists(int n, global const int* restrict set_of_id, global const int* restrict offsets,
@@ -25,18 +26,7 @@ kernel void doubled_lists(int n, global const int* restrict set_of_id, global co
 
 kernel void sets_of_ids(int n, int sets, global const int* restrict offsets, global int* restrict set_of_id) {
   const int id = get_global_id(0);
-  if (id < n) {
-    int low = 0, high = sets;
-    while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      if (offsets[middle] <= id) {
-        low = middle;
-      } else {
-        high = middle;
-      }
-    }
-    set_of_id[id] = low;
-  }
+  if (id < n) set_of_id[id] = segment_of(id, sets, offsets);
 }
 
 kernel void all_ids(int n, global int* restrict ids) {

@@ -7,6 +7,8 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 
+#include "shared/search.h"
+
 // Accounts of inspect, in one array of int.
 #define INSPECT_LARGEST 0   // largest exponent of a leading bit
 #define INSPECT_LOWEST 1    // smallest exponent of a lowest bit
@@ -79,24 +81,10 @@ kernel void keys_x(int n, global const double2* restrict input, double s0, doubl
   if (i < n) keys[i] = orderable(scaled(input[order[i]].x, s0, s1, s2));
 }
 
-// The set of input point i: the last s with offsets[s] <= i.
-static inline int set_of(int i, int sets, global const int* restrict offsets) {
-  int low = 0, high = sets;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    if (offsets[middle] <= i) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
 kernel void keys_set(int n, int sets, global const int* restrict offsets, global const int* restrict order,
                      global ulong* restrict keys) {
   const int i = get_global_id(0);
-  if (i < n) keys[i] = set_of(order[i], sets, offsets);
+  if (i < n) keys[i] = segment_of(order[i], sets, offsets);
 }
 
 // flags[i] = 1 where the sorted keys change, the first not counted; for dense ranks.
@@ -122,7 +110,7 @@ kernel void distinct_flags(int n, int sets, global const int* restrict offsets, 
     if (!first) {
       const double2 p = input[order[i]];
       const double2 before = input[order[i - 1]];
-      first = p.x != before.x || p.y != before.y || (sets > 1 && offsets[set_of(i, sets, offsets)] == i);
+      first = p.x != before.x || p.y != before.y || (sets > 1 && offsets[segment_of(i, sets, offsets)] == i);
     }
     flags[i] = first;
   }
@@ -163,7 +151,7 @@ kernel void keys_y_order(int n, int sets, global const int* restrict point_offse
                          global int* restrict order) {
   const int i = get_global_id(0);
   if (i < n) {
-    if (sets > 1) keys[i] |= (ulong)set_of(i, sets, point_offsets) << 32;
+    if (sets > 1) keys[i] |= (ulong)segment_of(i, sets, point_offsets) << 32;
     order[i] = i;
   }
 }

@@ -8,6 +8,7 @@
 
 #include "shared/frame.h"
 #include "shared/planar.h"
+#include "shared/search.h"
 
 #define SIDE_LEFT 0
 #define SIDE_RIGHT 1
@@ -104,15 +105,7 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
     const double2 m = to_frame(points[vertex], a);
     const int first = path_offsets[r];
     const int last = path_offsets[r + 1] - 1;
-    int low = first, high = kept[points_count + i] ? last + 1 : first;
-    while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      if (path_places[middle].y <= m.y) {
-        low = middle;
-      } else {
-        high = middle;
-      }
-    }
+    const int low = kept[points_count + i] ? search_path(m.y, first, last, path_places) : first;
     int place = -1;
     int code = m.x < cut[r] ? SIDE_LEFT : SIDE_RIGHT;
     if (path[low] == vertex) {

@@ -7,6 +7,7 @@
 // for each bucket or corner. What floating point cannot decide gets flag 2 and goes to hull_depth_exact (quickhull.cl).
 
 #include "shared/hull_height.h"
+#include "shared/search.h"
 #include "shared/segmented_arg_reduce.h"
 
 #define BUCKET 16
@@ -74,19 +75,6 @@ static inline int held_against(int id, double2 p, int low, int first, int last, 
   const double2 d = hull_depth(v, path_places[low + 1], p, q, planar);
   const double error = bound * d.y;
   return d.x > error ? 1 : d.x < -error ? 0 : bound == 0.0 ? (keep_on && d.x == 0.0) : 2;
-}
-
-static inline int search_path(double u, int first, int last, global const double2* restrict path_places) {
-  int low = first, high = last + 1;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    if (path_places[middle].y <= u) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
 }
 
 // band[r]: a height, as the bits of a float, above which nothing can be below any chord of region r's path: a chord of

@@ -9,6 +9,7 @@
 // counts and then writes, a work-item a corner, the triangles in the corner's wedge whose smallest vertex it is.
 
 #include "shared/planar.h"
+#include "shared/search.h"
 
 kernel void large_sizes(int n, global const int* restrict large, global const int* restrict offsets,
                         global uint* restrict sizes) {
@@ -22,15 +23,7 @@ kernel void gather_large(int n, int regions, global const int* restrict large, g
                          global ulong* restrict keys, global int* restrict order) {
   const int c = get_global_id(0);
   if (c < n) {
-    int low = 0, high = regions;
-    while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      if ((int)large_offsets[middle] <= c) {
-        low = middle;
-      } else {
-        high = middle;
-      }
-    }
+    const int low = segment_of(c, regions, (global const int*)large_offsets);
     const int from = offsets[large[low]] + (c - (int)large_offsets[low]);
     for (int j = 0; j < 3; ++j) large_corners[3 * c + j] = corners[3 * from + j];
     corner_region[c] = low;
@@ -74,6 +67,19 @@ typedef struct {
   double circle_bound;
   int free_head;
 } rings;
+
+static inline rings rings_on(global int* origin, global int2* around, global const int* vertices,
+                             global const double2* points, double orient_bound, double circle_bound) {
+  rings g;
+  g.origin = origin;
+  g.around = around;
+  g.vertices = vertices;
+  g.points = points;
+  g.orient_bound = orient_bound;
+  g.circle_bound = circle_bound;
+  g.free_head = -1;
+  return g;
+}
 
 static inline int edge_destination(const rings* g, int e) { return g->origin[e ^ 1]; }
 static inline int next_left(const rings* g, int e) { return g->around[e ^ 1].y; }
@@ -217,13 +223,7 @@ kernel void merge_strips(int n, int depth, double orient_bound, double circle_bo
     const int parent = !begins || depth == 0
                            ? INT_MAX
                            : block_begin(count, depth - 1, j / 2 + 1) - block_begin(count, depth - 1, j / 2);
-    rings g;
-    g.origin = origin;
-    g.around = around;
-    g.vertices = vertices;
-    g.points = points;
-    g.orient_bound = orient_bound;
-    g.circle_bound = circle_bound;
+    rings g = rings_on(origin, around, vertices, points, orient_bound, circle_bound);
     if (begins && size >= 2 && size <= 3 && parent > 3) {
       const int first = 6 * v;
       const int last = 6 * (v + size) - 2;
@@ -290,14 +290,7 @@ kernel void restore_border(int n, global const int* restrict missing, global con
                            global volatile int* restrict broken) {
   const int l = get_global_id(0);
   if (l < n && missing[l]) {
-    rings g;
-    g.origin = origin;
-    g.around = around;
-    g.vertices = vertices;
-    g.points = points;
-    g.orient_bound = orient_bound;
-    g.circle_bound = circle_bound;
-    g.free_head = -1;
+    rings g = rings_on(origin, around, vertices, points, orient_bound, circle_bound);
     for (int c = large_offsets[l]; c < (int)large_offsets[l + 1]; ++c) {
       if (border_edge[c] >= 0) continue;
       const int m = corner_vertex[c];

@@ -25,9 +25,10 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   planar.corner_ids = scratch.allocate<cl_int>(0);
   planar.corner_regions = scratch.allocate<cl_int>(0);
   runtime.fill(planar.corner_offsets, 2 * sets + 1, cl_int{0});
-  runtime.map("border", "doubled_lists", n, table.set_of_id, table.set_offsets, planar.x_list, planar.point_regions);
-  runtime.map("border", "set_ends", sets, table.set_offsets, table.points, planar.axis, planar.cut, planar.first_end,
-              planar.last_end);
+  runtime.map("border", "doubled_lists", n, table.set_of_id, table.set_offsets, planar.x_list,
+              planar.point_regions);
+  runtime.map("border", "set_ends", sets, table.set_offsets, table.points, planar.axis, planar.cut,
+              planar.first_end, planar.last_end);
   runtime.map("border", "doubled_offsets", sets, table.set_offsets, planar.point_offsets);
   LevelStatistics ignored;
   const Paths paths = hulls(work, table, planar, ignored);

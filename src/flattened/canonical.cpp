@@ -4,10 +4,12 @@
 
 namespace flaunay::flattened {
 
-void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t count, const Buffer<cl_int>& twins) {
+void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t count,
+                 const Buffer<cl_int>& twins) {
   host::Runtime& runtime = work.runtime;
   Arena::Scope scope(work.scratch());
-  // Edges are half as many as half-edges, and some more for the hull's; at most three quarters of the table full.
+  // Edges are half as many as half-edges, and some more for the hull's; at most three quarters of the table
+  // full.
   std::size_t slots = 16;
   while (3 * slots < 4 * (3 * count + 3) / 2 + 64) slots *= 2;
   const auto table = work.scratch().allocate<cl_int>(slots);
@@ -18,19 +20,20 @@ void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t c
   runtime.map("neighbors", "match_edges", 3 * count, mask, triangles, table, twins);
 }
 
-void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles, std::size_t count,
-                  const Buffer<cl_int>& twins) {
+void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
+                  std::size_t count, const Buffer<cl_int>& twins) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
   const std::size_t halfedges = 3 * count;
   const auto dissolved = scratch.allocate<cl_uchar>(halfedges);
-  runtime.map("canonical", "cocircular_flags", halfedges, work.bounds.circle, triangles, twins, table.points, dissolved,
-              work.broken);
+  runtime.map("canonical", "cocircular_flags", halfedges, work.bounds.circle, triangles, twins, table.points,
+              dissolved, work.broken);
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, dissolved, halfedges);
-    run_list(work, "canonical", "cocircular_exact", list, triangles, twins, table.points, dissolved, work.broken);
+    run_list(work, "canonical", "cocircular_exact", list, triangles, twins, table.points, dissolved,
+             work.broken);
   }
   const auto [edges, edge_count] = host::pack_positions(runtime, dissolved, halfedges, 1);
   if (edge_count == 0) return;

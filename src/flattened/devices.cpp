@@ -11,18 +11,15 @@ namespace flattened {
 
 std::string self_test_failure(host::Runtime& runtime) {
   // Operands and results as in selftest.cl, the results worked out with rational arithmetic.
-  const cl_double operands[] = {1 + 0x1p-30, 1 - 0x1p-30, -1.0, 0x1p-1060, 0x1.5555555555555p-2, 0x1.0000000000001p+60};
-  const cl_ulong expected[] = {0x0000000000000000, 0xbc30000000000000, 0x0000000000002000, 0x43b0000000000001,
-                               0x3fbc71c71c71c71c, 0x3fd5555555555555, 0xbc5c71c71c71c71c, 0x0000000000000000};
-  static const char* const checks[] = {"contraction is off",
-                                       "fma rounds once",
-                                       "subnormal numbers are kept",
-                                       "sums round to nearest",
-                                       "products round to nearest",
-                                       "two_sum is exact",
-                                       "two_product is exact",
-                                       "vectors round as scalars",
-                                       "sums are not reordered"};
+  const cl_double operands[] = {1 + 0x1p-30, 1 - 0x1p-30,          -1.0,
+                                0x1p-1060,   0x1.5555555555555p-2, 0x1.0000000000001p+60};
+  const cl_ulong expected[] = {0x0000000000000000, 0xbc30000000000000, 0x0000000000002000,
+                               0x43b0000000000001, 0x3fbc71c71c71c71c, 0x3fd5555555555555,
+                               0xbc5c71c71c71c71c, 0x0000000000000000};
+  static const char* const checks[] = {
+      "contraction is off",    "fma rounds once",           "subnormal numbers are kept",
+      "sums round to nearest", "products round to nearest", "two_sum is exact",
+      "two_product is exact",  "vectors round as scalars",  "sums are not reordered"};
   host::Arena::Scope scope(runtime.arena());
   const auto device_operands = runtime.arena().allocate<cl_double>(std::size(operands));
   const auto device_expected = runtime.arena().allocate<cl_ulong>(std::size(expected));
@@ -33,7 +30,8 @@ std::string self_test_failure(host::Runtime& runtime) {
   const cl_uint bits = runtime.read_one(failed, 0);
   std::string failure;
   for (std::size_t k = 0; k < std::size(checks); ++k) {
-    if (bits >> k & 1) failure += fmt::format("{}it does not hold that {}", failure.empty() ? "" : "; ", checks[k]);
+    if (bits >> k & 1)
+      failure += fmt::format("{}it does not hold that {}", failure.empty() ? "" : "; ", checks[k]);
   }
   return failure;
 }

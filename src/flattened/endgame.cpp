@@ -10,8 +10,8 @@ std::size_t endgame(Workspace& work, const PointTable& table, const RetiredRegio
   Arena::Scope scope(scratch);
   const auto counts = scratch.allocate<cl_uint>(retired.regions + 1);
   const auto status = scratch.allocate<cl_uchar>(retired.regions);
-  runtime.map("endgame", "small_regions", retired.regions, work.bounds.orient, work.bounds.circle, retired.offsets,
-              table.points, retired.corner_ids, counts, status, work.broken);
+  runtime.map("endgame", "small_regions", retired.regions, work.bounds.orient, work.bounds.circle,
+              retired.offsets, table.points, retired.corner_ids, counts, status, work.broken);
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, status, retired.regions);
@@ -21,8 +21,8 @@ std::size_t endgame(Workspace& work, const PointTable& table, const RetiredRegio
   const auto [large, large_count] = host::pack_positions(runtime, status, retired.regions, 3);
   if (large_count > 0) strips(work, table, retired, large, large_count, counts);
   host::exclusive_scan(runtime, counts, retired.regions, counts);
-  runtime.map("endgame", "collect_triangles", retired.regions, static_cast<cl_int>(base), retired.offsets, counts,
-              retired.corner_ids, triangles);
+  runtime.map("endgame", "collect_triangles", retired.regions, static_cast<cl_int>(base), retired.offsets,
+              counts, retired.corner_ids, triangles);
   return runtime.read_one(counts, retired.regions);
 }
 

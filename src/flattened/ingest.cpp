@@ -9,8 +9,8 @@
 namespace flaunay::flattened {
 namespace {
 
-// Coordinates below 2^250 that are multiples of 2^-255: no product of four overflows, and none underflows. See
-// docs/exactness.md.
+// Coordinates below 2^250 that are multiples of 2^-255: no product of four overflows, and none underflows.
+// See docs/exactness.md.
 constexpr int kLargestExponent = 249;
 constexpr int kLowestExponent = -255;
 // Coordinates of so many bits make the filters exact: 3k + 4, 2k + 3 and 4k + 8 bits within 53.
@@ -51,12 +51,14 @@ int lowest_bit(double x) {
     if (std::ilogb(x) == accounts.largest) largest = i;
     if (lowest_bit(x) == accounts.lowest) finest = i;
   }
-  throw Error(ErrorKind::input,
-              fmt::format("the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
-                          "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
-                          largest / 2, largest % 2 ? "y" : "x", coordinates[largest], finest / 2,
-                          finest % 2 ? "y" : "x", coordinates[finest], accounts.largest - accounts.lowest + 1,
-                          kLargestExponent - kLowestExponent + 1));
+  throw Error(
+      ErrorKind::input,
+      fmt::format(
+          "the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
+          "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
+          largest / 2, largest % 2 ? "y" : "x", coordinates[largest], finest / 2, finest % 2 ? "y" : "x",
+          coordinates[finest], accounts.largest - accounts.lowest + 1,
+          kLargestExponent - kLowestExponent + 1));
 }
 
 }  // namespace
@@ -130,8 +132,8 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   table.set_of_id = work.persistent.allocate<cl_int>(table.count);
   table.set_offsets = work.persistent.allocate<cl_int>(sets + 1);
   table.y_order = work.persistent.allocate<cl_int>(table.count);
-  runtime.map("ingest", "distinct_write", n, input, s0, s1, s2, order, counts, y_rank, table.points, table.source,
-              keys);
+  runtime.map("ingest", "distinct_write", n, input, s0, s1, s2, order, counts, y_rank, table.points,
+              table.source, keys);
   runtime.map("ingest", "set_offsets", sets + 1, device_offsets, counts, table.set_offsets);
   const Buffer<cl_int> representative = scratch.allocate<cl_int>(n);
   runtime.map("ingest", "representatives", n, order, counts, table.source, representative);

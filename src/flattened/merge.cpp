@@ -39,8 +39,9 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
 
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
-  runtime.map("merge", "corner_codes", level.corners, static_cast<cl_int>(level.points), work.bounds.orient, paths.flags,
-              level.corner_ids, level.corner_regions, level.axis, level.cut, table.points, paths.offsets, paths.vertices, paths.places, places, codes);
+  runtime.map("merge", "corner_codes", level.corners, static_cast<cl_int>(level.points), work.bounds.orient,
+              paths.flags, level.corner_ids, level.corner_regions, level.axis, level.cut, table.points,
+              paths.offsets, paths.vertices, paths.places, places, codes);
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, codes, level.corners);
@@ -62,8 +63,8 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   const auto points_before = scratch.allocate<cl_uint2>(level.regions + 1);
   runtime.chunks("lists", "list_counts", level.points, chunk, level.x_list, table.side, point_counts);
   host::exclusive_scan(runtime, point_counts, chunk_count, point_counts);
-  runtime.chunks("lists", "list_bounds", level.points, chunk, static_cast<cl_int>(level.regions), level.x_list,
-                 level.point_regions, table.side, point_counts, points_before);
+  runtime.chunks("lists", "list_bounds", level.points, chunk, static_cast<cl_int>(level.regions),
+                 level.x_list, level.point_regions, table.side, point_counts, points_before);
 
   const std::size_t children = 2 * level.regions;
   const auto sizes = scratch.allocate<cl_uint8>(children + 1);
@@ -71,19 +72,19 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
               corner_sides, internal, sizes);
   const Children child = place_children(work, sizes, children, next, retired);
 
-  runtime.map("merge", "emit_corners", level.corners, level.corner_ids, level.corner_regions, level.corner_offsets,
-              paths.vertices, paths.offsets, places, codes, corner_sides, child.region, child.base, next.corner_ids,
-              next.corner_regions, retired.corner_ids);
+  runtime.map("merge", "emit_corners", level.corners, level.corner_ids, level.corner_regions,
+              level.corner_offsets, paths.vertices, paths.offsets, places, codes, corner_sides, child.region,
+              child.base, next.corner_ids, next.corner_regions, retired.corner_ids);
   runtime.map("merge", "emit_path", paths.size, paths.vertices, paths.regions, paths.offsets, internal,
-              level.corner_offsets, corner_sides, child.region, child.base, next.corner_ids, next.corner_regions,
-              retired.corner_ids);
+              level.corner_offsets, corner_sides, child.region, child.base, next.corner_ids,
+              next.corner_regions, retired.corner_ids);
 
-  runtime.chunks("lists", "list_split", level.points, chunk, level.x_list, level.point_regions, table.side, point_counts,
-                 points_before, child.region, next.x_list, next.point_regions);
+  runtime.chunks("lists", "list_split", level.points, chunk, level.x_list, level.point_regions, table.side,
+                 point_counts, points_before, child.region, next.x_list, next.point_regions);
   runtime.chunks("lists", "list_counts", level.points, chunk, level.y_list, table.side, point_counts);
   host::exclusive_scan(runtime, point_counts, chunk_count, point_counts);
-  runtime.chunks("lists", "list_split", level.points, chunk, level.y_list, level.point_regions, table.side, point_counts,
-                 points_before, child.region, next.y_list, next.point_regions);
+  runtime.chunks("lists", "list_split", level.points, chunk, level.y_list, level.point_regions, table.side,
+                 point_counts, points_before, child.region, next.y_list, next.point_regions);
 }
 
 }  // namespace flaunay::flattened

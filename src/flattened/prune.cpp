@@ -8,7 +8,8 @@ constexpr std::size_t kBucket = 16;  // BUCKET in prune.cl
 constexpr std::size_t kManyCandidates = 256;
 
 // Brings flagged internal points and corners together by region. elements: level.points, or with the corners.
-HullPoints gather(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags, std::size_t elements) {
+HullPoints gather(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
+                  std::size_t elements) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   const auto points_count = static_cast<cl_int>(level.points);
@@ -26,12 +27,13 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
   points.first = scratch.allocate<cl_int>(points.ends.size + 1);
   const auto before = scratch.allocate<cl_int2>(level.regions + 1);
   const std::size_t group = runtime.tuning().map_group;
-  runtime.launch("prune", "begin_paths", level.regions + 1, group, regions, points_count, static_cast<cl_int>(kept),
-                 positions, level.point_offsets, level.corner_offsets, level.first_end, level.last_end, level.axis,
-                 table.points, points.ends.vertices, points.ends.places, points.ends.regions, points.first, before);
+  runtime.launch("prune", "begin_paths", level.regions + 1, group, regions, points_count,
+                 static_cast<cl_int>(kept), positions, level.point_offsets, level.corner_offsets,
+                 level.first_end, level.last_end, level.axis, table.points, points.ends.vertices,
+                 points.ends.places, points.ends.regions, points.first, before);
   runtime.map("prune", "gather_points", kept, points_count, regions, positions, before, level.point_regions,
-              level.x_list, level.y_list, level.corner_regions, level.corner_ids, level.axis, table.points, points.ids,
-              points.segments, points.places);
+              level.x_list, level.y_list, level.corner_regions, level.corner_ids, level.axis, table.points,
+              points.ids, points.segments, points.places);
   return points;
 }
 
@@ -52,26 +54,28 @@ void prune(Workspace& work, const PointTable& table, const Level& level, const P
   const auto band = scratch.allocate<cl_int>(level.regions);
   runtime.fill(band, level.regions, cl_int{0});
   runtime.map("prune", "path_bands", paths.size, paths.regions, paths.places, level.axis, level.cut, band);
-  runtime.map("prune", "prune_points", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
-              cl_int{keep_on}, work.bounds.hull, level.point_regions, level.x_list, level.y_list, level.axis, level.cut,
-              table.points, band, paths.offsets, paths.vertices, paths.places, ids, chord, pruned.flags);
-  runtime.map("prune", "prune_corners", level.corners, static_cast<cl_int>(level.points), work.bounds.hull,
-              level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, band, paths.offsets,
+  runtime.map("prune", "prune_points", (level.points + kBucket - 1) / kBucket,
+              static_cast<cl_int>(level.points), cl_int{keep_on}, work.bounds.hull, level.point_regions,
+              level.x_list, level.y_list, level.axis, level.cut, table.points, band, paths.offsets,
               paths.vertices, paths.places, ids, chord, pruned.flags);
+  runtime.map("prune", "prune_corners", level.corners, static_cast<cl_int>(level.points), work.bounds.hull,
+              level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, band,
+              paths.offsets, paths.vertices, paths.places, ids, chord, pruned.flags);
   const auto list = pack_undecided(work, pruned.flags, pruned.elements);
-  run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, ids, chord, paths.vertices,
-           paths.regions, level.axis, level.cut, table.points, pruned.flags);
+  run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, ids, chord,
+           paths.vertices, paths.regions, level.axis, level.cut, table.points, pruned.flags);
 }
 
 namespace {
 
-// Chord paths over all of a level's internal points and ends, good enough to prune by: quickhull of one candidate a
-// bucket, which themselves have been pruned the same way while there are many of them.
+// Chord paths over all of a level's internal points and ends, good enough to prune by: quickhull of one
+// candidate a bucket, which themselves have been pruned the same way while there are many of them.
 Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
   host::Runtime& runtime = work.runtime;
   const auto flags = work.scratch().allocate<cl_uchar>(level.points);
-  runtime.map("prune", "candidate_flags", (level.points + kBucket - 1) / kBucket, static_cast<cl_int>(level.points),
-              level.point_regions, level.x_list, level.y_list, level.axis, level.cut, table.points, flags);
+  runtime.map("prune", "candidate_flags", (level.points + kBucket - 1) / kBucket,
+              static_cast<cl_int>(level.points), level.point_regions, level.x_list, level.y_list, level.axis,
+              level.cut, table.points, flags);
   HullPoints candidates = gather(work, table, level, flags, level.points);
   statistics.candidates += candidates.size;
   if (candidates.size > kManyCandidates * level.regions) {
@@ -83,8 +87,8 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
     thin.point_offsets = work.scratch().allocate<cl_int>(level.regions + 1);
     runtime.map("prune", "thin_regions", candidates.size, candidates.segments, thin.point_regions);
     const std::size_t group = runtime.tuning().map_group;
-    runtime.launch("prune", "thin_offsets", level.regions + 1, group, static_cast<cl_int>(level.regions), candidates.first,
-                   thin.point_offsets);
+    runtime.launch("prune", "thin_offsets", level.regions + 1, group, static_cast<cl_int>(level.regions),
+                   candidates.first, thin.point_offsets);
     const Pruned pruned = allocate_pruned(work, thin);
     {
       Arena::Scope scope(work.scratch());

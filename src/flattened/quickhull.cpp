@@ -5,13 +5,14 @@
 namespace flaunay::flattened {
 namespace {
 
-// Rounds after which quickhull splits at random instead of at the deepest point: more than any input has shown that
-// was not made to be bad.
+// Rounds after which quickhull splits at random instead of at the deepest point: more than any input has
+// shown that was not made to be bad.
 constexpr int kRoundsBeforeBalance = 64;
 
 }  // namespace
 
-Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& start, int& rounds) {
+Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& start,
+                int& rounds) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   const std::size_t most_vertices = start.ends.size + start.size;
@@ -52,21 +53,21 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
     runtime.map("quickhull", "hull_depths", points, work.bounds.hull, now.segments, now.places, paths.places,
                 paths.regions, level.axis, level.cut, depth, flags);
     const auto list = pack_undecided(work, flags, points);
-    run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{0}, now.ids, now.segments, paths.vertices,
-             paths.regions, level.axis, level.cut, table.points, flags);
+    run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{0}, now.ids, now.segments,
+             paths.vertices, paths.regions, level.axis, level.cut, table.points, flags);
     runtime.fill(deepest, vertices, cl_int{-1});
     host::segmented_arg_reduce(runtime, "quickhull", "deepest_points", now.segments, points, deepest,
-                               cl_int{rounds >= kRoundsBeforeBalance}, flags, now.ids, depth, now.places, paths.regions,
-                               level.axis, level.cut);
+                               cl_int{rounds >= kRoundsBeforeBalance}, flags, now.ids, depth, now.places,
+                               paths.regions, level.axis, level.cut);
     runtime.map("quickhull", "split_flags", vertices, deepest, splits);
     host::exclusive_scan(runtime, splits, vertices, splits);
     runtime.map("quickhull", "side_flags", points, now.segments, now.places, flags, deepest, sides);
     host::exclusive_scan(runtime, sides, points, sides);
-    runtime.map("quickhull", "advance_points", points, now.ids, now.segments, now.places, now.first, sides, splits,
-                next.ids, next.segments, next.places);
-    runtime.map("quickhull", "advance_paths", vertices, static_cast<cl_int>(points), now.ids, now.places, deepest,
-                now.first, sides, splits, paths.vertices, paths.places, paths.regions, next.ends.vertices,
-                next.ends.places, next.ends.regions, next.first, sizes);
+    runtime.map("quickhull", "advance_points", points, now.ids, now.segments, now.places, now.first, sides,
+                splits, next.ids, next.segments, next.places);
+    runtime.map("quickhull", "advance_paths", vertices, static_cast<cl_int>(points), now.ids, now.places,
+                deepest, now.first, sides, splits, paths.vertices, paths.places, paths.regions,
+                next.ends.vertices, next.ends.places, next.ends.regions, next.first, sizes);
     cl_uint new_sizes[2];
     runtime.read(sizes, 0, 2, new_sizes);
     points = new_sizes[0];
@@ -91,13 +92,13 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
   Arena& scratch = work.scratch();
   while (true) {
     const auto flags = scratch.allocate<cl_uchar>(paths.size);
-    runtime.map("quickhull", "path_flags", paths.size, work.bounds.hull, paths.places, paths.regions, paths.offsets,
-                level.axis, level.cut, flags);
+    runtime.map("quickhull", "path_flags", paths.size, work.bounds.hull, paths.places, paths.regions,
+                paths.offsets, level.axis, level.cut, flags);
     {
       Arena::Scope scope(scratch);
       const auto list = pack_undecided(work, flags, paths.size);
-      run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{1}, paths.vertices, paths.vertices,
-               paths.vertices, paths.regions, level.axis, level.cut, table.points, flags);
+      run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{1}, paths.vertices,
+               paths.vertices, paths.vertices, paths.regions, level.axis, level.cut, table.points, flags);
     }
     const auto [kept, kept_count] = host::pack_positions(runtime, flags, paths.size, 1);
     if (kept_count == paths.size) return paths;

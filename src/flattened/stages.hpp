@@ -1,5 +1,5 @@
-// The stages of the flattened triangulator and what they hand to each other. Each stage is one function, in the
-// file named as its kernel file; the level loop is in triangulator.cpp.
+// The stages of the flattened triangulator and what they hand to each other. Each stage is one function, in
+// the file named as its kernel file; the level loop is in triangulator.cpp.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ struct PointTable {
   std::size_t count = 0;
   std::size_t sets = 0;
   Buffer<cl_double2> points{};
-  Buffer<cl_int> source{};       ///< id to index of the input
+  Buffer<cl_int> source{};  ///< id to index of the input
   Buffer<cl_int> set_of_id{};
   Buffer<cl_int> set_offsets{};  ///< sets + 1 ids
   Buffer<cl_int> y_order{};      ///< ids by (set, y, x)
@@ -61,12 +61,12 @@ struct Level {
   std::size_t regions = 0;
   std::size_t points = 0;
   std::size_t corners = 0;
-  Buffer<cl_int> x_list{}, y_list{};   ///< internal points of each region, in either order
-  Buffer<cl_int> point_regions{};      ///< of both lists' places
-  Buffer<cl_int> point_offsets{};      ///< regions + 1
-  Buffer<cl_int> corner_ids{};         ///< 3 per corner: before, vertex, after
+  Buffer<cl_int> x_list{}, y_list{};  ///< internal points of each region, in either order
+  Buffer<cl_int> point_regions{};     ///< of both lists' places
+  Buffer<cl_int> point_offsets{};     ///< regions + 1
+  Buffer<cl_int> corner_ids{};        ///< 3 per corner: before, vertex, after
   Buffer<cl_int> corner_regions{};
-  Buffer<cl_int> corner_offsets{};     ///< regions + 1
+  Buffer<cl_int> corner_offsets{};  ///< regions + 1
   Buffer<cl_int> axis{};
   Buffer<cl_double> cut{};
   Buffer<cl_int> first_end{}, last_end{};  ///< ends of each region's hull
@@ -116,7 +116,8 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
 /// The strict hulls of a level's regions, whose ends are known: prune, quickhull, clean-up.
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics);
 
-/// What prune says of internal points, and behind them of corners: 0 not on the hull, 1 perhaps, 3 an end of it.
+/// What prune says of internal points, and behind them of corners: 0 not on the hull, 1 perhaps, 3 an end of
+/// it.
 struct Pruned {
   std::size_t elements = 0;
   Buffer<cl_uchar> flags{};
@@ -126,8 +127,8 @@ Pruned allocate_pruned(Workspace& work, const Level& level);
 void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
            const Pruned& pruned);
 
-/// What quickhull starts from: each region's two ends as its path, and points grouped by segment, segment v being
-/// below the chord from path vertex v to the next.
+/// What quickhull starts from: each region's two ends as its path, and points grouped by segment, segment v
+/// being below the chord from path vertex v to the next.
 struct HullPoints {
   std::size_t size = 0;
   Buffer<cl_int> ids{}, segments{};
@@ -160,11 +161,12 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
             const Buffer<cl_int>& large, std::size_t large_count, const Buffer<cl_uint>& counts);
 
 /// Twins of all half-edges; see neighbors.cl.
-void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t count, const Buffer<cl_int>& twins);
+void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t count,
+                 const Buffer<cl_int>& twins);
 
 /// Makes triangles canonical, and their twins with them.
-void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles, std::size_t count,
-                  const Buffer<cl_int>& twins);
+void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
+                  std::size_t count, const Buffer<cl_int>& twins);
 
 /// Packs the flags of value 2 into a list whose length stays on the device, and counts it as undecided.
 Buffer<cl_int> pack_undecided(Workspace& work, const Buffer<cl_uchar>& flags, std::size_t n);

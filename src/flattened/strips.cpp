@@ -5,8 +5,8 @@
 
 namespace flaunay::flattened {
 
-void strips(Workspace& work, const PointTable& table, const RetiredRegions& retired, const Buffer<cl_int>& large,
-            std::size_t large_count, const Buffer<cl_uint>& counts) {
+void strips(Workspace& work, const PointTable& table, const RetiredRegions& retired,
+            const Buffer<cl_int>& large, std::size_t large_count, const Buffer<cl_uint>& counts) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
@@ -32,8 +32,8 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
     Arena::Scope sort_scope(scratch);
     const auto keys = scratch.allocate<cl_ulong>(corners);
     const auto order = scratch.allocate<cl_int>(corners);
-    runtime.map("strips", "gather_large", corners, regions, large, large_offsets, retired.offsets, retired.corner_ids,
-                large_corners, corner_region, keys, order);
+    runtime.map("strips", "gather_large", corners, regions, large, large_offsets, retired.offsets,
+                retired.corner_ids, large_corners, corner_region, keys, order);
     host::sort_by_key(runtime, keys, order, corners);
     runtime.map("strips", "vertex_flags", corners, keys, scanned);
     host::exclusive_scan(runtime, scanned, corners, scanned);
@@ -50,8 +50,9 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
   int depth = 0;
   while ((std::size_t{3} << depth) < largest) ++depth;
   for (; depth >= 0; --depth) {
-    runtime.map("strips", "merge_strips", vertex_count, cl_int{depth}, work.bounds.orient, work.bounds.circle, vertices,
-                vertex_region, vertex_offsets, table.points, origin, around, hull_edges, free_lists);
+    runtime.map("strips", "merge_strips", vertex_count, cl_int{depth}, work.bounds.orient, work.bounds.circle,
+                vertices, vertex_region, vertex_offsets, table.points, origin, around, hull_edges,
+                free_lists);
   }
 
   const auto vertex_edge = scratch.allocate<cl_int>(vertex_count);
@@ -60,15 +61,15 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
   const auto border_edge = scratch.allocate<cl_int>(corners);
   const auto missing = scratch.allocate<cl_int>(large_count);
   runtime.fill(missing, large_count, cl_int{0});
-  runtime.map("strips", "border_edges", corners, large_corners, corner_region, corner_vertex, vertices, vertex_edge,
-              origin, around, border_edge, missing);
-  runtime.map("strips", "restore_border", large_count, missing, large_offsets, large_corners, corner_vertex, vertices,
-              vertex_edge, table.points, work.bounds.orient, work.bounds.circle, origin, around, border_edge,
-              work.broken);
+  runtime.map("strips", "border_edges", corners, large_corners, corner_region, corner_vertex, vertices,
+              vertex_edge, origin, around, border_edge, missing);
+  runtime.map("strips", "restore_border", large_count, missing, large_offsets, large_corners, corner_vertex,
+              vertices, vertex_edge, table.points, work.bounds.orient, work.bounds.circle, origin, around,
+              border_edge, work.broken);
   for (const cl_int write : {0, 1}) {
-    runtime.map("strips", "count_fans", corners, write, large_corners, corner_region, corner_vertex, vertices, origin,
-                around, border_edge, large, large_offsets, retired.offsets, scanned, scanned, retired.corner_ids,
-                work.broken);
+    runtime.map("strips", "count_fans", corners, write, large_corners, corner_region, corner_vertex, vertices,
+                origin, around, border_edge, large, large_offsets, retired.offsets, scanned, scanned,
+                retired.corner_ids, work.broken);
     if (!write) host::exclusive_scan(runtime, scanned, corners, scanned);
   }
   runtime.map("strips", "large_counts", large_count, large, large_offsets, scanned, counts);

@@ -18,26 +18,29 @@ double now() {
 
 // Corners, triangles and half-edges are counted in 32 bits, six half-edges a point and some slack.
 constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 1;
-// What the arenas are made to hold for each input point; enough for all inputs measured (docs/performance.md). An
-// input that needs more gets further blocks.
+// What the arenas are made to hold for each input point; enough for all inputs measured
+// (docs/performance.md). An input that needs more gets further blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // twice: of the level at work and of the next
 constexpr std::size_t kScratchBytesPerPoint = 170;
-constexpr std::size_t kBytesPerPoint = kPersistentBytesPerPoint + 2 * kStateBytesPerPoint + kScratchBytesPerPoint;
+constexpr std::size_t kBytesPerPoint =
+    kPersistentBytesPerPoint + 2 * kStateBytesPerPoint + kScratchBytesPerPoint;
 
 host::Runtime make_runtime(const std::string& wanted) {
   try {
     const boost::compute::device device = host::find_device(wanted);
     if (!host::has_fp64(device)) {
-      throw host::DeviceError(fmt::format("{} has no double precision (fp64), which exactness needs; "
-                                          "flaunay devices lists the others",
-                                          device.name()));
+      throw host::DeviceError(
+          fmt::format("{} has no double precision (fp64), which exactness needs; "
+                      "flaunay devices lists the others",
+                      device.name()));
     }
     return host::Runtime(device);
   } catch (const host::DeviceError& error) {
     throw Error(ErrorKind::device, error.what());
   } catch (const boost::compute::opencl_error& error) {
-    throw Error(ErrorKind::device, fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
+    throw Error(ErrorKind::device,
+                fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
   }
 }
 
@@ -75,9 +78,10 @@ struct Triangulator::Implementation {
     }
     const std::string failure = flattened::self_test_failure(runtime);
     if (!failure.empty()) {
-      throw Error(ErrorKind::device, fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
-                                                 "another device (FLAUNAY_DEVICE)",
-                                                 runtime.device().name(), failure));
+      throw Error(ErrorKind::device,
+                  fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
+                              "another device (FLAUNAY_DEVICE)",
+                              runtime.device().name(), failure));
     }
   }
 
@@ -110,11 +114,12 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   const std::size_t n = offsets.back();
   const std::size_t sets = offsets.size() - 1;
   if (n > capacity()) {
-    throw Error(n > kMostPoints ? ErrorKind::input : ErrorKind::device,
-                fmt::format("{} points are too many: {} would fit on {} ({} bytes of memory, {} in one piece, {} "
-                            "bytes a point)",
-                            n, capacity(), runtime.device().name(), runtime.device().global_memory_size(),
-                            runtime.device().max_memory_alloc_size(), kBytesPerPoint));
+    throw Error(
+        n > kMostPoints ? ErrorKind::input : ErrorKind::device,
+        fmt::format("{} points are too many: {} would fit on {} ({} bytes of memory, {} in one piece, {} "
+                    "bytes a point)",
+                    n, capacity(), runtime.device().name(), runtime.device().global_memory_size(),
+                    runtime.device().max_memory_alloc_size(), kBytesPerPoint));
   }
   Triangulation result;
   Statistics& statistics = result.statistics;
@@ -152,7 +157,8 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   runtime.fill(work.undecided, 1, cl_uint{0});
   report("sorting", -1, 0.0);
   PointTable table = ingest(work, coordinates, offsets, result.representatives.data());
-  for (std::size_t i = 0; i < n; ++i) statistics.duplicates += result.representatives[i] != static_cast<cl_int>(i);
+  for (std::size_t i = 0; i < n; ++i)
+    statistics.duplicates += result.representatives[i] != static_cast<cl_int>(i);
   end_phase("sort");
 
   report("borders", -1, 0.05);
@@ -190,13 +196,15 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
     level = next;
     state_scope = std::move(next_scope);
     report("levels", depth,
-           0.1 + 0.8 * (1.0 - static_cast<double>(level.points) / static_cast<double>(std::max<std::size_t>(1, internal_points))));
+           0.1 + 0.8 * (1.0 - static_cast<double>(level.points) /
+                                  static_cast<double>(std::max<std::size_t>(1, internal_points))));
   }
   state_scope.reset();
   check_invariants(work);
   std::vector<cl_int> largest(statistics.levels.size());
   runtime.read(work.largest, 0, largest.size(), largest.data());
-  for (std::size_t l = 0; l < largest.size(); ++l) statistics.levels[l].largest_region = static_cast<std::size_t>(largest[l]);
+  for (std::size_t l = 0; l < largest.size(); ++l)
+    statistics.levels[l].largest_region = static_cast<std::size_t>(largest[l]);
   if (done != triangle_count) {
     throw Error(ErrorKind::internal,
                 fmt::format("{} triangles instead of {}; please report the input", done, triangle_count));
@@ -235,8 +243,8 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
     report("output", -1, 0.95);
     const auto output = work.scratch().allocate<cl_int>(rows);
     const auto neighbors = work.scratch().allocate<cl_int>(options.neighbors ? rows : 0);
-    runtime.map("output", "finish_rows", triangle_count, cl_int{options.neighbors}, triangles, twins, table.source,
-                output, neighbors);
+    runtime.map("output", "finish_rows", triangle_count, cl_int{options.neighbors}, triangles, twins,
+                table.source, output, neighbors);
     result.triangles.resize(rows);
     runtime.read(output, 0, rows, result.triangles.data());
     if (options.neighbors) {

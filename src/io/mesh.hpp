@@ -28,8 +28,8 @@ void write_npy_int32(const std::string& path, const std::vector<std::int32_t>& v
 /// .ply as write_mesh writes it. Throws Error(input) that names the place.
 std::vector<std::int32_t> read_triangles(const std::string& path);
 
-/// Reads neighbours, as write_npy_int32 writes Triangulation::neighbors: .npy (int32 or int64, m x 3), triangle
-/// indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
+/// Reads neighbours, as write_npy_int32 writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
+/// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
 std::vector<std::int32_t> read_neighbors(const std::string& path);
 
 }  // namespace flaunay::io

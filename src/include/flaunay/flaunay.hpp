@@ -79,8 +79,8 @@ struct Statistics {
   std::size_t duplicates = 0;  ///< input points that are not their own representative
   std::size_t triangles = 0;
   std::size_t hull_vertices = 0;
-  double seconds = 0;       ///< from points in host memory to results in host memory
-  double build_seconds = 0; ///< building programs, part of no other figure
+  double seconds = 0;        ///< from points in host memory to results in host memory
+  double build_seconds = 0;  ///< building programs, part of no other figure
   std::size_t kernel_launches = 0;
   std::size_t host_waits = 0;         ///< times the host waited for the device
   std::size_t device_bytes_peak = 0;  ///< most device memory held at once
@@ -97,8 +97,8 @@ struct Triangulation {
   std::vector<std::int32_t> triangles;
   /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull. Empty if not asked for.
   std::vector<std::int32_t> neighbors;
-  /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest point.
-  /// Collinear sets: the distinct points in lexicographic order.
+  /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
+  /// point. Collinear sets: the distinct points in lexicographic order.
   std::vector<std::int32_t> hull;
   /// One per input point: the smallest index of a point of its set with the same coordinates.
   std::vector<std::int32_t> representatives;
@@ -110,12 +110,12 @@ struct Triangulation {
 
 /// What the library says of an OpenCL device.
 struct DeviceInfo {
-  std::string name;      ///< as FLAUNAY_DEVICE matches it
+  std::string name;  ///< as FLAUNAY_DEVICE matches it
   std::string platform;
   std::string vendor;
   std::string driver;
   std::string version;
-  std::string type;      ///< "CPU", "GPU", "accelerator"
+  std::string type;  ///< "CPU", "GPU", "accelerator"
   unsigned compute_units = 0;
   unsigned clock_mhz = 0;
   std::size_t memory_bytes = 0;

@@ -1,0 +1,37 @@
+// Binary searches.
+#ifndef FLAUNAY_SEARCH_H
+#define FLAUNAY_SEARCH_H
+
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+
+// The last of `count` segments that begins at i or before; offsets ascend and offsets[0] <= i. Of segments that begin
+// at the same place, the last, which is the one that is not empty.
+static inline int segment_of(int i, int count, global const int* restrict offsets) {
+  int low = 0, high = count;
+  while (high - low > 1) {
+    const int middle = low + (high - low) / 2;
+    if (offsets[middle] <= i) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// The last path vertex of first..last with u no greater than the given one; first if there is none. Places are (s, u),
+// ascending in u.
+static inline int search_path(double u, int first, int last, global const double2* restrict path_places) {
+  int low = first, high = last + 1;
+  while (high - low > 1) {
+    const int middle = low + (high - low) / 2;
+    if (path_places[middle].y <= u) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+#endif
