@@ -16,8 +16,8 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Corners, triangles and half-edges are counted in 32 bits, six half-edges a point and some slack.
-constexpr std::size_t kMostPoints = (std::size_t{1} << 28) - 1;
+// Kernels index with 32-bit integers: at most 6 corners a point, of 3 ids each.
+constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
 // What the arenas are made to hold for each input point; enough for all inputs measured
 // (docs/performance.md). An input that needs more gets further blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 54;
@@ -299,6 +299,8 @@ Triangulation Triangulator::triangulate(const double* coordinates, const std::ve
     return implementation_->triangulate(coordinates, offsets, options);
   } catch (const host::DeviceError& error) {
     throw Error(ErrorKind::device, error.what());
+  } catch (const boost::compute::opencl_error& error) {
+    throw Error(ErrorKind::device, fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
   }
 }
 
