@@ -21,6 +21,13 @@ std::shared_ptr<_cl_mem> own(cl_mem memory) {
   return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
 }
 
+std::shared_ptr<_cl_mem> create_buffer(cl_context context, std::size_t bytes) {
+  cl_int code = CL_SUCCESS;
+  cl_mem memory = clCreateBuffer(context, CL_MEM_READ_WRITE, bytes, nullptr, &code);
+  check_call(code, "clCreateBuffer");
+  return own(memory);
+}
+
 }  // namespace
 
 Arena::Arena(boost::compute::context context, const boost::compute::device& device)
@@ -47,7 +54,6 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
                     bytes, largest_),
         CL_INVALID_BUFFER_SIZE);
   }
-  cl_int code = CL_SUCCESS;
 #ifdef __linux__
   // Kernels jump about in these blocks: with pages of 4 KiB the translation of addresses would cost more than
   // the loads.
@@ -55,6 +61,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
     const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     if (void* pages = std::aligned_alloc(kHugePage, rounded)) {
       madvise(pages, rounded, MADV_HUGEPAGE);
+      cl_int code = CL_SUCCESS;
       cl_mem memory =
           clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
       if (code == CL_SUCCESS) {
@@ -68,10 +75,9 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
     }
   }
 #endif
-  cl_mem memory = clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code);
-  check_call(code, "clCreateBuffer");
+  std::shared_ptr<_cl_mem> memory = create_buffer(context_.get(), bytes);
   ++block_allocations_;
-  return own(memory);
+  return memory;
 }
 
 void Arena::reserve(std::size_t bytes) {
@@ -90,13 +96,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
         CL_INVALID_BUFFER_SIZE);
   }
   const std::size_t bytes = count * size;
-  if (separate_) {
-    cl_int code = CL_SUCCESS;
-    cl_mem memory =
-        clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1), nullptr, &code);
-    check_call(code, "clCreateBuffer");
-    return own(memory);
-  }
+  if (separate_) return create_buffer(context_.get(), std::max<std::size_t>(bytes, 1));
   // OpenCL has no empty buffers; an array of no elements still needs an address.
   const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
   while (blocks_[current_].used + rounded > blocks_[current_].size) {

@@ -2,9 +2,12 @@
 //
 // extreme_* find the ends of each region's hull among its border vertices (passes of a segmented arg-reduce).
 // candidate_flags takes from each bucket of consecutive internal points, sorted along the cut line, the one
-// nearest to the line: one pass, a work-item a bucket. Quickhull makes those into a chord path. prune_points and
-// prune_corners then hold every internal point and corner against the path's chord over it: one pass, a binary search
-// for each bucket or corner. What floating point cannot decide gets flag 2 and goes to hull_depth_exact (quickhull.cl).
+// nearest to the line: one pass, a work-item a bucket. Quickhull makes those into a chord path; thin_regions and
+// thin_offsets let many candidates be pruned as a level of their own first. path_bands bounds how high above the line
+// a point can be and matter; prune_points and prune_corners then hold every internal point and corner against that bound
+// and the path's chord over it: one pass, a binary search for each bucket or corner at most. What floating point cannot
+// decide gets flag 2 and goes to hull_depth_exact (quickhull.cl). begin_paths and gather_points hand what is kept to
+// quickhull, brought together by region.
 
 #include "shared/hull_height.h"
 #include "shared/search.h"
