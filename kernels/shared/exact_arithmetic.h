@@ -4,27 +4,26 @@
 #ifndef FLAUNAY_EXACT_ARITHMETIC_H
 #define FLAUNAY_EXACT_ARITHMETIC_H
 
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#pragma OPENCL FP_CONTRACT OFF
+#include "shared/language.h"
 
 // x + y = a + b exactly, x = fl(a + b).
 static inline double2 two_sum(double a, double b) {
   const double x = a + b;
   const double b_virtual = x - a;
   const double a_virtual = x - b_virtual;
-  return (double2)(x, (a - a_virtual) + (b - b_virtual));
+  return PAIR(x, (a - a_virtual) + (b - b_virtual));
 }
 
 // The same for |a| >= |b| or a = 0.
 static inline double2 fast_two_sum(double a, double b) {
   const double x = a + b;
-  return (double2)(x, b - (x - a));
+  return PAIR(x, b - (x - a));
 }
 
 // x + y = a * b exactly, x = fl(a * b).
 static inline double2 two_product(double a, double b) {
   const double x = a * b;
-  return (double2)(x, fma(a, b, -x));
+  return PAIR(x, fma(a, b, -x));
 }
 
 static inline int sign_of(double x) { return (x > 0.0) - (x < 0.0); }

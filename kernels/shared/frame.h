@@ -2,8 +2,7 @@
 #ifndef FLAUNAY_FRAME_H
 #define FLAUNAY_FRAME_H
 
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#pragma OPENCL FP_CONTRACT OFF
+#include "shared/language.h"
 
 // A region's axis. The first two cut a region through the line s = q and take the lower hull of the projections
 // (u, (s - q)^2 + (u - u_q)^2); both frames are right-handed, so "left of the path" means s < q in either.
@@ -21,11 +20,11 @@ static inline double2 to_frame(double2 p, int axis) {
     case AXIS_X:
       return p;
     case AXIS_Y:
-      return (double2)(p.y, -p.x);
+      return PAIR(p.y, -p.x);
     case AXIS_PLANAR_LOWER:
-      return (double2)(p.y, p.x);
+      return PAIR(p.y, p.x);
     default:
-      return (double2)(-p.y, -p.x);
+      return PAIR(-p.y, -p.x);
   }
 }
 

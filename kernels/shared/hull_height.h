@@ -33,7 +33,7 @@ static inline double2 hull_depth(double2 a, double2 b, double2 p, double q, int 
   const double tb = hb * from_a;
   const double tu = planar ? 0.0 : length * (from_a * to_b);
   const double tp = length * hp;
-  return (double2)(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
+  return PAIR(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
 }
 
 // The exact sign of depth: -(bu * ds(c) - cu * ds(b)) with everything relative to a, where for the cut at q

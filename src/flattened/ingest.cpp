@@ -1,67 +1,9 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "flattened/stages.hpp"
+#include "input/magnitudes.hpp"
 
 namespace flaunay::flattened {
-namespace {
-
-// Coordinates below 2^250 that are multiples of 2^-255: no product of four overflows, and none underflows.
-// See docs/exactness.md.
-constexpr int kLargestExponent = 249;
-constexpr int kLowestExponent = -255;
-// Coordinates of so many bits make the filters exact: 3k + 4, 2k + 3 and 4k + 8 bits within 53.
-constexpr int kCoarseHullBits = 16;
-constexpr int kCoarseOrientBits = 25;
-constexpr int kCoarseCircleBits = 11;
-
-// As in the kernels' headers.
-constexpr double kRoundoff = 0x1p-53;
-constexpr double kHullBound = 10.0 * kRoundoff;
-constexpr double kOrientBound = (3.0 + 16.0 * kRoundoff) * kRoundoff;
-constexpr double kCircleBound = (10.0 + 96.0 * kRoundoff) * kRoundoff;
-
-struct Accounts {
-  cl_int largest = -10000;
-  cl_int lowest = 10000;
-  cl_int bad = std::numeric_limits<cl_int>::max();
-};
-
-// Exponent of the lowest set bit.
-int lowest_bit(double x) {
-  int exponent = 0;
-  const double fraction = std::frexp(x, &exponent);
-  auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::fabs(fraction), 53));
-  int low = exponent - 53;
-  while ((mantissa & 1) == 0) {
-    mantissa >>= 1;
-    ++low;
-  }
-  return low;
-}
-
-[[noreturn]] void throw_range(const double* coordinates, std::size_t n, const Accounts& accounts) {
-  std::size_t largest = 0, finest = 0;
-  for (std::size_t i = 0; i < 2 * n; ++i) {
-    const double x = coordinates[i];
-    if (x == 0) continue;
-    if (std::ilogb(x) == accounts.largest) largest = i;
-    if (lowest_bit(x) == accounts.lowest) finest = i;
-  }
-  throw Error(
-      ErrorKind::input,
-      fmt::format(
-          "the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
-          "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
-          largest / 2, largest % 2 ? "y" : "x", coordinates[largest], finest / 2, finest % 2 ? "y" : "x",
-          coordinates[finest], accounts.largest - accounts.lowest + 1,
-          kLargestExponent - kLowestExponent + 1));
-}
-
-}  // namespace
 
 PointTable ingest(Workspace& work, const double* coordinates, const std::vector<std::size_t>& offsets,
                   std::int32_t* representatives) {
@@ -80,27 +22,14 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
   runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
 
-  Accounts accounts;
-  const auto device_accounts = scratch.allocate<cl_int>(3);
-  runtime.write(device_accounts, 0, 3, &accounts.largest);
-  runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), input, device_accounts);
-  runtime.read(device_accounts, 0, 3, &accounts.largest);
-  if (accounts.bad < static_cast<cl_int>(n)) {
-    const double x = coordinates[2 * accounts.bad];
-    const double y = coordinates[2 * accounts.bad + 1];
-    throw Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", accounts.bad, x, y));
-  }
-  int shift = 0;
-  int bits = 0;
-  if (accounts.lowest <= accounts.largest) {
-    bits = accounts.largest - accounts.lowest + 1;
-    if (accounts.largest > kLargestExponent) shift = kLargestExponent - accounts.largest;
-    if (accounts.lowest < kLowestExponent) shift = kLowestExponent - accounts.lowest;
-    if (bits > kLargestExponent - kLowestExponent + 1) throw_range(coordinates, n, accounts);
-  }
-  work.bounds.hull = bits <= kCoarseHullBits ? 0 : kHullBound;
-  work.bounds.orient = bits <= kCoarseOrientBits ? 0 : kOrientBound;
-  work.bounds.circle = bits <= kCoarseCircleBits ? 0 : kCircleBound;
+  Magnitudes magnitudes;
+  const auto device_magnitudes = scratch.allocate<cl_int>(3);
+  runtime.write(device_magnitudes, 0, 3, &magnitudes.largest);
+  runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), input, device_magnitudes);
+  runtime.read(device_magnitudes, 0, 3, &magnitudes.largest);
+  const Scaling scaling = scaling_for(coordinates, n, magnitudes);
+  const int shift = scaling.shift;
+  work.bounds = scaling.bounds;
   const cl_double s0 = std::ldexp(1.0, shift / 3);
   const cl_double s1 = std::ldexp(1.0, (shift - shift / 3) / 2);
   const cl_double s2 = std::ldexp(1.0, shift - shift / 3 - (shift - shift / 3) / 2);

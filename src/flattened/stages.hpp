@@ -10,18 +10,12 @@
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 #include "host/vector_operations.hpp"
+#include "input/magnitudes.hpp"
 
 namespace flaunay::flattened {
 
 using host::Arena;
 using host::Buffer;
-
-/// Bounds of the filters; 0 where the input is so coarse that floating point is exact (docs/exactness.md).
-struct Bounds {
-  double hull = 0;
-  double orient = 0;
-  double circle = 0;
-};
 
 /// What every stage works with.
 struct Workspace {

@@ -108,9 +108,7 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
                                                         const Options& options) {
   using namespace flattened;
   const double begin = now();
-  if (offsets.empty() || offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
-    throw Error(ErrorKind::usage, "offsets of point sets must begin with 0 and not decrease");
-  }
+  check_offsets(offsets);
   const std::size_t n = offsets.back();
   const std::size_t sets = offsets.size() - 1;
   if (n > capacity()) {

@@ -1,6 +1,7 @@
 // flaunay: exact two-dimensional Delaunay triangulation on any OpenCL device.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -35,17 +36,75 @@ enum class Cut {
   alternate,      ///< x and y in turn, as in the paper
 };
 
+/// How the divide and conquer is executed. The result is the same set of triangles, whatever the mode.
+enum class Mode {
+  flattened,         ///< on the device, all regions of a level at once
+  recursive_device,  ///< by the same kernels, one region at a time, depth first
+  recursive,         ///< plain recursion on the host, one thread: the readable twin
+  partition,         ///< a few flattened levels on the device, then Dwyer's algorithm on host threads
+  dwyer,             ///< Dwyer's divide and conquer on the host, one thread: the sequential rival
+};
+
+/// How the dividing paths are computed. The result is the same, whatever the variant.
+enum class Hull {
+  prune,           ///< prune by candidates from buckets, then quickhull
+  quickhull,       ///< quickhull alone
+  balanced,        ///< a few rounds of quickhull, then balanced splits (Chan, Snoeyink and Yap)
+  monotone_chain,  ///< Andrew's scan over points sorted along the cut; Mode::recursive only
+};
+
 /// What a caller can ask of one triangulation.
 struct Options {
+  Mode mode = Mode::flattened;
   Cut cut = Cut::interquartile;
-  bool neighbors = true;  ///< compute Triangulation::neighbors
-  bool profile = false;   ///< time every kernel by events; costs a little
+  Hull hull = Hull::prune;
+  bool neighbors = true;     ///< compute Triangulation::neighbors
+  bool profile = false;      ///< time every kernel by events; costs a little
+  bool count = false;        ///< count operations into Statistics::work; slow
+  int partition_levels = 0;  ///< Mode::partition: levels on the device; 0 chooses
+  int threads = 0;           ///< Mode::partition: host threads; 0 takes one per core
   /// Called between levels, on the calling thread; may be empty.
   /// done is the share of the points' work that is finished, 0 to 1.
   std::function<void(const std::string& stage, int level, double done)> progress;
 };
 
-/// One level of the flattened recursion.
+/// The parts of the algorithm, as the paper divides its work.
+enum class Component {
+  cut,      ///< medians and axes; sorting and partitioning in Mode::dwyer
+  hull,     ///< dividing paths
+  merge,    ///< border merge; the merges of Mode::dwyer
+  split,    ///< points to either side
+  endgame,  ///< triangles of regions without internal points
+};
+constexpr std::size_t kComponents = 5;
+
+/// What one component did: numbers of operations by kind, and the length of its critical path in operations.
+/// See docs/counting.md for what counts, and for how the depth of each vector operation is defined.
+struct OperationCounts {
+  std::uint64_t arithmetic = 0;    ///< additions, multiplications and comparisons outside of predicates
+  std::uint64_t depths = 0;        ///< evaluations of the depth below a chord
+  std::uint64_t orientations = 0;  ///< evaluations of the orientation of three points
+  std::uint64_t circles = 0;       ///< evaluations of the in-circle test
+  std::uint64_t critical_path = 0;
+
+  /// All as floating-point operations, arithmetic and comparisons: a predicate counts for the operations of
+  /// its plain evaluation, without the error bound's.
+  std::uint64_t operations() const noexcept;
+  /// The same with the operations that bound each predicate's error.
+  std::uint64_t operations_with_bounds() const noexcept;
+};
+
+/// Options::count: the work by component and level. Level 0 is the first cut (in Mode::dwyer the last merge);
+/// start is what precedes it: sorting and the first hulls.
+struct Work {
+  using Components = std::array<OperationCounts, kComponents>;
+  Components start{};
+  std::vector<Components> levels;
+  /// Corners of each region that the end game triangulated: histogram[k] regions of k corners.
+  std::vector<std::uint64_t> endgame_sizes;
+};
+
+/// One level of the recursion.
 struct LevelStatistics {
   std::size_t regions = 0;          ///< regions cut at this level
   std::size_t internal_points = 0;  ///< their internal points, all together
@@ -88,6 +147,7 @@ struct Statistics {
   std::vector<PhaseStatistics> phases;
   std::vector<LevelStatistics> levels;
   std::vector<KernelStatistics> kernels;
+  Work work;  ///< empty without Options::count
 };
 
 /// The triangulations of one or more point sets. All indices are those of the input points, over all sets;
@@ -107,6 +167,34 @@ struct Triangulation {
   std::vector<std::size_t> hull_offsets;
   Statistics statistics;
 };
+
+/// A region of a partition: a part of the triangulation still to be computed. Its border is made of Delaunay
+/// edges, so the triangles on its inside depend on its own points alone.
+struct Region {
+  /// Indices of input points: those inside, and those of the border.
+  std::vector<std::int32_t> points;
+  /// Directed edges, two positions in points each, the region on the left.
+  std::vector<std::int32_t> border;
+};
+
+/// A set of points cut into regions by some levels of the recursion.
+struct Partition {
+  std::vector<Region> regions;
+  /// Triangles that are final already, of regions that had no points inside: 3 indices of input points each.
+  std::vector<std::int32_t> triangles;
+  Statistics statistics;
+};
+
+/// Puts a partition together again. solutions: for each region any Delaunay triangulation of its points, 3
+/// positions in Region::points per triangle, in either orientation, what lies outside the border included.
+/// The result is that of triangulate. Throws Error(input) if a solution is not a triangulation of its
+/// region's points. Uses no device.
+Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
+                       const std::vector<std::vector<std::int32_t>>& solutions, const Options& options = {});
+
+/// Mode::recursive and Mode::dwyer without a device. Throws Error(usage) for another mode.
+Triangulation triangulate_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                  const Options& options);
 
 /// What the library says of an OpenCL device.
 struct DeviceInfo {
@@ -157,6 +245,9 @@ class Triangulator {
   /// last offset the number of points; sets may be empty.
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
+
+  /// The regions after `levels` levels, up to 2^levels of them; O(levels n) work after sorting.
+  Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options = {});
 
  private:
   struct Implementation;

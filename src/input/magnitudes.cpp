@@ -1,0 +1,86 @@
+#include "input/magnitudes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay {
+namespace {
+
+// Coordinates below 2^250 that are multiples of 2^-255: no product of four overflows, and none underflows.
+constexpr int kLargestExponent = 249;
+constexpr int kLowestExponent = -255;
+// Coordinates of so many bits make the filters exact: 3k + 4, 2k + 3 and 4k + 8 bits within 53.
+constexpr int kCoarseHullBits = 16;
+constexpr int kCoarseOrientBits = 25;
+constexpr int kCoarseCircleBits = 11;
+
+// As in the kernels' headers.
+constexpr double kRoundoff = 0x1p-53;
+constexpr double kHullBound = 10.0 * kRoundoff;
+constexpr double kOrientBound = (3.0 + 16.0 * kRoundoff) * kRoundoff;
+constexpr double kCircleBound = (10.0 + 96.0 * kRoundoff) * kRoundoff;
+
+[[noreturn]] void throw_range(const double* coordinates, std::size_t n, const Magnitudes& magnitudes) {
+  std::size_t largest = 0, finest = 0;
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    const double x = coordinates[i];
+    if (x == 0) continue;
+    if (std::ilogb(x) == magnitudes.largest) largest = i;
+    if (lowest_bit(x) == magnitudes.lowest) finest = i;
+  }
+  throw Error(
+      ErrorKind::input,
+      fmt::format(
+          "the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
+          "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
+          largest / 2, largest % 2 ? "y" : "x", coordinates[largest], finest / 2, finest % 2 ? "y" : "x",
+          coordinates[finest], magnitudes.largest - magnitudes.lowest + 1,
+          kLargestExponent - kLowestExponent + 1));
+}
+
+}  // namespace
+
+int lowest_bit(double x) {
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);
+  auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::fabs(fraction), 53));
+  int low = exponent - 53;
+  while ((mantissa & 1) == 0) {
+    mantissa >>= 1;
+    ++low;
+  }
+  return low;
+}
+
+Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& magnitudes) {
+  if (magnitudes.bad < static_cast<int>(n)) {
+    const double x = coordinates[2 * magnitudes.bad];
+    const double y = coordinates[2 * magnitudes.bad + 1];
+    throw Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", magnitudes.bad, x, y));
+  }
+  Scaling scaling;
+  int bits = 0;
+  if (magnitudes.lowest <= magnitudes.largest) {
+    bits = magnitudes.largest - magnitudes.lowest + 1;
+    if (magnitudes.largest > kLargestExponent) scaling.shift = kLargestExponent - magnitudes.largest;
+    if (magnitudes.lowest < kLowestExponent) scaling.shift = kLowestExponent - magnitudes.lowest;
+    if (bits > kLargestExponent - kLowestExponent + 1) throw_range(coordinates, n, magnitudes);
+  }
+  scaling.bounds.hull = bits <= kCoarseHullBits ? 0 : kHullBound;
+  scaling.bounds.orient = bits <= kCoarseOrientBits ? 0 : kOrientBound;
+  scaling.bounds.circle = bits <= kCoarseCircleBits ? 0 : kCircleBound;
+  return scaling;
+}
+
+void check_offsets(const std::vector<std::size_t>& offsets) {
+  if (offsets.empty() || offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
+    throw Error(ErrorKind::usage, "offsets of point sets must begin with 0 and not decrease");
+  }
+}
+
+}  // namespace flaunay

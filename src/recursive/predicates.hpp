@@ -1,0 +1,49 @@
+// The kernels' predicates on the host: the same text (kernels/shared), read as C++.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "input/magnitudes.hpp"
+
+namespace flaunay::recursive {
+
+namespace kernel {
+
+struct double2 {
+  double x, y;
+};
+inline double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
+inline double2 operator-(double2 a) { return {-a.x, -a.y}; }
+using std::fabs;
+using std::fma;
+
+#define PAIR(x, y) (double2{(x), (y)})
+#include "shared/hull_height.h"
+#include "shared/planar.h"
+#undef PAIR
+
+}  // namespace kernel
+
+/// (x, y), or (s, u) in a region's frame; see kernels/shared/frame.h.
+using Point = kernel::double2;
+
+inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }
+
+/// Exact signs: the filter first, expansions where it cannot decide.
+struct Predicates {
+  Bounds bounds{};
+
+  /// 1 if a, b, c turn left, -1 right, 0 straight.
+  int orient(Point a, Point b, Point c) const {
+    const int sign = kernel::orient_filtered(a, b, c, bounds.orient);
+    return sign == UNDECIDED ? kernel::orient_exact(a, b, c) : sign;
+  }
+  /// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
+  int circle(Point a, Point b, Point c, Point d) const {
+    const int sign = kernel::circle_filtered(a, b, c, d, bounds.circle);
+    return sign == UNDECIDED ? kernel::circle_exact(a, b, c, d) : sign;
+  }
+};
+
+}  // namespace flaunay::recursive
