@@ -1,9 +1,13 @@
 #include "recursive/points.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
+#include "flaunay/flaunay.hpp"
 #include "recursive/sort.hpp"
 
 namespace flaunay::recursive {
@@ -13,6 +17,16 @@ constexpr int kMantissaBits = 52;
 constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
 constexpr int kExponentMask = 0x7ff;
 constexpr int kExponentBias = 1023;
+
+// A mesh has up to 6 half-edges a point, numbered by 32-bit integers.
+constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max() / 6;
+
+void check_size(std::size_t n) {
+  if (n <= kMostPoints) return;
+  throw Error(
+      ErrorKind::input,
+      fmt::format("{} points are too many for 32-bit indices: at most {} are possible", n, kMostPoints));
+}
 
 int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
 
@@ -88,6 +102,7 @@ class Order {
 PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offsets) {
   check_offsets(offsets);
   const std::size_t n = offsets.back();
+  check_size(n);
   const Scaling scaling = scaling_for(coordinates, n, inspect(coordinates, n));
   PointSets sets;
   sets.predicates.bounds = scaling.bounds;

@@ -1,16 +1,12 @@
 // The modes that need no device.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <chrono>
-#include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
 #include "recursive/dwyer.hpp"
 #include "recursive/mesh.hpp"
+#include "recursive/phases.hpp"
 #include "recursive/points.hpp"
 #include "recursive/sort.hpp"
 
@@ -18,45 +14,9 @@ namespace flaunay {
 namespace recursive {
 namespace {
 
-// Half-edges, up to 6 a point, are numbered by 32-bit integers.
-constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max() / 6;
-
 // Shares of the time, for progress.
 constexpr double kSorted = 0.2;
 constexpr double kTriangulated = 0.8;
-
-// Times the phases of one call and tells of them.
-class Phases {
- public:
-  explicit Phases(const Options& options) : options_(options) {}
-
-  void progress(const char* stage, double done) const {
-    if (options_.progress) options_.progress(stage, 0, done);
-  }
-  void end(const char* name) {
-    const Clock::time_point now = Clock::now();
-    phases_.push_back({name, std::chrono::duration<double>(now - last_).count()});
-    last_ = now;
-  }
-  void write(Statistics& statistics) const {
-    statistics.seconds = std::chrono::duration<double>(last_ - begin_).count();
-    statistics.phases = phases_;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  const Options& options_;
-  const Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-  std::vector<PhaseStatistics> phases_;
-};
-
-void check_size(const std::vector<std::size_t>& offsets) {
-  if (offsets.empty() || offsets.back() <= kMostPoints) return;
-  throw Error(ErrorKind::input,
-              fmt::format("{} points are too many for 32-bit indices: at most {} are possible",
-                          offsets.back(), kMostPoints));
-}
 
 void append_set(Mesh&& set, std::int32_t first_id, Mesh& all) {
   if (all.triangles.empty() && first_id == 0) {
@@ -100,7 +60,6 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
   if (options.mode != Mode::dwyer && options.mode != Mode::recursive) {
     throw Error(ErrorKind::usage, "only the modes recursive and dwyer run without a device");
   }
-  check_size(offsets);
   Phases phases(options);
   phases.progress("sort", 0);
   const PointSets sets = ingest(coordinates, offsets);
