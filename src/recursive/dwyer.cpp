@@ -16,15 +16,6 @@
 namespace flaunay::recursive {
 namespace {
 
-// Kept out of line, so that the common path is short.
-[[gnu::noinline]] bool orient_exactly_positive(Point a, Point b, Point c) {
-  return kernel::orient_exact(a, b, c) > 0;
-}
-
-[[gnu::noinline]] bool circle_exactly_positive(Point a, Point b, Point c, Point d) {
-  return kernel::circle_exact(a, b, c, d) > 0;
-}
-
 // What one node of the recursion does.
 template <bool kCounting>
 struct NodeCounts {
@@ -296,14 +287,14 @@ class Builder {
   bool turns_left(Point a, Point b, Point c, Counts& counts) const {
     counts.orientation();
     const int sign = kernel::orient_filtered(a, b, c, bounds_.orient);
-    return sign == UNDECIDED ? orient_exactly_positive(a, b, c) : sign > 0;
+    return (sign == UNDECIDED ? exact_orient(a, b, c) : sign) > 0;
   }
 
   // Is d inside of the circle through a, b, c (counter-clockwise)?
   bool in_circle(Point a, Point b, Point c, Point d, Counts& counts) const {
     counts.circle();
     const int sign = kernel::circle_filtered(a, b, c, d, bounds_.circle);
-    return sign == UNDECIDED ? circle_exactly_positive(a, b, c, d) : sign > 0;
+    return (sign == UNDECIDED ? exact_circle(a, b, c, d) : sign) > 0;
   }
 
   std::int32_t make_edge(std::int32_t from, std::int32_t to) {
