@@ -54,7 +54,7 @@ void flip_ties(const Coordinates& points, Ids& triangles, FixtureRandom& random,
 }
 
 /// A partition by labels of triangles; label -1: final.
-struct Cut {
+struct LabelledMesh {
   Ids triangles;  // of input points, some Delaunay triangulation
   Ids twins;
   Ids labels;
@@ -64,8 +64,8 @@ struct Cut {
 
 /// Labels grow from random triangles for `steps` each, over what is there: connected, pinched, with holes, in
 /// several parts; some edges within a region become border in both directions.
-Cut random_cut(const Coordinates& points, FixtureRandom& random) {
-  Cut cut;
+LabelledMesh random_cut(const Coordinates& points, FixtureRandom& random) {
+  LabelledMesh cut;
   cut.triangles = triangulate(points).triangles;
   flip_ties(points, cut.triangles, random);
   cut.twins = recursive::match_edges(cut.triangles);
@@ -100,7 +100,7 @@ Cut random_cut(const Coordinates& points, FixtureRandom& random) {
   return cut;
 }
 
-Partition partition_of(const Cut& cut, FixtureRandom& random) {
+Partition partition_of(const LabelledMesh& cut, FixtureRandom& random) {
   Partition partition;
   partition.regions.resize(cut.regions);
   for (std::int32_t label = -1; label < cut.regions; ++label) {
@@ -129,7 +129,7 @@ Partition partition_of(const Cut& cut, FixtureRandom& random) {
 }
 
 /// The same as flat arrays of ids, for solve_regions.
-recursive::RegionArrays arrays_of(const Cut& cut, const recursive::PointSets& sets) {
+recursive::RegionArrays arrays_of(const LabelledMesh& cut, const recursive::PointSets& sets) {
   Ids id_of(sets.representatives.size(), -1);
   for (std::size_t id = 0; id < sets.source.size(); ++id) id_of[sets.source[id]] = static_cast<int>(id);
   recursive::RegionArrays arrays;
@@ -362,7 +362,7 @@ TEST(Assemble, RandomDamage) {
 // Regions of ids, on threads.
 
 void expect_solved(const Coordinates& points, FixtureRandom& random) {
-  const Cut cut = random_cut(points, random);
+  const LabelledMesh cut = random_cut(points, random);
   const recursive::PointSets sets = recursive::ingest(points.data(), {0, points.size() / 2});
   const recursive::RegionArrays arrays = arrays_of(cut, sets);
   Ids triangles = recursive::solve_regions(sets.predicates, sets.points.data(), arrays, 1);

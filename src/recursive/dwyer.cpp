@@ -3,8 +3,7 @@
 //
 // Points are numbered anew, as vertices, in the order of the leaves of the recursion, so that what a merge
 // touches lies together in memory. A merge across the cut y = q is a merge across x = q in the frame
-// (s, u) = (y, -x): only the order of the points along the axis differs, which is by s and, among equal s, by
-// u.
+// (s, u) = (y, -x): only the order of the points along the axis differs, which is by (s, u).
 #include "recursive/dwyer.hpp"
 
 #include <algorithm>
@@ -216,8 +215,8 @@ class Builder {
     hull_edge_[left] = base ^ 1;
     Point left_point = vertices_[left], right_point = vertices_[right];
     while (true) {
-      // Either side's candidate: the next edge that rises above the base, without those that its circle rules
-      // out.
+      // Either side's candidate: the next edge that rises above the base, but for those that its circle
+      // rules out.
       std::int32_t left_edge = edges_[base ^ 1].next, right_edge = edges_[base].previous;
       Point left_apex = vertices_[edges_[left_edge].to], right_apex = vertices_[edges_[right_edge].to];
       const bool left_rises = turns_left(left_apex, left_point, right_point, counts);

@@ -13,8 +13,8 @@ constexpr int kMantissaBits = 52;
 constexpr int kExponentBias = 1023;
 // Coordinates that span so many binary places are integers of one unit, differences and all.
 constexpr int kSpanMost = 120;
-// Differences below 2^61: an orientation is below 2^123, and so is each factor of an in-circle determinant's
-// terms.
+// Differences below 2^61: an orientation is below 2^123, and so are both factors of each term of an in-circle
+// determinant.
 constexpr Wide kDifferenceMost = Wide{1} << 61;
 // The limbs of such factors.
 constexpr int kLimbBits = 62;
@@ -39,8 +39,8 @@ Decoded decode(double x) {
   return {bits >> 63 ? -odd : odd, top - kMantissaBits + zeros, top + 1};
 }
 
-// Differences of points to another one, x and y in turn, as integers of one unit. False if they have too many
-// bits.
+// Differences of points to another one, x and y in turn, as integers of one unit. False if there are too many
+// bits for that.
 template <std::size_t kCount>
 bool integer_differences(const std::array<Point, kCount>& points, Point origin,
                          std::array<Wide, 2 * kCount>& differences) {

@@ -60,8 +60,7 @@ class RegionCutter {
     return first;
   }
 
-  // Marks the border's half-edges and lists the edges that there are none for. Returns whether none is
-  // missing.
+  // Marks the border's half-edges. Returns whether every edge has one.
   bool find_border() {
     const Ids first = first_halfedges();
     is_border_.assign(mesh_.triangles.size(), 0);

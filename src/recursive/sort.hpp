@@ -22,8 +22,8 @@ void sort_by_key(std::vector<Keyed>& elements);
 /// ceil(log2 k) for k = 1..n. This stands in for the work of sorting, which is done without comparisons.
 std::uint64_t comparisons_to_sort(std::size_t n);
 
-/// The depth of the same: ceil(log2 n) rounds of merging, in which each element finds its place by binary
-/// search.
+/// The depth of the same: ceil(log2 n) rounds of merging, in which each element searches its place by
+/// bisection.
 std::uint64_t depth_of_sort(std::size_t n);
 
 /// ceil(log2 n); 0 for n < 2.

@@ -69,8 +69,7 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
   Statistics statistics;
   Mesh mesh;
   if (options.mode == Mode::recursive) {
-    // The one place that will call recursive_triangles(sets, options, statistics), of
-    // recursive/recursive.hpp.
+    // The one place that will be: mesh.triangles = recursive_triangles(sets, options, statistics).
     throw Error(ErrorKind::usage, "the mode recursive is not there yet");
   } else {
     mesh = dwyer_of_sets(sets, options.count ? &statistics.work : nullptr, phases);
