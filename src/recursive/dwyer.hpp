@@ -2,24 +2,21 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <vector>
 
 #include "flaunay/flaunay.hpp"
-#include "recursive/points.hpp"
+#include "recursive/mesh.hpp"
+#include "recursive/predicates.hpp"
 
 namespace flaunay::recursive {
 
-/// The Delaunay triangulation of points[0..n), distinct and in (x, y) order; what `order` of cocircular
-/// points is chosen is a function of the points.
-struct Mesh {
-  std::vector<std::int32_t> triangles;  ///< 3 positions in points each, counter-clockwise
-  std::vector<std::int32_t> twins;      ///< of half-edges; see mesh.hpp
-};
-
-/// O(n log n) in the worst case, O(n log log n) expected for uniform points before the sort (Dwyer 1987).
-/// work: if not null, gets what was counted: `cut` the comparisons of the alternating partition, `merge` that
-/// of each level's merges.
+/// The Delaunay triangulation of points[0..n), distinct and in (x, y) order; triangles hold positions in
+/// points. The choice among cocircular points is a function of the points. O(n log n) in the worst case; the
+/// merges take O(n log log n) together for uniform points (Dwyer 1987). No recursion is deeper than log2 n.
+///
+/// work: if not null, what was done is added to it, n points at a time: `start` gets the sort by y, as `cut`
+/// (see comparisons_to_sort); level l the cuts at depth l of the recursion, a comparison a point, its
+/// critical path that of a stable split; and the merges at that depth, with the leaves of two or three points
+/// that are there, each a sequence that is as long as its critical path.
 Mesh dwyer(const Predicates& predicates, const Point* points, std::size_t n, Work* work = nullptr);
 
 }  // namespace flaunay::recursive

@@ -1,189 +1,168 @@
 #include "recursive/mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
+
+#include "recursive/cells.hpp"
+#include "recursive/halfedges.hpp"
 
 namespace flaunay::recursive {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-std::int32_t next_of(std::int32_t halfedge) { return halfedge % 3 == 2 ? halfedge - 2 : halfedge + 1; }
-
-std::int32_t apex_of(const Ids& triangles, std::int32_t halfedge) {
-  return triangles[next_of(next_of(halfedge))];
+// Rows by set, in their order of before: old row to new row, or empty if every row stays.
+Ids places_by_set(const PointSets& sets, const Ids& triangles, std::vector<std::size_t>& triangle_offsets) {
+  const std::size_t set_count = sets.set_offsets.size() - 1;
+  const std::size_t rows = triangles.size() / 3;
+  triangle_offsets.assign(set_count + 1, 0);
+  if (set_count == 1) {
+    triangle_offsets[1] = rows;
+    return {};
+  }
+  Ids set_of_id(sets.points.size());
+  for (std::size_t s = 0; s < set_count; ++s) {
+    std::fill(set_of_id.begin() + sets.set_offsets[s], set_of_id.begin() + sets.set_offsets[s + 1],
+              static_cast<std::int32_t>(s));
+  }
+  bool sorted = true;
+  for (std::size_t t = 0; t < rows; ++t) {
+    const std::int32_t set = set_of_id[triangles[3 * t]];
+    ++triangle_offsets[set + 1];
+    sorted = sorted && (t == 0 || set_of_id[triangles[3 * (t - 1)]] <= set);
+  }
+  std::partial_sum(triangle_offsets.begin(), triangle_offsets.end(), triangle_offsets.begin());
+  if (sorted) return {};
+  std::vector<std::size_t> next(triangle_offsets);
+  Ids places(rows);
+  for (std::size_t t = 0; t < rows; ++t) {
+    places[t] = static_cast<std::int32_t>(next[set_of_id[triangles[3 * t]]]++);
+  }
+  return places;
 }
 
-// A stable counting sort of `order` by key(element), keys in 0..keys-1.
-template <typename Key>
-Ids sorted_by(const Ids& order, std::size_t keys, const Key& key) {
-  std::vector<std::size_t> first(keys + 1, 0);
-  for (const std::int32_t i : order) ++first[key(i) + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  Ids sorted(order.size());
-  for (const std::int32_t i : order) sorted[first[key(i)]++] = i;
-  return sorted;
+// Rows as the caller gets them: indices of the input, the smallest first, and the triangles opposite to them.
+void write_rows(const PointSets& sets, const Mesh& mesh, const Ids& places, bool with_neighbors,
+                Triangulation& result) {
+  const auto rows = static_cast<std::int32_t>(mesh.triangles.size() / 3);
+  const auto place = [&places](std::int32_t t) { return places.empty() ? t : places[t]; };
+  result.triangles.resize(mesh.triangles.size());
+  if (with_neighbors) result.neighbors.resize(mesh.triangles.size());
+  for (std::int32_t t = 0; t < rows; ++t) {
+    std::array<std::int32_t, 3> row;
+    for (int k = 0; k < 3; ++k) row[k] = sets.source[mesh.triangles[3 * t + k]];
+    int from = static_cast<int>(std::min_element(row.begin(), row.end()) - row.begin());
+    for (std::int32_t to = 3 * place(t), end = to + 3; to < end; ++to) {
+      const int opposite = from == 2 ? 0 : from + 1;
+      result.triangles[to] = row[from];
+      if (with_neighbors) {
+        const std::int32_t twin = mesh.twins[3 * t + opposite];
+        result.neighbors[to] = twin < 0 ? -1 : place(twin / 3);
+      }
+      from = opposite;
+    }
+  }
 }
 
-// Turns each row so that its smallest index comes first, and orders rows by set.
-void order_rows(const PointSets& sets, Ids& triangles, Ids& twins) {
-  const std::size_t count = triangles.size() / 3;
-  Ids order(count);
-  std::iota(order.begin(), order.end(), 0);
-  if (sets.set_offsets.size() > 2) {
-    std::vector<std::int32_t> set_of_id(sets.points.size());
-    for (std::size_t s = 0; s + 1 < sets.set_offsets.size(); ++s) {
-      std::fill(set_of_id.begin() + sets.set_offsets[s], set_of_id.begin() + sets.set_offsets[s + 1],
-                static_cast<std::int32_t>(s));
-    }
-    order = sorted_by(order, sets.set_offsets.size(),
-                      [&](std::int32_t t) { return set_of_id[triangles[3 * t]]; });
+// The hull of each set, counter-clockwise from its first point; a set without triangles is its own hull.
+void write_hulls(const PointSets& sets, const Mesh& mesh, Triangulation& result) {
+  Ids next(sets.points.size(), -1);
+  for (std::size_t h = 0; h < mesh.twins.size(); ++h) {
+    if (mesh.twins[h] >= 0) continue;
+    next[mesh.triangles[h]] = mesh.triangles[next_halfedge(static_cast<std::int32_t>(h))];
   }
-  Ids place(triangles.size()), rows(triangles.size());
-  for (std::size_t t = 0; t < count; ++t) {
-    const std::int32_t* row = &triangles[3 * order[t]];
-    int first = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (sets.source[row[k]] < sets.source[row[first]]) first = k;
+  const std::size_t set_count = sets.set_offsets.size() - 1;
+  result.hull_offsets.assign(set_count + 1, 0);
+  for (std::size_t s = 0; s < set_count; ++s) {
+    const std::int32_t first = sets.set_offsets[s], end = sets.set_offsets[s + 1];
+    if (result.triangle_offsets[s] == result.triangle_offsets[s + 1]) {
+      result.hull.insert(result.hull.end(), sets.source.begin() + first, sets.source.begin() + end);
+    } else {
+      std::int32_t id = first;
+      do {
+        result.hull.push_back(sets.source[id]);
+        id = next[id];
+      } while (id != first);
     }
-    for (int k = 0; k < 3; ++k) {
-      const int from = (first + k) % 3;
-      rows[3 * t + k] = row[from];
-      place[3 * order[t] + from] = static_cast<std::int32_t>(3 * t + k);
-    }
+    result.hull_offsets[s + 1] = result.hull.size();
   }
-  Ids moved(twins.size());
-  for (std::size_t h = 0; h < twins.size(); ++h) moved[place[h]] = twins[h] < 0 ? -1 : place[twins[h]];
-  triangles = std::move(rows);
-  twins = std::move(moved);
+}
+
+void canonicalize(const PointSets& sets, Mesh& mesh) {
+  CellFinder finder(sets.predicates, sets.points.data(), mesh);
+  Cell cell;
+  while (finder.next(cell)) fan_cell(cell, {}, mesh);
 }
 
 }  // namespace
 
-Ids match_edges(const Ids& triangles) {
-  Ids twins(triangles.size(), -1);
-  if (triangles.empty()) return twins;
-  const std::size_t keys =
-      static_cast<std::size_t>(*std::max_element(triangles.begin(), triangles.end())) + 1;
-  const auto from = [&](std::int32_t h) { return triangles[h]; };
-  const auto to = [&](std::int32_t h) { return triangles[next_of(h)]; };
-  Ids order(triangles.size());
-  std::iota(order.begin(), order.end(), 0);
-  order = sorted_by(order, keys, [&](std::int32_t h) { return std::max(from(h), to(h)); });
-  order = sorted_by(order, keys, [&](std::int32_t h) { return std::min(from(h), to(h)); });
-  for (std::size_t k = 1; k < order.size(); ++k) {
-    if (from(order[k - 1]) == to(order[k]) && to(order[k - 1]) == from(order[k])) {
-      twins[order[k - 1]] = order[k];
-      twins[order[k]] = order[k - 1];
+bool find_twins(const Ids& triangles, Ids& twins) {
+  twins.assign(triangles.size(), -1);
+  if (triangles.empty()) return true;
+  const auto vertices = static_cast<std::size_t>(*std::max_element(triangles.begin(), triangles.end())) + 1;
+  const auto halfedges = static_cast<std::int32_t>(triangles.size());
+  // Half-edges by the smaller end, then in each group by the larger one.
+  struct Edge {
+    std::int32_t larger;
+    std::int32_t halfedge;
+  };
+  const auto ends = [&triangles](std::int32_t h) {
+    return std::minmax(triangles[h], triangles[next_halfedge(h)]);
+  };
+  std::vector<std::int32_t> first(vertices + 1, 0);
+  for (std::int32_t h = 0; h < halfedges; ++h) ++first[ends(h).first + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Edge> edges(triangles.size());
+  std::vector<std::int32_t> place(first.begin(), first.end() - 1);
+  for (std::int32_t h = 0; h < halfedges; ++h) {
+    const auto [smaller, larger] = ends(h);
+    edges[place[smaller]++] = {larger, h};
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto begin = edges.begin() + first[v], end = edges.begin() + first[v + 1];
+    std::sort(begin, end, [](const Edge& a, const Edge& b) { return a.larger < b.larger; });
+    for (auto edge = begin; edge != end;) {
+      auto after = edge + 1;
+      while (after != end && after->larger == edge->larger) ++after;
+      if (after - edge > 2) return false;
+      if (after - edge == 2) {
+        const std::int32_t a = edge->halfedge, b = (edge + 1)->halfedge;
+        if (triangles[a] == triangles[b]) return false;
+        twins[a] = b;
+        twins[b] = a;
+      }
+      edge = after;
     }
+  }
+  return true;
+}
+
+Ids match_edges(const Ids& triangles) {
+  Ids twins;
+  if (!find_twins(triangles, twins)) {
+    throw Error(ErrorKind::internal, "triangles overlap; please report the input");
   }
   return twins;
 }
 
 void canonicalize(const PointSets& sets, Ids& triangles, Ids& twins) {
-  std::vector<char> dissolved(triangles.size(), 0);
-  std::vector<std::int32_t> in_cells;
-  for (std::size_t h = 0; h < triangles.size(); ++h) {
-    const std::int32_t twin = twins[h];
-    if (twin < static_cast<std::int32_t>(h)) continue;
-    const std::size_t t = h / 3 * 3;
-    const int side =
-        sets.predicates.circle(sets.points[triangles[t]], sets.points[triangles[t + 1]],
-                               sets.points[triangles[t + 2]], sets.points[apex_of(triangles, twin)]);
-    if (side > 0) throw Error(ErrorKind::internal, "an edge is not Delaunay; please report the input");
-    if (side == 0) {
-      dissolved[h] = dissolved[twin] = 1;
-      in_cells.push_back(static_cast<std::int32_t>(h / 3));
-    }
-  }
-  std::vector<char> done(in_cells.empty() ? 0 : triangles.size() / 3, 0);
-  Ids cell, polygon, outer;
-  for (const std::int32_t seed : in_cells) {
-    if (done[seed]) continue;
-    cell.assign(1, seed);
-    done[seed] = 1;
-    std::int32_t start = -1;
-    for (std::size_t k = 0; k < cell.size(); ++k) {
-      for (std::int32_t h = 3 * cell[k]; h < 3 * cell[k] + 3; ++h) {
-        if (!dissolved[h]) {
-          if (start < 0 || triangles[h] < triangles[start]) start = h;
-        } else if (!done[twins[h] / 3]) {
-          done[twins[h] / 3] = 1;
-          cell.push_back(twins[h] / 3);
-        }
-      }
-    }
-    std::sort(cell.begin(), cell.end());
-    // Around the polygon, from the smallest vertex.
-    polygon.clear();
-    outer.clear();
-    std::int32_t h = start;
-    do {
-      polygon.push_back(triangles[h]);
-      outer.push_back(twins[h]);
-      h = next_of(h);
-      while (dissolved[h]) h = next_of(twins[h]);
-    } while (h != start);
-    if (polygon.size() != cell.size() + 2) {
-      throw Error(ErrorKind::internal, "a cocircular cell has a hole; please report the input");
-    }
-    const auto join = [&twins](std::int32_t a, std::int32_t b) {
-      twins[a] = b;
-      if (b >= 0) twins[b] = a;
-    };
-    for (std::size_t k = 0; k < cell.size(); ++k) {
-      const std::int32_t t = 3 * cell[k];
-      triangles[t] = polygon[0];
-      triangles[t + 1] = polygon[k + 1];
-      triangles[t + 2] = polygon[k + 2];
-      join(t, k == 0 ? outer[0] : 3 * cell[k - 1] + 2);
-      join(t + 1, outer[k + 1]);
-      if (k + 1 == cell.size()) join(t + 2, outer[k + 2]);
-      dissolved[t] = dissolved[t + 1] = dissolved[t + 2] = 0;
-    }
-  }
+  Mesh mesh{std::move(triangles), std::move(twins)};
+  canonicalize(sets, mesh);
+  triangles = std::move(mesh.triangles);
+  twins = std::move(mesh.twins);
 }
 
 Triangulation finish(const PointSets& sets, Ids triangles, Ids twins, const Options& options) {
   if (twins.size() != triangles.size()) twins = match_edges(triangles);
-  canonicalize(sets, triangles, twins);
-  order_rows(sets, triangles, twins);
+  Mesh mesh{std::move(triangles), std::move(twins)};
+  canonicalize(sets, mesh);
 
   Triangulation result;
-  const std::size_t set_count = sets.set_offsets.size() - 1;
-  result.triangle_offsets.assign(set_count + 1, 0);
-  result.hull_offsets.assign(set_count + 1, 0);
-  Ids hull_next(sets.points.size(), -1);
-  for (std::size_t h = 0; h < triangles.size(); ++h) {
-    if (twins[h] < 0) hull_next[triangles[h]] = triangles[next_of(static_cast<std::int32_t>(h))];
-  }
-  std::size_t t = 0;
-  for (std::size_t s = 0; s < set_count; ++s) {
-    while (t < triangles.size() / 3 && triangles[3 * t] < sets.set_offsets[s + 1]) ++t;
-    result.triangle_offsets[s + 1] = t;
-    const std::int32_t first = sets.set_offsets[s];
-    if (t == result.triangle_offsets[s]) {
-      for (std::int32_t id = first; id < sets.set_offsets[s + 1]; ++id)
-        result.hull.push_back(sets.source[id]);
-    } else {
-      std::int32_t id = first;
-      do {
-        result.hull.push_back(sets.source[id]);
-        id = hull_next[id];
-      } while (id != first);
-    }
-    result.hull_offsets[s + 1] = result.hull.size();
-  }
-  if (options.neighbors) {
-    result.neighbors.resize(triangles.size());
-    for (std::size_t h = 0; h < triangles.size(); ++h) {
-      const std::int32_t twin = twins[next_of(static_cast<std::int32_t>(h))];
-      result.neighbors[h] = twin < 0 ? -1 : twin / 3;
-    }
-  }
-  for (std::int32_t& id : triangles) id = sets.source[id];
-  result.triangles = std::move(triangles);
+  const Ids places = places_by_set(sets, mesh.triangles, result.triangle_offsets);
+  write_rows(sets, mesh, places, options.neighbors, result);
+  write_hulls(sets, mesh, result);
   result.representatives = sets.representatives;
   Statistics& statistics = result.statistics;
   statistics.device = "host";

@@ -9,8 +9,18 @@
 
 namespace flaunay::recursive {
 
-/// Twins of half-edges: half-edge 3t + k runs from vertex k of triangle t to the next; -1 beyond the hull.
-/// triangles: 3 ids each, counter-clockwise. O(n).
+/// Triangles and how they hang together.
+struct Mesh {
+  std::vector<std::int32_t> triangles;  ///< 3 indices of points each, counter-clockwise
+  /// Half-edge 3t + k runs from vertex k of triangle t to the next; its twin runs back, -1 beyond the hull.
+  std::vector<std::int32_t> twins;
+};
+
+/// Mesh::twins for Mesh::triangles. Returns false, twins half found, if two triangles are on the same side of
+/// an edge. O(n log d) for vertices of d edges.
+bool find_twins(const std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& twins);
+
+/// The same; throws Error(internal) where find_twins returns false.
 std::vector<std::int32_t> match_edges(const std::vector<std::int32_t>& triangles);
 
 /// Replaces the triangles of every cell, a polygon of several triangles on one empty circle, by the fan from

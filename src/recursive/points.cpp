@@ -1,40 +1,100 @@
 #include "recursive/points.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "flaunay/flaunay.hpp"
+#include "recursive/sort.hpp"
 
 namespace flaunay::recursive {
 namespace {
 
+constexpr int kMantissaBits = 52;
+constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
+constexpr int kExponentMask = 0x7ff;
+constexpr int kExponentBias = 1023;
+
+// A mesh has up to 6 half-edges a point, numbered by 32-bit integers.
+constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max() / 6;
+
+void check_size(std::size_t n) {
+  if (n <= kMostPoints) return;
+  throw Error(
+      ErrorKind::input,
+      fmt::format("{} points are too many for 32-bit indices: at most {} are possible", n, kMostPoints));
+}
+
+int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
+
 Magnitudes inspect(const double* coordinates, std::size_t n) {
   Magnitudes magnitudes;
   for (std::size_t i = 0; i < 2 * n; ++i) {
-    const double x = coordinates[i];
-    if (!std::isfinite(x)) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &coordinates[i], sizeof bits);
+    const int exponent = static_cast<int>(bits >> kMantissaBits) & kExponentMask;
+    if (exponent == 0) {
+      if (coordinates[i] == 0) continue;
+      magnitudes.largest = std::max(magnitudes.largest, std::ilogb(coordinates[i]));
+      magnitudes.lowest = std::min(magnitudes.lowest, lowest_bit(coordinates[i]));
+    } else if (exponent == kExponentMask) {
       magnitudes.bad = static_cast<int>(i / 2);
       return magnitudes;
+    } else {
+      const int lowest = trailing_zeros((bits & kMantissa) | (kMantissa + 1)) - kMantissaBits;
+      magnitudes.largest = std::max(magnitudes.largest, exponent - kExponentBias);
+      magnitudes.lowest = std::min(magnitudes.lowest, exponent - kExponentBias + lowest);
     }
-    if (x == 0) continue;
-    magnitudes.largest = std::max(magnitudes.largest, std::ilogb(x));
-    magnitudes.lowest = std::min(magnitudes.lowest, lowest_bit(x));
   }
   return magnitudes;
 }
 
-struct IndexedPoint {
-  Point point;
-  std::int32_t index;
-};
+// Adding 0 turns -0 into 0.
+double scaled(double x, double factor) { return x * factor + 0.0; }
 
-// Counts comparisons of coordinates.
-struct Before {
-  std::uint64_t* comparisons;
-  bool operator()(const IndexedPoint& a, const IndexedPoint& b) const {
-    *comparisons += a.point.x == b.point.x ? 2 : 1;
-    if (a.point.x != b.point.x) return a.point.x < b.point.x;
-    if (a.point.y != b.point.y) return a.point.y < b.point.y;
-    return a.index < b.index;
+// Indices of the input's points begin..end-1 in the order of (x, y, index).
+class Order {
+ public:
+  Order(const double* coordinates, double factor) : coordinates_(coordinates), factor_(factor) {}
+
+  const std::vector<Keyed>& sort(std::size_t begin, std::size_t end) {
+    elements_.resize(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      elements_[i - begin] = {sort_key(x(i)), static_cast<std::int32_t>(i)};
+    }
+    sort_by_key(elements_);
+    for (auto first = elements_.begin(); first != elements_.end();) {
+      auto last = first + 1;
+      while (last != elements_.end() && last->key == first->key) ++last;
+      if (last - first > 1) sort_column(first, last);
+      first = last;
+    }
+    return elements_;
   }
+
+  Point point(std::int32_t i) const { return {x(i), scaled(coordinates_[2 * std::size_t(i) + 1], factor_)}; }
+
+ private:
+  using Iterator = std::vector<Keyed>::iterator;
+
+  double x(std::size_t i) const { return scaled(coordinates_[2 * i], factor_); }
+
+  // Of equal x, and in the order of their indices already.
+  void sort_column(Iterator first, Iterator last) {
+    column_.assign(first, last);
+    for (Keyed& element : column_) element.key = sort_key(point(element.index).y);
+    sort_by_key(column_);
+    std::transform(column_.begin(), column_.end(), first, first, [](const Keyed& from, const Keyed& to) {
+      return Keyed{to.key, from.index};
+    });
+  }
+
+  const double* coordinates_;
+  double factor_;
+  std::vector<Keyed> elements_, column_;
 };
 
 }  // namespace
@@ -42,6 +102,7 @@ struct Before {
 PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offsets) {
   check_offsets(offsets);
   const std::size_t n = offsets.back();
+  check_size(n);
   const Scaling scaling = scaling_for(coordinates, n, inspect(coordinates, n));
   PointSets sets;
   sets.predicates.bounds = scaling.bounds;
@@ -49,23 +110,19 @@ PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offs
   sets.points.reserve(n);
   sets.source.reserve(n);
   sets.set_offsets.push_back(0);
-  std::vector<IndexedPoint> sorted;
+  Order order(coordinates, std::ldexp(1.0, scaling.shift));
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
-    sorted.clear();
-    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
-      // Adding 0 turns -0 into 0.
-      sorted.push_back({{std::ldexp(coordinates[2 * i], scaling.shift) + 0.0,
-                         std::ldexp(coordinates[2 * i + 1], scaling.shift) + 0.0},
-                        static_cast<std::int32_t>(i)});
-    }
-    std::sort(sorted.begin(), sorted.end(), Before{&sets.comparisons});
-    for (std::size_t k = 0; k < sorted.size(); ++k) {
-      if (k == 0 || !(sorted[k].point == sorted[k - 1].point)) {
-        sets.points.push_back(sorted[k].point);
-        sets.source.push_back(sorted[k].index);
+    bool first = true;
+    for (const Keyed& element : order.sort(offsets[s], offsets[s + 1])) {
+      const Point point = order.point(element.index);
+      if (first || !(point == sets.points.back())) {
+        sets.points.push_back(point);
+        sets.source.push_back(element.index);
       }
-      sets.representatives[sorted[k].index] = sets.source.back();
+      first = false;
+      sets.representatives[element.index] = sets.source.back();
     }
+    sets.comparisons += comparisons_to_sort(offsets[s + 1] - offsets[s]);
     sets.set_offsets.push_back(static_cast<std::int32_t>(sets.points.size()));
   }
   return sets;

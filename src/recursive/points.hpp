@@ -17,12 +17,11 @@ struct PointSets {
   std::vector<std::int32_t> set_offsets;      ///< sets + 1 ids
   std::vector<std::int32_t> representatives;  ///< per input point, an index of the input
   Predicates predicates{};
-  std::uint64_t comparisons =
-      0;  ///< of coordinates, that a comparison sort of the ids takes; see docs/counting.md
+  std::uint64_t comparisons = 0;  ///< that a comparison sort takes; see comparisons_to_sort
 };
 
-/// Throws Error(input) for points that are not finite or whose magnitudes differ too much, Error(usage) for
-/// bad offsets. O(n log n).
+/// Throws Error(input) for points that are not finite, whose magnitudes differ too much, or that are too many
+/// for 32-bit indices, Error(usage) for bad offsets. O(n log n).
 PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offsets);
 
 }  // namespace flaunay::recursive

@@ -28,6 +28,11 @@ using std::fma;
 /// (x, y), or (s, u) in a region's frame; see kernels/shared/frame.h.
 using Point = kernel::double2;
 
+/// Exact signs of what the filters cannot decide: as the kernels' functions of these names in
+/// kernels/shared/planar.h, but sooner for coordinates of few bits, as those of ties mostly are.
+int exact_orient(Point a, Point b, Point c);
+int exact_circle(Point a, Point b, Point c, Point d);
+
 inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }
 
 /// Exact signs: the filter first, expansions where it cannot decide.
@@ -37,12 +42,12 @@ struct Predicates {
   /// 1 if a, b, c turn left, -1 right, 0 straight.
   int orient(Point a, Point b, Point c) const {
     const int sign = kernel::orient_filtered(a, b, c, bounds.orient);
-    return sign == UNDECIDED ? kernel::orient_exact(a, b, c) : sign;
+    return sign == UNDECIDED ? exact_orient(a, b, c) : sign;
   }
   /// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
   int circle(Point a, Point b, Point c, Point d) const {
     const int sign = kernel::circle_filtered(a, b, c, d, bounds.circle);
-    return sign == UNDECIDED ? kernel::circle_exact(a, b, c, d) : sign;
+    return sign == UNDECIDED ? exact_circle(a, b, c, d) : sign;
   }
 };
 
