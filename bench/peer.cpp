@@ -118,7 +118,11 @@ Trial try_peer(const Peer& peer, const io::Points& points, double limit) {
     trial.failure = "failed";
   }
   close(ends[0]);
-  waitpid(child, nullptr, 0);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (trial.failure == "failed" && WIFSIGNALED(status)) {
+    trial.failure = fmt::format("was ended by signal {}", WTERMSIG(status));
+  }
   trial.run = answer.run;
   trial.bytes_peak = answer.bytes_peak;
   return trial;

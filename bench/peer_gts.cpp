@@ -1,7 +1,6 @@
 #include <gts.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
 #include <random>
 
@@ -27,26 +26,41 @@ Box bounding_box(const io::Points& points) {
   return {left, bottom, std::max(std::max(right - left, top - bottom), 1e-300)};
 }
 
-/// Where on a Hilbert curve of 2^20 steps a side through the box the point lies.
-std::uint64_t hilbert_place(const Box& box, double px, double py) {
-  constexpr int kBits = 20;
-  constexpr double kCells = (1 << kBits) - 1;
-  auto x = static_cast<std::uint32_t>(kCells * ((px - box.left) / box.side));
-  auto y = static_cast<std::uint32_t>(kCells * ((py - box.bottom) / box.side));
-  std::uint64_t place = 0;
-  for (int bit = kBits - 1; bit >= 0; --bit) {
-    const std::uint32_t in_x = x >> bit & 1, in_y = y >> bit & 1;
-    place = place << 2 | ((3 * in_x) ^ in_y);
-    if (in_y == 0) {
-      if (in_x == 1) {
-        x = ~x;
-        y = ~y;
-      }
-      std::swap(x, y);
-    }
+using Order = std::vector<std::size_t>::iterator;
+
+/// Sorts indices of points along a Hilbert curve that halves their number instead of the plane, so that dense
+/// places have as many steps of their own as others.
+class HilbertSort {
+ public:
+  explicit HilbertSort(const io::Points& points) : points_(points) {}
+
+  /// axis: the one that is halved first; up, other_up: whether the curve begins at small coordinates of it
+  /// and of the other one.
+  void sort(Order first, Order last, int axis = 0, bool up = true, bool other_up = true) const {
+    constexpr std::ptrdiff_t kFew = 4;
+    if (last - first <= kFew) return;
+    const Order middle = halve(first, last, axis, up);
+    const Order quarter = halve(first, middle, 1 - axis, other_up);
+    const Order three_quarters = halve(middle, last, 1 - axis, !other_up);
+    sort(first, quarter, 1 - axis, other_up, up);
+    sort(quarter, middle, axis, up, other_up);
+    sort(middle, three_quarters, axis, up, other_up);
+    sort(three_quarters, last, 1 - axis, !other_up, !up);
   }
-  return place;
-}
+
+ private:
+  Order halve(Order first, Order last, int axis, bool up) const {
+    const Order middle = first + (last - first) / 2;
+    std::nth_element(first, middle, last, [&](std::size_t a, std::size_t b) {
+      const double at_a = points_.coordinates[2 * a + static_cast<std::size_t>(axis)];
+      const double at_b = points_.coordinates[2 * b + static_cast<std::size_t>(axis)];
+      return up ? at_a < at_b : at_b < at_a;
+    });
+    return middle;
+  }
+
+  const io::Points& points_;
+};
 
 /// Random rounds, each twice as large as the one before and sorted along the curve. Random, so that the
 /// expected number of flips is linear; along the curve, so that each point is near the one before.
@@ -55,16 +69,11 @@ std::vector<std::size_t> insertion_order(const io::Points& points) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937_64(1));
-  const Box box = bounding_box(points);
-  std::vector<std::uint64_t> places(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    places[i] = hilbert_place(box, points.coordinates[2 * i], points.coordinates[2 * i + 1]);
-  }
+  const HilbertSort curve(points);
   for (std::size_t first = 0, last; first < order.size(); first = last) {
     last = std::min(order.size(), std::max(kFirstRound, 2 * first));
-    std::sort(order.begin() + static_cast<std::ptrdiff_t>(first),
-              order.begin() + static_cast<std::ptrdiff_t>(last),
-              [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
+    curve.sort(order.begin() + static_cast<std::ptrdiff_t>(first),
+               order.begin() + static_cast<std::ptrdiff_t>(last));
   }
   return order;
 }

@@ -40,8 +40,9 @@ nlohmann::json record(const DeviceInfo& device, const std::string& command, int 
 }
 
 std::string measured_on(const DeviceInfo& device, int runs) {
-  return fmt::format("median of {} run{}, minimum to maximum; {}, driver {}", runs, runs == 1 ? "" : "s",
-                     device.name, device.driver);
+  const std::string times =
+      runs == 1 ? "one run" : fmt::format("median of {} runs, minimum to maximum", runs);
+  return fmt::format("{}; {}, driver {}", times, device.name, device.driver);
 }
 
 void write_record(const std::string& path, const nlohmann::json& record) {

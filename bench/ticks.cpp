@@ -58,10 +58,12 @@ std::string logarithmic_label(const Axis& axis, Range range, double value) {
   constexpr double kPlainUpTo = 2000, kPlainFrom = 1e-3;
   const bool binary = axis.scale == Scale::log2;
   if (axis.unit == Unit::none && (range.high > kPlainUpTo || range.low < kPlainFrom)) {
-    const double exponent = binary ? std::log2(value) : std::log10(value);
-    if (std::abs(exponent - std::round(exponent)) < 1e-9) {
-      return fmt::format("{}^{{{:.0f}}}", binary ? 2 : 10, std::round(exponent) + 0.0);
-    }
+    const double base = binary ? 2 : 10;
+    const double exponent = std::floor(std::log(value) / std::log(base) + 1e-9);
+    const double factor = value / std::pow(base, exponent);
+    const std::string power = fmt::format("{:.0f}^{{{:.0f}}}", base, exponent + 0.0);
+    if (std::abs(factor - 1) < 1e-9) return power;
+    if (!binary) return fmt::format("{:.3g}·{}", factor, power);
   }
   return with_prefix(value, prefix_for(axis.unit, value, binary));
 }
