@@ -49,7 +49,7 @@ std::vector<Row> make_rows(const Request& request, const std::vector<Input>& inp
       for (const std::string& hull : request.hulls) {
         if (!has_hulls(mode) && hull != request.hulls.front()) continue;
         const bool named = has_hulls(mode) && request.hulls.size() > 1;
-        rows.push_back({mode, hull, named ? mode + ", " + hull : mode, &input});
+        rows.push_back({mode, hull, named ? mode + "/" + hull : mode, &input});
       }
     }
   }
