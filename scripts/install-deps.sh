@@ -11,6 +11,8 @@ packages=(
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   # tests
   libgtest-dev libgmp-dev libcgal-dev oclgrind
+  # benchmarks: those that flaunay is measured beside, with CGAL
+  libqhull-dev libgts-dev
   # the demonstration's picture
   librsvg2-bin
 )

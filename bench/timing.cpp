@@ -1,0 +1,95 @@
+#include "timing.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::bench {
+namespace {
+
+constexpr double kSecondsBetweenLines = 10;
+
+/// The uncounted run of each job. Afterwards the jobs that will not be counted are marked as skipped.
+void warm_up(std::vector<Job>& jobs, std::size_t runs, double limit, Progress& progress) {
+  std::map<std::string, std::string> ended;  // why, by series
+  for (Job& job : jobs) {
+    if (const auto found = ended.find(job.series); found != ended.end()) {
+      job.skipped = found->second;
+      progress.drop(1 + runs);
+      continue;
+    }
+    progress.step(fmt::format("first run, not counted: {}", job.name));
+    try {
+      const double seconds = job.run();
+      if (limit > 0 && seconds > limit) {
+        ended[job.series] = fmt::format("{} took {:.3g} s, more than {:g} s", job.name, seconds, limit);
+      }
+    } catch (const Error& error) {
+      job.skipped = error.what();
+      progress.drop(runs);
+    }
+  }
+}
+
+}  // namespace
+
+Progress::Progress(std::size_t steps) : steps_(steps), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::clear() {
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::step(const std::string& what) {
+  ++begun_;
+  const std::string line = fmt::format("{} of {}: {}", begun_, steps_, what);
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{}", line);
+    std::fflush(stderr);
+  } else if (all_.seconds() - shown_at_ > kSecondsBetweenLines) {
+    shown_at_ = all_.seconds();
+    fmt::print(stderr, "{}\n", line);
+  }
+}
+
+void Progress::say(const std::string& message) {
+  clear();
+  fmt::print(stderr, "{}\n", message);
+}
+
+void run_interleaved(std::vector<Job>& jobs, int runs, double limit) {
+  const auto rounds = static_cast<std::size_t>(runs);
+  Progress progress(jobs.size() * (1 + rounds));
+  warm_up(jobs, rounds, limit, progress);
+  for (const Job& job : jobs) {
+    if (!job.skipped.empty()) progress.say(fmt::format("not measured: {}: {}", job.name, job.skipped));
+  }
+  for (int run = 1; run <= runs; ++run) {
+    for (Job& job : jobs) {
+      if (!job.skipped.empty()) continue;
+      progress.step(fmt::format("run {} of {}: {}", run, runs, job.name));
+      job.seconds.push_back(job.run());
+    }
+  }
+}
+
+Summary summary(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+  return {median, values.front(), values.back()};
+}
+
+void add_seconds(nlohmann::json& row, const Summary& seconds) {
+  row["seconds_median"] = seconds.median;
+  row["seconds_min"] = seconds.low;
+  row["seconds_max"] = seconds.high;
+}
+
+}  // namespace flaunay::bench

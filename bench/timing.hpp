@@ -1,0 +1,72 @@
+// Interleaved runs, and what is said about them.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace flaunay::bench {
+
+/// Seconds since it was made.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Tells standard error what is running, and how far all of it is: on a terminal one line that is rewritten,
+/// elsewhere a line every ten seconds.
+class Progress {
+ public:
+  explicit Progress(std::size_t steps);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// The next of the steps begins.
+  void step(const std::string& what);
+  /// Steps that will not come after all.
+  void drop(std::size_t steps) { steps_ -= steps; }
+  /// A message that stays.
+  void say(const std::string& message);
+
+ private:
+  void clear();
+
+  std::size_t steps_, begun_ = 0;
+  bool terminal_;
+  Stopwatch all_;
+  double shown_at_ = 0;
+};
+
+/// Something to run again and again.
+struct Job {
+  std::string name;
+  /// Runs once and returns the seconds that count.
+  std::function<double()> run;
+  /// Jobs of a series differ in size only and stand in ascending order.
+  std::string series = {};
+  std::vector<double> seconds = {};  ///< of the counted runs
+  std::string skipped = {};          ///< why it has none; else empty
+};
+
+/// Runs all jobs in turn, once without counting and then `runs` times, so that a machine's changing speed
+/// meets all alike. A job that throws Error is skipped, with its message; so are the jobs of a series
+/// after one whose uncounted run took longer than the limit in seconds (0: none).
+void run_interleaved(std::vector<Job>& jobs, int runs, double limit = 0);
+
+struct Summary {
+  double median = 0, low = 0, high = 0;
+};
+
+/// Of at least one value; the median of an even number is the mean of the middle two.
+Summary summary(std::vector<double> values);
+
+/// Adds seconds_median, seconds_min and seconds_max to a row of results.
+void add_seconds(nlohmann::json& row, const Summary& seconds);
+
+}  // namespace flaunay::bench

@@ -1,0 +1,249 @@
+// flaunay-bench on tiny inputs: exit codes, what its records hold, and that its plots are what they should
+// be.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/plot.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace plot = flaunay::bench::plot;
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// What is wrong with an XML text's tags, quotes or numbers; empty if nothing is.
+std::string xml_fault(const std::string& text) {
+  std::vector<std::string> open;
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    const std::size_t end = text.find('>', at);
+    if (end == std::string::npos) return "a tag without an end";
+    const std::string tag = text.substr(at + 1, end - at - 1);
+    at = end;
+    if (tag.empty() || tag[0] == '?') continue;
+    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return "odd quotes in <" + tag + ">";
+    if (tag.find('<') != std::string::npos) return "a tag in a tag: <" + tag + ">";
+    const auto name_end = std::find_if(tag.begin() + 1, tag.end(),
+                                       [](unsigned char c) { return !std::isalnum(c) && c != ':'; });
+    if (tag[0] == '/') {
+      if (open.empty() || open.back() != tag.substr(1)) return "<" + tag + "> closes nothing";
+      open.pop_back();
+    } else if (tag.back() != '/') {
+      open.emplace_back(tag.begin(), name_end);
+    }
+  }
+  if (!open.empty()) return "<" + open.back() + "> is not closed";
+  for (const char* number : {"\"nan", "\"-nan", "\"inf", "\"-inf", ",nan", ",inf"}) {
+    if (text.find(number) != std::string::npos) return "a coordinate that is no number";
+  }
+  return text.find("<svg ") == std::string::npos ? "no <svg>" : "";
+}
+
+TEST(Xml, FaultsAreFound) {
+  EXPECT_EQ(xml_fault("<svg a=\"1\"><g/></svg>"), "");
+  EXPECT_NE(xml_fault("<svg a=\"1\"><g></svg>"), "");
+  EXPECT_NE(xml_fault("<svg a=\"1><g/></svg>"), "");
+  EXPECT_NE(xml_fault("<svg a=\"nan\"></svg>"), "");
+}
+
+class BenchTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "flaunay-bench-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    directory_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+
+  /// Runs flaunay-bench and returns its exit code; standard output and error are in files "out" and "err".
+  int run(const std::string& arguments) const {
+    const std::string command =
+        std::string(FLAUNAY_BENCH) + " " + arguments + " >" + path("out") + " 2>" + path("err");
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  /// Runs with a record and a plot, checks what all of them have, and returns the record.
+  nlohmann::json run_well(const std::string& arguments) const {
+    const std::string json = path("record.json"), svg = path("plot.svg");
+    EXPECT_EQ(run(arguments + " --runs 1 --json " + json + " --plot " + svg), 0) << contents(path("err"));
+    EXPECT_EQ(xml_fault(contents(svg)), "");
+    const auto record = nlohmann::json::parse(contents(json), nullptr, false);
+    EXPECT_TRUE(record.is_object());
+    for (const char* key :
+         {"device", "driver", "platform", "host", "commit", "command", "date", "runs", "results"}) {
+      EXPECT_TRUE(record.contains(key)) << key;
+    }
+    EXPECT_EQ(record.value("runs", 0), 1);
+    return record;
+  }
+
+  fs::path directory_;
+};
+
+void expect_keys(const nlohmann::json& row, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) EXPECT_TRUE(row.contains(key)) << key << " in " << row;
+}
+
+void expect_times(const nlohmann::json& row) {
+  const double low = row.value("seconds_min", 0.0), median = row.value("seconds_median", 0.0);
+  EXPECT_GT(low, 0) << row;
+  EXPECT_LE(low, median) << row;
+  EXPECT_LE(median, row.value("seconds_max", 0.0)) << row;
+}
+
+TEST_F(BenchTest, Usage) {
+  EXPECT_EQ(run("--help"), 0);
+  EXPECT_EQ(run("peers --help"), 0);
+  EXPECT_NE(contents(path("out")).find("cgal"), std::string::npos);
+  EXPECT_EQ(run(""), 2);
+  EXPECT_EQ(run("nothing"), 2);
+  EXPECT_EQ(run("modes --modes nothing"), 2);
+  EXPECT_EQ(run("peers --distributions nothing"), 2);
+  EXPECT_EQ(run("primitives --sizes 0"), 2);
+  EXPECT_EQ(run("modes --sizes 100 --json " + path("no/such/folder.json")), 3);
+  EXPECT_EQ(run("primitives --sizes 100 --device no-such-device"), 4);
+}
+
+TEST_F(BenchTest, PeersAgreeAndAreRecorded) {
+  const auto record = run_well("peers --sizes 300,900 --distributions uniform,grid");
+  expect_keys(record, {"best", "skipped"});
+  std::size_t of_flaunay = 0;
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"implementation", "distribution", "n", "bytes_peak", "triangles", "agrees"});
+    expect_times(row);
+    EXPECT_TRUE(row.value("agrees", false)) << row;
+    of_flaunay += row.value("implementation", "").rfind("flaunay-", 0) == 0;
+  }
+  EXPECT_EQ(of_flaunay, 8u);  // two modes on four inputs
+  EXPECT_EQ(record["best"].size(), 4u);
+}
+
+TEST_F(BenchTest, SlowPeersAreSkippedAndSaidSo) {
+  const auto record =
+      run_well("peers --sizes 200000 --distributions uniform --modes flattened --limit 0.001");
+  EXPECT_EQ(record["results"].size(), 1u);
+  for (const auto& row : record["skipped"]) {
+    expect_keys(row, {"implementation", "distribution", "n"});
+    EXPECT_NE(row.value("reason", "").find("took more than"), std::string::npos) << row;
+  }
+  if (!record["skipped"].empty()) {
+    EXPECT_NE(contents(path("err")).find("not measured"), std::string::npos);
+  }
+}
+
+// Qhull's tolerances drop points where they are dense among few far ones.
+TEST_F(BenchTest, WrongCountsAreAFailure) {
+  const int code =
+      run("peers --sizes 100000 --distributions kuzmin --modes flattened --peers qhull --runs 1");
+  const std::string messages = contents(path("err"));
+  if (messages.find("without it") != std::string::npos) GTEST_SKIP() << "built without Qhull";
+  EXPECT_EQ(code, 1);
+  EXPECT_NE(messages.find("WARNING"), std::string::npos) << messages;
+}
+
+TEST_F(BenchTest, ModesAreRecorded) {
+  const auto record = run_well("modes --sizes 256,512 --distributions uniform,line --modes flattened,dwyer");
+  expect_keys(record, {"crossovers", "skipped"});
+  EXPECT_EQ(record["results"].size() + record["skipped"].size(), 8u);
+  EXPECT_FALSE(record["results"].empty());
+  for (const auto& row : record["results"]) {
+    expect_keys(row,
+                {"mode", "distribution", "n", "kernel_launches", "host_waits", "bytes_peak", "undecided"});
+    expect_times(row);
+  }
+}
+
+TEST_F(BenchTest, SlowModesEnd) {
+  const auto record = run_well("modes --sizes 256,512 --modes flattened --limit 0.0000001");
+  EXPECT_EQ(record["results"].size(), 1u);
+  ASSERT_EQ(record["skipped"].size(), 1u);
+  EXPECT_EQ(record["skipped"][0].value("n", 0), 512);
+  EXPECT_NE(contents(path("out")).find("not measured"), std::string::npos);
+}
+
+TEST_F(BenchTest, PrimitivesAreRecorded) {
+  const auto record = run_well("primitives --sizes 1000");
+  std::vector<std::string> names;
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"operation", "segmentation", "n", "bytes", "elements_per_second", "bytes_per_second"});
+    expect_times(row);
+    names.push_back(row.value("operation", ""));
+  }
+  for (const char* name :
+       {"plain copy", "exclusive_scan uint8", "sort_by_key", "segmented_select", "permute"}) {
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  }
+}
+
+plot::Lines some_lines() {
+  plot::Lines lines;
+  lines.title = "a < b & c";
+  lines.x = {"points", plot::Scale::log2};
+  lines.y = {"time", plot::Scale::log10, plot::Unit::seconds};
+  lines.series = {{"first", {1024, 4096, 16384, 65536}, {1e-3, 1e-2, 1e-1, 1}}};
+  lines.references = {{"here", 2000}};
+  return lines;
+}
+
+TEST(Plot, TicksOfLogarithmicAxes) {
+  plot::Figure figure;
+  figure.panels = {some_lines()};
+  const std::string svg = plot::render(figure);
+  EXPECT_EQ(xml_fault(svg), "");
+  for (const char* label :
+       {">1 ms<", ">10 ms<", ">100 ms<", ">1 s<", ">12<", ">first<", ">here<", "a &lt; b &amp; c"}) {
+    EXPECT_NE(svg.find(label), std::string::npos) << label;
+  }
+}
+
+TEST(Plot, WhatALogarithmCannotShowIsLeftOut) {
+  plot::Lines lines = some_lines();
+  lines.series[0].y = {0, std::nan(""), 1, -1};
+  lines.series[0].low = {0, 0, 0, 0};
+  lines.series[0].high = {1, 1, 2, 2};
+  plot::Figure figure;
+  figure.panels = {lines};
+  EXPECT_EQ(xml_fault(plot::render(figure)), "");
+}
+
+TEST(Plot, BarsHaveTheirHeights) {
+  plot::Bars bars;
+  bars.y = {"operations", plot::Scale::linear};
+  bars.parts = {"hull", "merge"};
+  bars.comparison_name = "published";
+  bars.groups = {{"uniform", {{"a", {30, 10}, {}, {}, 50}, {"b", {15, 5}}}}};
+  bars.values = true;
+  plot::Figure figure;
+  figure.panels = {bars};
+  const std::string svg = plot::render(figure);
+  EXPECT_EQ(xml_fault(svg), "");
+  for (const char* label : {">hull<", ">merge<", ">published<", ">40<", ">20<", ">uniform<"}) {
+    EXPECT_NE(svg.find(label), std::string::npos) << label;
+  }
+}
+
+TEST(Plot, NothingIsNoFault) {
+  plot::Figure figure;
+  EXPECT_EQ(xml_fault(plot::render(figure)), "");
+  figure.panels = {plot::Lines{}, plot::Bars{}, plot::Scatter{}};
+  EXPECT_EQ(xml_fault(plot::render(figure)), "");
+}
+
+}  // namespace
