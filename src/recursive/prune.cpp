@@ -26,7 +26,7 @@ std::vector<HullPoint> candidates_of(const Line& line, const std::vector<HullPoi
       best = distance;
     }
   }
-  counter.arithmetic(2 * points.size());
+  counter.arithmetic((line.planar() ? 1 : 2) * points.size());
   counter.critical_path(2 + reduce_depth(kBucket) + scan_depth(points.size()));
   return candidates;
 }
@@ -34,32 +34,37 @@ std::vector<HullPoint> candidates_of(const Line& line, const std::vector<HullPoi
 }  // namespace
 
 Prune::Prune(const Predicates& predicates, const Line& line, const Path& path, bool keep_on, Counter& counter)
-    : predicates_(predicates),
-      line_(line),
-      path_(path),
-      keep_on_(keep_on),
-      counter_(counter),
-      band_(widest_band()) {}
-
-// A height above which nothing can be below a chord: a chord of length l between heights h and k stays below
-// max(h, k) + l^2 / 4. Greater by more than the rounding of depths; infinite for planar hulls, whose heights
-// have no zero.
-double Prune::widest_band() {
-  constexpr double kSlack = 1 + 0x1p-20;
-  double band = line_.planar() ? std::numeric_limits<double>::infinity() : 0;
-  for (std::size_t k = 0; k + 1 < path_.size(); ++k) {
-    const double across = std::fmax(std::fabs(path_[k].s() - line_.q), std::fabs(path_[k + 1].s() - line_.q));
-    const double along = path_[k + 1].u() - path_[k].u();
-    band = std::fmax(band, kSlack * (across * across + 0.25 * along * along));
-  }
-  counter_.arithmetic(10 * (path_.size() - 1));
-  counter_.critical_path(10 + reduce_depth(path_.size()));
-  return band;
+    : predicates_(predicates), line_(line), path_(path), keep_on_(keep_on), counter_(counter) {
+  make_bands();
 }
 
-bool Prune::is_above_band(const HullPoint& p) {
+// A chord of length l between heights h and k stays below max(h, k) + l^2 / 4; of a planar hull, whose
+// heights have no zero, below max(h, k). Greater by more than the rounding of depths.
+void Prune::make_bands() {
+  constexpr double kSlack = 1 + 0x1p-20;
+  bands_.assign(path_.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k + 1 < path_.size(); ++k) {
+    if (line_.planar()) {
+      bands_[k] = std::fmax(path_[k].s(), path_[k + 1].s());
+    } else {
+      const double across =
+          std::fmax(std::fabs(path_[k].s() - line_.q), std::fabs(path_[k + 1].s() - line_.q));
+      const double along = path_[k + 1].u() - path_[k].u();
+      bands_[k] = kSlack * (across * across + 0.25 * along * along);
+    }
+  }
+  const std::uint64_t operations = line_.planar() ? 1 : 9;
+  counter_.arithmetic(operations * (path_.size() - 1));
+  counter_.critical_path(operations);
+}
+
+bool Prune::is_above_band(const HullPoint& p, std::size_t low) {
+  if (line_.planar()) {
+    counter_.arithmetic();
+    return p.s() > bands_[low];
+  }
   counter_.arithmetic(3);
-  return (p.s() - line_.q) * (p.s() - line_.q) > band_;
+  return (p.s() - line_.q) * (p.s() - line_.q) > bands_[low];
 }
 
 std::size_t search_path(const Path& path, double u, Counter& counter) {
@@ -91,36 +96,36 @@ Kept Prune::held_against(const HullPoint& p, std::size_t low) {
 std::vector<Kept> Prune::sorted(const std::vector<HullPoint>& points) {
   std::vector<Kept> kept(points.size(), Kept::no);
   for (std::size_t begin = 0; begin < points.size(); begin += kBucket) {
-    bool searched = false;
-    std::size_t low = 0;
-    for (std::size_t i = begin; i < std::min(points.size(), begin + kBucket); ++i) {
-      const double u = points[i].u();
-      if (is_above_band(points[i])) continue;
-      if (!searched) {
-        low = search_path(path_, u, counter_);
-        searched = true;
-      } else {
-        const auto step_if = [this](bool go) {
-          counter_.arithmetic();
-          return go;
-        };
-        while (low + 1 < path_.size() && step_if(path_[low + 1].u() <= u)) ++low;
-        while (low > 0 && step_if(path_[low].u() > u)) --low;
-      }
-      kept[i] = held_against(points[i], low);
+    const std::size_t end = std::min(points.size(), begin + kBucket);
+    std::size_t low = search_path(path_, points[begin].u(), counter_);
+    const std::size_t last_low = end - begin > 1 ? walk(low, points[end - 1].u()) : low;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (low != last_low) low = walk(low, points[i].u());
+      if (!is_above_band(points[i], low)) kept[i] = held_against(points[i], low);
     }
   }
-  counter_.critical_path(3 + reduce_depth(path_.size()) + 1 + 18 + scan_depth(points.size()));
+  counter_.critical_path(2 * reduce_depth(path_.size()) + 3 + 1 + 18 + scan_depth(points.size()));
   return kept;
 }
 
 std::vector<Kept> Prune::unsorted(const std::vector<HullPoint>& points) {
   std::vector<Kept> kept(points.size(), Kept::no);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_above_band(points[i])) continue;
-    kept[i] = held_against(points[i], search_path(path_, points[i].u(), counter_));
+    const std::size_t low = search_path(path_, points[i].u(), counter_);
+    if (!is_above_band(points[i], low)) kept[i] = held_against(points[i], low);
   }
   return kept;
+}
+
+// From a vertex to the last one with u no greater than the given one.
+std::size_t Prune::walk(std::size_t low, double u) {
+  const auto compared = [this](bool result) {
+    counter_.arithmetic();
+    return result;
+  };
+  while (low + 1 < path_.size() && compared(path_[low + 1].u() <= u)) ++low;
+  while (low > 0 && compared(path_[low].u() > u)) --low;
+  return low;
 }
 
 std::vector<HullPoint> pick(const std::vector<HullPoint>& points, const std::vector<Kept>& kept) {

@@ -23,15 +23,16 @@ class Prune {
   /// vertex all.
   Prune(const Predicates& predicates, const Line& line, const Path& path, bool keep_on, Counter& counter);
 
-  /// points sorted along the line, either way. A search for every kBucket of them, and a depth for those that
-  /// are near enough to the line.
+  /// points sorted along the line, either way. A search for every kBucket of them at least, and a depth for
+  /// those that are near enough to the line.
   std::vector<Kept> sorted(const std::vector<HullPoint>& points);
-  /// points in any order. A search for each that is near enough to the line.
+  /// points in any order. A search for each.
   std::vector<Kept> unsorted(const std::vector<HullPoint>& points);
 
  private:
-  double widest_band();
-  bool is_above_band(const HullPoint& p);
+  void make_bands();
+  bool is_above_band(const HullPoint& p, std::size_t low);
+  std::size_t walk(std::size_t low, double u);
   Kept held_against(const HullPoint& p, std::size_t low);
 
   const Predicates& predicates_;
@@ -39,7 +40,7 @@ class Prune {
   const Path& path_;
   bool keep_on_;
   Counter& counter_;
-  double band_;
+  std::vector<double> bands_;  // by path vertex: what rises above is not below the chord to the next
 };
 
 /// Consecutive points of which one is a candidate.
