@@ -1,7 +1,6 @@
 #include "recursive/recursive.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "recursive/border_merge.hpp"
