@@ -35,9 +35,28 @@ int exact_circle(Point a, Point b, Point c, Point d);
 
 inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }
 
+/// How far a point's projection lies below a chord.
+struct Depth {
+  double value = 0;  ///< rounded, good to rank points by
+  int sign = 0;      ///< exact; from a filter alone it may be UNDECIDED
+};
+
 /// Exact signs: the filter first, expansions where it cannot decide.
 struct Predicates {
   Bounds bounds{};
+
+  /// Of p below the chord from a to b, all in the frame (s, u) of the line s = q, a's u below b's; with
+  /// `planar` of the plane itself. Positive if p lies strictly below. See kernels/shared/hull_height.h.
+  Depth depth_filtered(Point a, Point b, Point p, double q, bool planar) const {
+    const auto [depth, magnitude] = kernel::hull_depth(a, b, p, q, planar);
+    const double error = bounds.hull * magnitude;
+    return {depth, depth > error ? 1 : depth < -error ? -1 : bounds.hull == 0 ? 0 : UNDECIDED};
+  }
+  Depth depth(Point a, Point b, Point p, double q, bool planar) const {
+    Depth depth = depth_filtered(a, b, p, q, planar);
+    if (depth.sign == UNDECIDED) depth.sign = kernel::hull_depth_sign(a, b, p, q, planar);
+    return depth;
+  }
 
   /// 1 if a, b, c turn left, -1 right, 0 straight.
   int orient(Point a, Point b, Point c) const {

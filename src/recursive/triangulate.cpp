@@ -8,6 +8,7 @@
 #include "recursive/mesh.hpp"
 #include "recursive/phases.hpp"
 #include "recursive/points.hpp"
+#include "recursive/recursive.hpp"
 #include "recursive/sort.hpp"
 
 namespace flaunay {
@@ -69,8 +70,7 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
   Statistics statistics;
   Mesh mesh;
   if (options.mode == Mode::recursive) {
-    // The one place that will be: mesh.triangles = recursive_triangles(sets, options, statistics).
-    throw Error(ErrorKind::usage, "the mode recursive is not there yet");
+    mesh.triangles = recursive_triangles(sets, options, statistics);
   } else {
     mesh = dwyer_of_sets(sets, options.count ? &statistics.work : nullptr, phases);
   }

@@ -1,0 +1,128 @@
+#include "recursive/border_merge.hpp"
+
+namespace flaunay::recursive {
+namespace {
+
+enum Side { kLeft, kRight };
+
+// Where a direction from a path vertex lies, counter-clockwise: along the path's next edge, left of the path,
+// along its previous edge, right of it. At the path's ends the missing edge leads straight on along the line.
+enum class Position { next, left, previous, right };
+
+// The directions about one vertex of a path.
+class PathVertex {
+ public:
+  PathVertex(const Predicates& predicates, const Line& line, const Path& path, std::size_t place,
+             Counter& counter)
+      : predicates_(predicates),
+        line_(line),
+        vertex_(path[place]),
+        previous_(place > 0 ? &path[place - 1] : nullptr),
+        next_(place + 1 < path.size() ? &path[place + 1] : nullptr),
+        counter_(counter) {}
+
+  // Of the border edge to p. A point off the path lies on the same side of the path as of the line, and so
+  // does an edge to it, which cannot cross. What lies between the path's neighbours in u, and is not one of
+  // them, is off the path; only beyond them an orientation must decide.
+  Position position_of(const HullPoint& p) {
+    if (next_ && p.id == next_->id) return Position::next;
+    if (previous_ && p.id == previous_->id) return Position::previous;
+    if (next_ && is_less(next_->u(), p.u())) {
+      return turns_left(*next_, p) ? Position::left : Position::right;
+    }
+    if (previous_ && is_less(p.u(), previous_->u())) {
+      return turns_left(*previous_, p) ? Position::right : Position::left;
+    }
+    return is_less(p.s(), line_.q) ? Position::left : Position::right;
+  }
+
+  // Whether of two directions on one side of the path f comes first, counter-clockwise within that side.
+  bool comes_first(const HullPoint& f, const HullPoint& g, Position side) {
+    const int f_rises = kernel::sign_of(f.u() - vertex_.u());
+    const int g_rises = kernel::sign_of(g.u() - vertex_.u());
+    counter_.arithmetic(2);
+    if (f_rises != g_rises) return (f_rises > g_rises) == (side == Position::left);
+    return turns_left(f, g);
+  }
+
+  // The id of a path neighbour; -1 beyond the path's ends, where no border leads.
+  std::int32_t neighbor(Position position) const {
+    const HullPoint* neighbor = position == Position::next ? next_ : previous_;
+    return neighbor ? neighbor->id : -1;
+  }
+
+ private:
+  bool is_less(double a, double b) {
+    counter_.arithmetic();
+    return a < b;
+  }
+  bool turns_left(const HullPoint& f, const HullPoint& g) {
+    counter_.orientation();
+    return predicates_.orient(vertex_.place, f.place, g.place) > 0;
+  }
+
+  const Predicates& predicates_;
+  const Line& line_;
+  const HullPoint& vertex_;
+  const HullPoint* previous_;
+  const HullPoint* next_;
+  Counter& counter_;
+};
+
+// Cuts the wedge of a corner on the path, which runs counter-clockwise from the edge to `after` to the edge
+// to `before`, at the path's edges in it; the other way round, from `before`. The paper's six cases are the
+// ways in which that can end.
+void split_corner(PathVertex& around, const HullPoint& before, std::int32_t vertex, const HullPoint& after,
+                  SplitBorder& sides) {
+  const Position from = around.position_of(before);
+  const Position to = around.position_of(after);
+  const bool on_one_side = from == to && (from == Position::left || from == Position::right);
+  // The wedge may have all of the path's other side within.
+  bool passes = on_one_side && !around.comes_first(after, before, from);
+  std::int32_t last = before.id;
+  for (Position at = from;;) {
+    const Side side = at == Position::previous || at == Position::left ? kLeft : kRight;
+    const Position begin = side == kLeft ? Position::next : Position::previous;
+    if (to == (side == kLeft ? Position::left : Position::right) && !passes) {
+      sides[side].push_back({last, vertex, after.id});
+      return;
+    }
+    sides[side].push_back({last, vertex, around.neighbor(begin)});
+    if (to == begin) return;
+    passes = false;
+    at = begin;
+    last = around.neighbor(begin);
+  }
+}
+
+}  // namespace
+
+SplitBorder merge_border(const Predicates& predicates, const std::vector<Point>& points, const Line& line,
+                         const Border& border, const LowerHull& hull, const std::vector<char>& is_internal,
+                         Counter& counter) {
+  const Path& path = hull.path;
+  const auto placed = [&](std::int32_t id) { return HullPoint{id, line.place(points[id])}; };
+  SplitBorder sides;
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    const Corner& corner = border[i];
+    const HullPoint vertex = placed(corner.vertex);
+    const std::size_t place = hull.corners[i] == Kept::no ? 0 : search_path(path, vertex.u(), counter);
+    if (path[place].id == vertex.id) {
+      PathVertex around(predicates, line, path, place, counter);
+      split_corner(around, placed(corner.before), vertex.id, placed(corner.after), sides);
+    } else {
+      counter.arithmetic();
+      sides[vertex.s() < line.q ? kLeft : kRight].push_back(corner);
+    }
+  }
+  for (std::size_t k = 1; k + 1 < path.size(); ++k) {
+    if (!is_internal[k]) continue;
+    sides[kLeft].push_back({path[k - 1].id, path[k].id, path[k + 1].id});
+    sides[kRight].push_back({path[k + 1].id, path[k].id, path[k - 1].id});
+  }
+  counter.critical_path(reduce_depth(path.size()) + 2 * (2 + 8) + scan_depth(border.size()) +
+                        scan_depth(path.size()) + scan_depth(2));
+  return sides;
+}
+
+}  // namespace flaunay::recursive

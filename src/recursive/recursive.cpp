@@ -1,0 +1,211 @@
+#include "recursive/recursive.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "recursive/border_merge.hpp"
+#include "recursive/endgame.hpp"
+#include "recursive/first_border.hpp"
+#include "recursive/lower_hull.hpp"
+
+namespace flaunay::recursive {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+// A union of Delaunay triangles: what lies inside, in both orders, and the border.
+struct Region {
+  Ids by_x, by_y;
+  Border border;
+};
+
+// The level of what comes before the first cut.
+constexpr int kStart = -1;
+
+class Recursion {
+ public:
+  Recursion(const PointSets& sets, const Options& options, Statistics& statistics)
+      : sets_(sets),
+        predicates_(sets.predicates),
+        points_(sets.points),
+        options_(options),
+        statistics_(statistics),
+        on_border_(sets.points.size(), 0) {}
+
+  Ids run() {
+    for (std::size_t s = 0; s + 1 < sets_.set_offsets.size(); ++s) {
+      Region region = whole_set(sets_.set_offsets[s], sets_.set_offsets[s + 1]);
+      if (!region.border.empty()) divide(std::move(region), 0);
+    }
+    if (options_.count) statistics_.work = std::move(work_);
+    return std::move(triangles_);
+  }
+
+ private:
+  // Figure 1 of the paper. No merge follows: all work is done on the way down.
+  void divide(Region region, int level) {
+    if (region.by_x.empty()) {
+      finish(region.border, level - 1);
+      return;
+    }
+    note_region(region, level);
+    const Line line = cut(region, level);
+    const LowerHull hull = dividing_path(region, line, level);
+    std::array<Region, 2> parts = split(region, line, hull, level);
+    region = Region();
+    for (Region& part : parts) {
+      if (!part.border.empty()) divide(std::move(part), level + 1);
+    }
+  }
+
+  Region whole_set(std::int32_t low, std::int32_t high);
+  Line cut(const Region& region, int level);
+  LowerHull dividing_path(const Region& region, const Line& line, int level);
+  std::array<Region, 2> split(const Region& region, const Line& line, const LowerHull& hull, int level);
+  void finish(const Border& border, int level);
+
+  void note_region(const Region& region, int level);
+  LevelStatistics& level_statistics(int level) { return statistics_.levels[level]; }
+  OperationCounts& start(Component component) { return work_.start[static_cast<std::size_t>(component)]; }
+  void note_work(Component component, int level, const Counter& counter) {
+    auto& components = level == kStart ? work_.start : work_.levels[level];
+    add_beside(components[static_cast<std::size_t>(component)], counter.counts());
+  }
+
+  const PointSets& sets_;
+  const Predicates& predicates_;
+  const std::vector<Point>& points_;
+  const Options& options_;
+  Statistics& statistics_;
+  Work work_;
+  std::vector<char> on_border_;  // by id: on a border of some region
+  Ids triangles_;
+};
+
+Region Recursion::whole_set(std::int32_t low, std::int32_t high) {
+  Counter hull, sorting;
+  Region region;
+  region.border = first_border(sets_, low, high, options_.hull, hull);
+  note_work(Component::hull, kStart, hull);
+  for (const Corner& corner : region.border) on_border_[corner.vertex] = 1;
+  for (std::int32_t id = low; id < high; ++id) {
+    if (!on_border_[id]) region.by_x.push_back(id);
+  }
+  if (region.border.empty()) region.by_x.clear();
+  region.by_y = region.by_x;
+  std::sort(region.by_y.begin(), region.by_y.end(), [&](std::int32_t a, std::int32_t b) {
+    sorting.arithmetic();
+    return points_[a].y != points_[b].y ? points_[a].y < points_[b].y : a < b;
+  });
+  note_work(Component::cut, kStart, sorting);
+  return region;
+}
+
+// Through the median; across the longer interquartile range, which keeps regions round and borders short.
+Line Recursion::cut(const Region& region, int level) {
+  const std::size_t count = region.by_x.size();
+  const auto x = [&](std::size_t k) { return points_[region.by_x[k]].x; };
+  const auto y = [&](std::size_t k) { return points_[region.by_y[k]].y; };
+  int axis = level % 2 == 0 ? AXIS_X : AXIS_Y;
+  if (options_.cut == Cut::interquartile) {
+    const std::size_t lower = count / 4, upper = 3 * count / 4;
+    axis = y(upper) - y(lower) > x(upper) - x(lower) ? AXIS_Y : AXIS_X;
+    Counter counter;
+    counter.arithmetic(3);
+    counter.sequential();
+    note_work(Component::cut, level, counter);
+  }
+  return {axis, axis == AXIS_X ? x(count / 2) : y(count / 2)};
+}
+
+// The lower hull of the points projected to the paraboloid over the line's middle and from there along the
+// line: a path of Delaunay edges that separates left from right.
+LowerHull Recursion::dividing_path(const Region& region, const Line& line, int level) {
+  Counter counter;
+  HullPoints points{line, {}, {}, {}, {}};
+  for (const std::int32_t id : line.axis == AXIS_X ? region.by_y : region.by_x) {
+    points.internal.push_back({id, line.place(points_[id])});
+  }
+  for (const Corner& corner : region.border) {
+    points.corners.push_back({corner.vertex, line.place(points_[corner.vertex])});
+  }
+  const auto comes_before = [&](const HullPoint& a, const HullPoint& b) {
+    return a.u() != b.u() ? a.u() < b.u() : line.is_lower(a.place, b.place);
+  };
+  points.first = points.last = points.corners[0];
+  for (const HullPoint& p : points.corners) {
+    if (comes_before(p, points.first)) points.first = p;
+    if (p.u() != points.last.u() ? p.u() > points.last.u() : line.is_lower(p.place, points.last.place)) {
+      points.last = p;
+    }
+  }
+  counter.arithmetic(2 * (points.corners.size() - 1));
+  counter.critical_path(reduce_depth(points.corners.size()));
+  LowerHull hull = lower_hull(predicates_, points, options_.hull, counter, level_statistics(level));
+  level_statistics(level).path_vertices += hull.path.size();
+  note_work(Component::hull, level, counter);
+  return hull;
+}
+
+// The path becomes border of both parts; what is not on it lies on the same side of the path as of the line.
+std::array<Region, 2> Recursion::split(const Region& region, const Line& line, const LowerHull& hull,
+                                       int level) {
+  std::vector<char> is_internal;
+  for (const HullPoint& vertex : hull.path) {
+    is_internal.push_back(!on_border_[vertex.id]);
+    on_border_[vertex.id] = 1;
+  }
+  Counter merge_counter, split_counter;
+  SplitBorder borders =
+      merge_border(predicates_, points_, line, region.border, hull, is_internal, merge_counter);
+  note_work(Component::merge, level, merge_counter);
+
+  std::array<Region, 2> parts;
+  for (int side = 0; side < 2; ++side) parts[side].border = std::move(borders[side]);
+  const auto side_of = [&](std::int32_t id) {
+    const double s = line.place(points_[id]).x;
+    if (s == line.q) {
+      throw Error(ErrorKind::internal, "a point on a cut line is not on its path; please report the input");
+    }
+    return s < line.q ? 0 : 1;
+  };
+  for (const std::int32_t id : region.by_x) {
+    if (on_border_[id]) continue;
+    parts[side_of(id)].by_x.push_back(id);
+    split_counter.arithmetic();
+  }
+  for (const std::int32_t id : region.by_y) {
+    if (!on_border_[id]) parts[side_of(id)].by_y.push_back(id);
+  }
+  split_counter.critical_path(1 + scan_depth(region.by_x.size()));
+  note_work(Component::split, level, split_counter);
+  return parts;
+}
+
+void Recursion::finish(const Border& border, int level) {
+  Counter counter;
+  region_triangles(predicates_, points_, border, triangles_, counter);
+  note_work(Component::endgame, level, counter);
+  if (work_.endgame_sizes.size() <= border.size()) work_.endgame_sizes.resize(border.size() + 1);
+  ++work_.endgame_sizes[border.size()];
+}
+
+void Recursion::note_region(const Region& region, int level) {
+  if (statistics_.levels.size() == static_cast<std::size_t>(level)) {
+    statistics_.levels.emplace_back();
+    work_.levels.emplace_back();
+  }
+  LevelStatistics& now = level_statistics(level);
+  ++now.regions;
+  now.internal_points += region.by_x.size();
+  now.corners += region.border.size();
+  now.largest_region = std::max(now.largest_region, region.by_x.size());
+}
+
+}  // namespace
+
+Ids recursive_triangles(const PointSets& sets, const Options& options, Statistics& statistics) {
+  return Recursion(sets, options, statistics).run();
+}
+
+}  // namespace flaunay::recursive

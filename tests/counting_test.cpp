@@ -1,0 +1,123 @@
+// Holds the weights of src/counting/operations.cpp to the predicates' own text, read once more with a number
+// type that counts what is done with it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "flaunay/flaunay.hpp"
+#include "recursive/counter.hpp"
+#include "recursive/predicates.hpp"
+
+namespace flaunay::testing {
+namespace counted {
+
+struct Tally {
+  std::uint64_t plain = 0;        // arithmetic that the value itself takes
+  std::uint64_t bound = 0;        // arithmetic that its error bound takes
+  std::uint64_t comparisons = 0;  // the first decides by the value, the others are due to the bound
+};
+Tally tally;
+
+// What descends from a magnitude or from the filter's factor belongs to the bound. Changes of sign are free.
+struct Counted {
+  Counted(double v = 0, bool b = false) : value(v), of_bound(b) {}
+  double value;
+  bool of_bound;
+};
+
+Counted result(double value, Counted a, Counted b) {
+  const bool of_bound = a.of_bound || b.of_bound;
+  ++(of_bound ? tally.bound : tally.plain);
+  return {value, of_bound};
+}
+Counted operator+(Counted a, Counted b) { return result(a.value + b.value, a, b); }
+Counted operator-(Counted a, Counted b) { return result(a.value - b.value, a, b); }
+Counted operator*(Counted a, Counted b) { return result(a.value * b.value, a, b); }
+Counted operator-(Counted a) { return {-a.value, a.of_bound}; }
+bool operator<(Counted a, Counted b) { return ++tally.comparisons, a.value < b.value; }
+bool operator>(Counted a, Counted b) { return ++tally.comparisons, a.value > b.value; }
+bool operator==(Counted a, Counted b) { return ++tally.comparisons, a.value == b.value; }
+bool operator!=(Counted a, Counted b) { return ++tally.comparisons, a.value != b.value; }
+bool operator>=(Counted a, Counted b) { return ++tally.comparisons, a.value >= b.value; }
+Counted fabs(Counted a) { return {std::fabs(a.value), true}; }
+Counted fma(Counted a, Counted b, Counted c) {
+  return result(std::fma(a.value, b.value, c.value), result(0, a, b), c);
+}
+
+struct double2 {
+  Counted x, y;
+};
+double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
+double2 operator-(double2 a) { return {-a.x, -a.y}; }
+
+#undef FLAUNAY_EXACT_ARITHMETIC_H
+#undef FLAUNAY_FRAME_H
+#undef FLAUNAY_HULL_HEIGHT_H
+#undef FLAUNAY_PLANAR_H
+#define PAIR(x, y) (double2{(x), (y)})
+#define double Counted
+#include "shared/hull_height.h"
+#include "shared/planar.h"
+#undef double
+#undef PAIR
+
+// The filter of a depth, as the kernels have it where they call hull_depth.
+int depth_filtered(double2 a, double2 b, double2 p, Counted q, Counted bound) {
+  const double2 d = hull_depth(a, b, p, q, 0);
+  const Counted error = bound * d.y;
+  return d.x > error ? 1 : d.x < -error ? 0 : UNDECIDED;
+}
+
+}  // namespace counted
+
+namespace {
+
+using counted::Counted;
+using counted::tally;
+
+Counted bound(double value) { return {value, true}; }
+
+void expect_weights(const OperationCounts& one) {
+  EXPECT_EQ(tally.plain + 1, one.operations());
+  EXPECT_EQ(tally.plain + tally.bound + tally.comparisons, one.operations_with_bounds());
+  tally = {};
+}
+
+OperationCounts count_of(void (recursive::Counter::*count)()) {
+  recursive::Counter counter;
+  (counter.*count)();
+  return counter.counts();
+}
+
+// Each decides for a negative sign, which takes both comparisons.
+
+TEST(Counting, Depth) {
+  tally = {};
+  EXPECT_EQ(counted::depth_filtered({1.0, 0.0}, {2.0, 4.0}, {7.0, 1.0}, 0.5, bound(HULL_DEPTH_BOUND)), 0);
+  expect_weights(count_of(&recursive::Counter::depth));
+}
+
+TEST(Counting, Orientation) {
+  tally = {};
+  EXPECT_EQ(counted::orient_filtered({0.0, 0.0}, {0.0, 1.0}, {1.0, 0.0}, bound(ORIENT_BOUND)), -1);
+  expect_weights(count_of(&recursive::Counter::orientation));
+}
+
+TEST(Counting, Circle) {
+  tally = {};
+  EXPECT_EQ(counted::circle_filtered({0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {5.0, 5.0}, bound(CIRCLE_BOUND)),
+            -1);
+  expect_weights(count_of(&recursive::Counter::circle));
+}
+
+TEST(Counting, StepsOfTheScanModel) {
+  EXPECT_EQ(recursive::reduce_depth(0), 0U);
+  EXPECT_EQ(recursive::reduce_depth(1), 0U);
+  EXPECT_EQ(recursive::reduce_depth(2), 1U);
+  EXPECT_EQ(recursive::reduce_depth(9), 4U);
+  EXPECT_EQ(recursive::scan_depth(1024), 20U);
+}
+
+}  // namespace
+}  // namespace flaunay::testing
