@@ -78,17 +78,24 @@ void Runtime::set_tuning(const Tuning& tuning) {
   // Pending events refer to kernels by name.
   collect_times();
   tuning_ = tuning;
-  kernels_.clear();
-  programs_.clear();
+  for (auto& kernels : kernels_) kernels.clear();
+  for (auto& programs : programs_) programs.clear();
+}
+
+void Runtime::set_counters(const Buffer<cl_uint>& counters) {
+  counters_ = counters;
+  counting_ = counters.memory() != nullptr;
 }
 
 const boost::compute::program& Runtime::find_program(const std::string& file) {
-  const auto found = programs_.find(file);
-  if (found != programs_.end()) return found->second;
+  auto& programs = programs_[counting_];
+  const auto found = programs.find(file);
+  if (found != programs.end()) return found->second;
   const double begin = now();
   auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
-  const std::string options = fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={}",
-                                          tuning_.sort_bits, tuning_.sort_group, tuning_.small_region);
+  const std::string options =
+      fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={}{}", tuning_.sort_bits,
+                  tuning_.sort_group, tuning_.small_region, counting_ ? " -DFLAUNAY_COUNT" : "");
   const cl_device_id id = device_.id();
   const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
@@ -101,18 +108,21 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
                       code);
   }
   build_seconds_ += now() - begin;
-  return programs_.emplace(file, std::move(program)).first->second;
+  return programs.emplace(file, std::move(program)).first->second;
 }
 
 Runtime::Kernel& Runtime::find_kernel(const char* file, const char* name) {
   const auto key = std::make_pair(file, name);
-  const auto found = kernels_.find(key);
-  if (found != kernels_.end()) return found->second;
+  auto& kernels = kernels_[counting_];
+  const auto found = kernels.find(key);
+  if (found != kernels.end()) return found->second;
   const boost::compute::program& program = find_program(file);
   cl_int code = CL_SUCCESS;
   cl_kernel kernel = clCreateKernel(program.get(), name, &code);
   check_call(code, "clCreateKernel", fmt::format("{}.cl: {}", file, name));
-  return kernels_.emplace(key, Kernel{boost::compute::kernel(kernel, false), name}).first->second;
+  const boost::compute::kernel owned(kernel, false);
+  const auto arguments = static_cast<cl_uint>(owned.arity());
+  return kernels.emplace(key, Kernel{owned, name, arguments}).first->second;
 }
 
 void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group) {

@@ -63,6 +63,7 @@ class Runtime {
     Kernel& kernel = find_kernel(file, name);
     cl_uint index = 0;
     (set_argument(kernel, index++, arguments), ...);
+    if (counting_ && index < kernel.arguments) set_argument(kernel, index, counters_);
     enqueue(kernel, work_items, group);
   }
 
@@ -101,6 +102,9 @@ class Runtime {
   }
   void finish();
 
+  /// From now on kernels are built with FLAUNAY_COUNT, and those that count get these counters as their last
+  /// argument; see kernels/shared/counting.h. An empty buffer ends that.
+  void set_counters(const Buffer<cl_uint>& counters);
   void set_profiling(bool on) { profiling_ = on; }
   /// Per kernel, since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();
@@ -113,6 +117,7 @@ class Runtime {
   struct Kernel {
     boost::compute::kernel kernel;
     std::string name;
+    cl_uint arguments;
   };
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
@@ -136,8 +141,11 @@ class Runtime {
   boost::compute::context context_;
   boost::compute::command_queue queue_;
   Arena arena_;
-  std::map<std::string, boost::compute::program> programs_;
-  std::map<std::pair<const char*, const char*>, Kernel> kernels_;
+  // Two of each: kernels that count and kernels that do not.
+  std::map<std::string, boost::compute::program> programs_[2];
+  std::map<std::pair<const char*, const char*>, Kernel> kernels_[2];
+  Buffer<cl_uint> counters_{};
+  bool counting_ = false;
   bool profiling_ = false;
   std::vector<std::pair<cl_event, const std::string*>> events_;
   std::map<std::string, KernelTime> times_;

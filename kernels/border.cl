@@ -5,6 +5,7 @@
 // lies on them: ascending ids on the lower side, then descending ids on the upper side make the border,
 // counter-clockwise, the smallest and the largest id being on both. Collinear sets have all points on both.
 
+#include "shared/counting.h"
 #include "shared/frame.h"
 #include "shared/search.h"
 
@@ -48,7 +49,7 @@ kernel void doubled_offsets(int n, global const int* restrict offsets, global in
 // Empty sets get no segment: their ends are -1.
 kernel void set_ends(int n, global const int* restrict offsets, global const double2* restrict points,
                      global int* restrict axis, global double* restrict cut, global int* restrict first_end,
-                     global int* restrict last_end) {
+                     global int* restrict last_end COUNTERS) {
   const int s = get_global_id(0);
   if (s < n) {
     const int low = offsets[s];
@@ -61,6 +62,7 @@ kernel void set_ends(int n, global const int* restrict offsets, global const dou
     } else {
       const double left = points[low].x;
       const double right = points[high - 1].x;
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2 * search_comparisons(high - low));
       // The last id of the first column, the first id of the last one.
       int below = low, above = high;
       while (above - below > 1) {

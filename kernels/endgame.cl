@@ -5,16 +5,13 @@
 // Triangles replace the corners they come from, in place: a region of k corners has k - 2 triangles at most.
 // collect_triangles makes them dense, by the scanned counts. One pass each, a work-item a region.
 
+#define EXACT 0
 #include "shared/region_triangles.h"
-
-#define FILTERED_ORIENT(a, b, c, bound) orient_filtered(a, b, c, bound)
-#define FILTERED_CIRCLE(a, b, c, d, bound) circle_filtered(a, b, c, d, bound)
-REGION_TRIANGLES(triangles_filtered, FILTERED_ORIENT, FILTERED_CIRCLE)
 
 // status: 0 done, 2 undecided, 3 too large. broken[0] gets bit 2 if a border is not what it should be.
 kernel void small_regions(int n, double orient_bound, double circle_bound, global const int* restrict offsets,
                           global const double2* restrict points, global int* corners, global uint* restrict counts,
-                          global uchar* restrict status, global volatile int* restrict broken) {
+                          global uchar* restrict status, global volatile int* restrict broken COUNTERS) {
   const int r = get_global_id(0);
   if (r < n) {
     const int low = offsets[r];
@@ -23,8 +20,9 @@ kernel void small_regions(int n, double orient_bound, double circle_bound, globa
     int state = 0;
     if (size > SMALL_REGION) {
       state = 3;
+      COUNT_REGION(size, 0)
     } else {
-      total = triangles_filtered(corners + 3 * low, size, points, orient_bound, circle_bound, corners + 3 * low);
+      total = region_triangles(corners + 3 * low, size, points, orient_bound, circle_bound, corners + 3 * low WITH_COUNTERS);
       if (total == REGION_UNDECIDED) state = 2;
       if (total == REGION_BROKEN) atomic_or(broken, 2);
       total = max(total, 0);

@@ -4,6 +4,7 @@
 // takes: what is not on the path lies on the same side of both; one pass, a work-item a point. list_counts, list_bounds
 // and list_split then write the children's lists, stably: one pass each over chunks, with a scan (scan.cl).
 
+#include "shared/counting.h"
 #include "shared/frame.h"
 
 #define SIDE_LEFT 0
@@ -14,11 +15,12 @@
 kernel void point_sides(int n, global const int* restrict list, global const int* restrict regions,
                         global const int* restrict axis, global const double* restrict cut,
                         global const double2* restrict points, global uchar* restrict side,
-                        global volatile int* restrict broken) {
+                        global volatile int* restrict broken COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int id = list[i];
     if (side[id] != SIDE_BORDER) {
+      COUNT(COMPONENT_SPLIT, KIND_ARITHMETIC, 1);
       const int r = regions[i];
       const double s = to_frame(points[id], axis[r]).x;
       side[id] = s < cut[r] ? SIDE_LEFT : SIDE_RIGHT;

@@ -6,6 +6,7 @@
 // internal points on the path. child_sizes and child_places lay out the children, emit_corners and emit_path write
 // their corners. One pass each, a work-item a corner (a path vertex, a region).
 
+#include "shared/counting.h"
 #include "shared/frame.h"
 #include "shared/planar.h"
 #include "shared/search.h"
@@ -25,68 +26,95 @@
 #define CODE_ON_PATH 32
 #define CODE_UNDECIDED 2
 
-// A direction from a corner's vertex: to a point, or straight up or down along the cut line (id < 0, p.y = +-1)
-// where the path ends.
+// A vertex of the path with its neighbours on it, in the frame (s, u), for the cut at q. An end of the path has no
+// neighbour on one side: id -1.
 typedef struct {
-  int id;
-  double2 p;
-} direction;
+  double2 m, previous, next;
+  int previous_id, next_id;
+  double q;
+  COUNTED(uint arithmetic; uint orientations;)
+} path_vertex;
 
-#define DIRECTION_AFTER 0
-#define DIRECTION_BEFORE 1
-#define DIRECTION_PREVIOUS 2
-#define DIRECTION_NEXT 3
-#define PAIRS 6
+#define COUNT_VERTEX(v)                                                 \
+  COUNTED(COUNT(COMPONENT_MERGE, KIND_ARITHMETIC, (v).arithmetic);      \
+          COUNT(COMPONENT_MERGE, KIND_ORIENTATION, (v).orientations);)
 
-// The turns that decide a corner: (after, before), (after, previous), (after, next), (previous, before), (next,
-// before), (next, previous).
-static inline int2 pair_of(int k) {
-  const int first = k < 3 ? DIRECTION_AFTER : k == 3 ? DIRECTION_PREVIOUS : DIRECTION_NEXT;
-  const int second = k == 0 || k == 3 || k == 4 ? DIRECTION_BEFORE
-                     : k == 2                   ? DIRECTION_NEXT
-                                                : DIRECTION_PREVIOUS;
-  return (int2)(first, second);
+static inline path_vertex path_vertex_at(int place, int first, int last, int a, double q,
+                                         global const int* restrict path, global const double2* restrict points) {
+  path_vertex v;
+  v.q = q;
+  v.m = to_frame(points[path[place]], a);
+  v.previous_id = place > first ? path[place - 1] : -1;
+  v.next_id = place < last ? path[place + 1] : -1;
+  v.previous = place > first ? to_frame(points[v.previous_id], a) : (double2)(0.0, -INFINITY);
+  v.next = place < last ? to_frame(points[v.next_id], a) : (double2)(0.0, INFINITY);
+  COUNTED(v.arithmetic = v.orientations = 0;)
+  return v;
 }
 
-// Turns that need no arithmetic: with a line's end, comparisons; the same point, 0. Else UNDECIDED.
-static inline int plain_turn(double2 m, direction f, direction g) {
-  if (f.id < 0) return (int)f.p.y * sign_of(m.x - g.p.x);
-  if (g.id < 0) return (int)g.p.y * sign_of(f.p.x - m.x);
-  return f.id == g.id ? 0 : UNDECIDED;
+// Where a corner's edge leaves the path's vertex.
+#define EDGE_LEFT 0
+#define EDGE_RIGHT 1
+#define EDGE_NEXT 2
+#define EDGE_PREVIOUS 3
+#define EDGE_UNDECIDED 4
+
+// Of the path's vertex, b and c.
+static inline int turn_at(path_vertex* v, double2 b, double2 c, double bound, int exact) {
+  COUNTED(++v->orientations;)
+  return exact ? orient_exact(v->m, b, c) : orient_filtered(v->m, b, c, bound);
 }
 
-// 0: the direction of `after` itself; 1: to its left; 2: opposite; 3: to its right. Delaunay edges of one direction
-// are one edge, so a straight turn to another point is opposite.
-static inline int quadrant(int turn, int same) { return turn > 0 ? 1 : turn < 0 ? 3 : same ? 0 : 2; }
-
-static inline int comes_before(int quadrant_f, int quadrant_g, int turn) {
-  return quadrant_f != quadrant_g ? quadrant_f < quadrant_g : (quadrant_f & 1) && turn > 0;
+// The edge to point x. A point between the neighbours in u is off the path, so that its own side of the cut line is its
+// edge's. Beyond them it may be on the path itself, and one neighbour's edge parts its half of the plane. UNDECIDED.
+static inline int edge_of(path_vertex* v, int id, double2 x, double bound, int exact) {
+  if (id == v->next_id) return EDGE_NEXT;
+  if (id == v->previous_id) return EDGE_PREVIOUS;
+  COUNTED(v->arithmetic += 2;)
+  const int is_after = x.y > v->next.y;
+  if (!is_after && x.y >= v->previous.y) {
+    COUNTED(++v->arithmetic;)
+    return x.x < v->q ? EDGE_LEFT : EDGE_RIGHT;
+  }
+  const int turn = turn_at(v, is_after ? v->next : v->previous, x, bound, exact);
+  if (turn == UNDECIDED) return EDGE_UNDECIDED;
+  return (turn > 0) == is_after ? EDGE_LEFT : EDGE_RIGHT;
 }
 
-static inline int code_from_turns(const int* turns, const direction* d) {
-  const int before = quadrant(turns[0], 0);
-  const int previous = quadrant(turns[1], d[DIRECTION_PREVIOUS].id == d[DIRECTION_AFTER].id);
-  const int next = quadrant(turns[2], d[DIRECTION_NEXT].id == d[DIRECTION_AFTER].id);
-  int code = CODE_ON_PATH;
-  if (next == 0) code |= CODE_NEXT_IS_AFTER;
-  if (previous == 0) code |= CODE_PREVIOUS_IS_AFTER;
-  if (comes_before(next, before, turns[4])) code |= CODE_NEXT_IN;
-  if (comes_before(previous, before, turns[3])) code |= CODE_PREVIOUS_IN;
-  if (comes_before(next, previous, turns[5])) code |= CODE_NEXT_FIRST;
-  return code;
+// Whether, of two edges on one side of the path, the first comes first counter-clockwise. UNDECIDED.
+static inline int comes_first(path_vertex* v, int side, double2 x, double2 y, double bound, int exact) {
+  COUNTED(v->arithmetic += 2;)
+  const int x_along = sign_of(x.y - v->m.y);
+  const int y_along = sign_of(y.y - v->m.y);
+  // The right side is passed from the previous edge to the next one, which is upwards in u; the left side downwards.
+  if (x_along != y_along) return (x_along < y_along) == (side == EDGE_RIGHT);
+  const int turn = turn_at(v, x, y, bound, exact);
+  return turn == UNDECIDED ? UNDECIDED : turn > 0;
 }
 
-static inline void corner_directions(global const int* restrict corner, int a, int place, int first, int last,
-                                     global const int* restrict path, global const double2* restrict path_places,
-                                     global const double2* restrict points, direction* d) {
-  d[DIRECTION_AFTER].id = corner[2];
-  d[DIRECTION_BEFORE].id = corner[0];
-  d[DIRECTION_PREVIOUS].id = place > first ? path[place - 1] : -1;
-  d[DIRECTION_NEXT].id = place < last ? path[place + 1] : -1;
-  d[DIRECTION_AFTER].p = to_frame(points[corner[2]], a);
-  d[DIRECTION_BEFORE].p = to_frame(points[corner[0]], a);
-  d[DIRECTION_PREVIOUS].p = place > first ? path_places[place - 1] : (double2)(0.0, -1.0);
-  d[DIRECTION_NEXT].p = place < last ? path_places[place + 1] : (double2)(0.0, 1.0);
+// The code of a corner on the path, or CODE_UNDECIDED; then what was counted in v goes, and the exact evaluation counts.
+static inline int code_on_path(path_vertex* v, int before_id, double2 before, int after_id, double2 after,
+                               double bound, int exact) {
+  const int a = edge_of(v, after_id, after, bound, exact);
+  const int b = edge_of(v, before_id, before, bound, exact);
+  if (a == EDGE_UNDECIDED || b == EDGE_UNDECIDED) return CODE_UNDECIDED;
+  // Counter-clockwise from `after`: the right side ends with the next edge, the left side with the previous one.
+  const int next_first = a == EDGE_RIGHT || a == EDGE_NEXT;
+  int first_in, second_in;
+  if (a == b) {
+    const int narrow = comes_first(v, a, after, before, bound, exact);
+    if (narrow == UNDECIDED) return CODE_UNDECIDED;
+    first_in = second_in = !narrow;
+  } else {
+    const int starts_on_edge = a == EDGE_NEXT || a == EDGE_PREVIOUS;
+    const int own_side = next_first ? EDGE_RIGHT : EDGE_LEFT;
+    first_in = starts_on_edge || b != (next_first ? EDGE_NEXT : EDGE_PREVIOUS);
+    second_in = starts_on_edge && b == own_side;
+  }
+  const int next_in = next_first ? first_in : second_in;
+  const int previous_in = next_first ? second_in : first_in;
+  return CODE_ON_PATH | (a == EDGE_NEXT ? CODE_NEXT_IS_AFTER : 0) | (a == EDGE_PREVIOUS ? CODE_PREVIOUS_IS_AFTER : 0) |
+         (next_in ? CODE_NEXT_IN : 0) | (previous_in ? CODE_PREVIOUS_IN : 0) | (next_first ? CODE_NEXT_FIRST : 0);
 }
 
 // place: the corner's vertex on its region's path, or -1.
@@ -95,8 +123,8 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
                          global const int* restrict corners, global const int* restrict regions,
                          global const int* restrict axis, global const double* restrict cut,
                          global const double2* restrict points, global const int* restrict path_offsets,
-                         global const int* restrict path, global const double2* restrict path_places,
-                         global int* restrict places, global uchar* restrict codes) {
+                         global const int* restrict path, global const double2* restrict path_projections,
+                         global int* restrict places, global uchar* restrict codes COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int r = regions[i];
@@ -105,22 +133,21 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
     const double2 m = to_frame(points[vertex], a);
     const int first = path_offsets[r];
     const int last = path_offsets[r + 1] - 1;
-    const int low = kept[points_count + i] ? search_path(m.y, first, last, path_places) : first;
+    const int low = kept[points_count + i] ? search_path(m.y, first, last, path_projections) : first;
     int place = -1;
-    int code = m.x < cut[r] ? SIDE_LEFT : SIDE_RIGHT;
+    int code;
+    COUNTED(if (kept[points_count + i])
+                COUNT(COMPONENT_MERGE, KIND_ARITHMETIC, search_comparisons(last - first + 1));)
     if (path[low] == vertex) {
       place = low;
-      direction d[4];
-      corner_directions(corners + 3 * i, a, place, first, last, path, path_places, points, d);
-      int turns[PAIRS];
-      int undecided = 0;
-      for (int k = 0; k < PAIRS; ++k) {
-        const int2 pair = pair_of(k);
-        turns[k] = plain_turn(m, d[pair.x], d[pair.y]);
-        if (turns[k] == UNDECIDED) turns[k] = orient_filtered(m, d[pair.x].p, d[pair.y].p, bound);
-        undecided |= turns[k] == UNDECIDED;
-      }
-      code = undecided ? CODE_UNDECIDED : code_from_turns(turns, d);
+      path_vertex v = path_vertex_at(place, first, last, a, cut[r], path, points);
+      const int before = corners[3 * i];
+      const int after = corners[3 * i + 2];
+      code = code_on_path(&v, before, to_frame(points[before], a), after, to_frame(points[after], a), bound, 0);
+      COUNTED(if (code != CODE_UNDECIDED) { COUNT_VERTEX(v) })
+    } else {
+      COUNT(COMPONENT_MERGE, KIND_ARITHMETIC, 1);
+      code = m.x < cut[r] ? SIDE_LEFT : SIDE_RIGHT;
     }
     places[i] = place;
     codes[i] = code;
@@ -129,26 +156,20 @@ kernel void corner_codes(int n, int points_count, double bound, global const uch
 
 kernel void corner_codes_exact(global const uint* restrict count, global const int* restrict list,
                                global const int* restrict corners, global const int* restrict regions,
-                               global const int* restrict axis, global const double2* restrict points,
-                               global const int* restrict path_offsets, global const int* restrict path,
-                               global const double2* restrict path_places, global const int* restrict places,
-                               global uchar* restrict codes) {
+                               global const int* restrict axis, global const double* restrict cut,
+                               global const double2* restrict points, global const int* restrict path_offsets,
+                               global const int* restrict path, global const int* restrict places, global uchar* restrict codes COUNTERS) {
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int i = list[k];
     const int r = regions[i];
     const int a = axis[r];
-    const double2 m = to_frame(points[corners[3 * i + 1]], a);
-    direction d[4];
-    corner_directions(corners + 3 * i, a, places[i], path_offsets[r], path_offsets[r + 1] - 1, path, path_places, points,
-                      d);
-    int turns[PAIRS];
-    for (int t = 0; t < PAIRS; ++t) {
-      const int2 pair = pair_of(t);
-      turns[t] = plain_turn(m, d[pair.x], d[pair.y]);
-      if (turns[t] == UNDECIDED) turns[t] = orient_exact(m, d[pair.x].p, d[pair.y].p);
-    }
-    codes[i] = code_from_turns(turns, d);
+    path_vertex v =
+        path_vertex_at(places[i], path_offsets[r], path_offsets[r + 1] - 1, a, cut[r], path, points);
+    const int before = corners[3 * i];
+    const int after = corners[3 * i + 2];
+    codes[i] = code_on_path(&v, before, to_frame(points[before], a), after, to_frame(points[after], a), 0.0, 1);
+    COUNT_VERTEX(v)
   }
 }
 

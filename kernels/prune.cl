@@ -1,14 +1,16 @@
 // Prune: from all points of every region of a level, those that can be on its hull.
 //
 // extreme_* find the ends of each region's hull among its border vertices (passes of a segmented arg-reduce).
-// candidate_flags takes from each bucket of consecutive internal points, sorted along the cut line, the one
-// nearest to the line: one pass, a work-item a bucket. Quickhull makes those into a chord path; thin_regions and
-// thin_offsets let many candidates be pruned as a level of their own first. path_bands bounds how high above the line
-// a point can be and matter; prune_points and prune_corners then hold every internal point and corner against that bound
-// and the path's chord over it: one pass, a binary search for each bucket or corner at most. What floating point cannot
-// decide gets flag 2 and goes to hull_depth_exact (quickhull.cl). begin_paths and gather_points hand what is kept to
-// quickhull, brought together by region.
+// project_points projects the internal points; candidate_flags takes from each bucket of consecutive ones, sorted along
+// the cut line, the one nearest to the line: one pass each, the latter a work-item a bucket. Quickhull makes those into a chord path; thin_regions and
+// thin_offsets let many candidates be pruned as a level of their own first. chord_bands bounds
+// for each chord how high above the line a point can be and matter; prune_points and prune_corners then hold every internal
+// point and corner against that bound and the chord over it: one pass, a binary search for each bucket or corner at most. What floating point cannot
+// decide gets flag 2 and goes to hull_depth_exact (quickhull.cl). Quickhull goes on from that path: chord_keys, a sort,
+// gather_below and chord_begins bring what is kept together by its chord. Or it begins with the ends alone: begin_paths and
+// gather_points bring flagged elements together by region.
 
+#include "shared/counting.h"
 #include "shared/hull_height.h"
 #include "shared/search.h"
 #include "shared/segmented_arg_reduce.h"
@@ -33,120 +35,144 @@ SEGMENTED_ARG_REDUCE(extreme_vertices, VERTEX_OF_CORNER, BEFORE_ALONG, int direc
                      global const int* restrict corners, global const int* restrict axis,
                      global const double* restrict cut, global const double2* restrict points)
 
+// The internal points' projections, in the places of the list that is sorted along their region's cut line.
+kernel void project_points(int n, global const int* restrict regions, global const int* restrict x_list,
+                           global const int* restrict y_list, global const int* restrict axis,
+                           global const double* restrict cut, global const double2* restrict points,
+                           global double2* restrict projections COUNTERS) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);
+    const int r = regions[i];
+    const int a = axis[r];
+    projections[i] = project(to_frame(points[a == AXIS_Y ? x_list[i] : y_list[i]], a), cut[r], is_planar(a));
+  }
+}
+
 kernel void candidate_flags(int n, int elements, global const int* restrict regions,
-                            global const int* restrict x_list, global const int* restrict y_list,
-                            global const int* restrict axis, global const double* restrict cut,
-                            global const double2* restrict points, global uchar* restrict flags) {
+                            global const double2* restrict projections, global uchar* restrict flags COUNTERS) {
   const int bucket = get_global_id(0);
   if (bucket < n) {
     const int low = bucket * BUCKET;
     const int high = min(elements, low + BUCKET);
+    COUNT(COMPONENT_HULL, KIND_ARITHMETIC, high - low);
     int best = low;
-    double best_distance = 0.0;
     for (int i = low; i < high; ++i) {
-      const int r = regions[i];
-      const int a = axis[r];
-      const double s = to_frame(points[a == AXIS_Y ? x_list[i] : y_list[i]], a).x;
-      const double distance = is_planar(a) ? s : fabs(s - cut[r]);
       flags[i] = 0;
-      if (i == low || r != regions[i - 1]) {
-        if (i > low) flags[best] = 1;
+      if (i > low && regions[i] != regions[i - 1]) {
+        flags[best] = 1;
         best = i;
-        best_distance = distance;
-      } else if (distance < best_distance) {
+      } else if (projections[i].x < projections[best].x) {
         best = i;
-        best_distance = distance;
       }
     }
     flags[best] = 1;
   }
 }
 
-#define FLAG_END 3
+#define FLAG_ON_PATH 3
 
-// A point against the path's chord over it. flag: 1 keep, 0 drop, 2 undecided, FLAG_END on the hull as its end. keep_on also keeps what lies on the path
-// and, of the column of the path's last vertex, all. low: the last vertex with u no greater than p's.
-static inline int held_against(int id, double2 p, int low, int first, int last, int planar, double q, int keep_on,
-                               double bound, global const int* restrict path,
-                               global const double2* restrict path_places) {
-  const double2 v = path_places[low];
-  if (v.y == p.y) {
-    // The path's ends are known to be on the hull, and need no finding.
-    if (id == path[low]) return keep_on || (low != first && low != last) ? 1 : FLAG_END;
-    return keep_on ? low == last : is_lower(p, v, q, planar);
+// A point that is not above its chord's band against that chord. flag: 1 keep, 0 drop, 2 undecided, FLAG_ON_PATH for
+// the path's own. keep_on also keeps what lies on the path and, of the column of the path's last vertex, all. low: the
+// last vertex with u no greater than p's; becomes the vertex whose chord p is below. depth: the rounded one, of what may
+// be kept; infinite for what is lower than the path's vertex of its u, so that the first round takes it: a mirror image
+// of that vertex in the cut line is not strictly below any later chord from there.
+static inline int held_against(int id, double2 p, int* low, int first, int last, int axis, double q, int keep_on,
+                               double bound, global const double2* restrict points, global const int* restrict path,
+                               global const double2* restrict path_projections, double* depth COUNTERS) {
+  const int planar = is_planar(axis);
+  COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 1);
+  if (path_projections[*low].y == p.y) {
+    if (id == path[*low]) return keep_on ? 1 : FLAG_ON_PATH;
+    if (keep_on) return *low == last;
+    COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 4);
+    if (!is_lower(to_frame(points[id], axis), to_frame(points[path[*low]], axis), q, planar)) return 0;
+    *low = min(*low, last - 1);
+    *depth = INFINITY;
+    return 1;
   }
-  const double2 d = hull_depth(v, path_places[low + 1], p, q, planar);
+  COUNT(COMPONENT_HULL, KIND_DEPTH, 1);
+  const double2 d = hull_depth(path_projections[*low], path_projections[*low + 1], p, planar);
+  *depth = d.x;
   const double error = bound * d.y;
   return d.x > error ? 1 : d.x < -error ? 0 : bound == 0.0 ? (keep_on && d.x == 0.0) : 2;
 }
 
-// band[r]: a height, as the bits of a float, above which nothing can be below any chord of region r's path: a chord of
-// length l between heights h and k stays below max(h, k) + l^2 / 4. Rounded up, and by more than depth's error; infinite
-// where a float cannot hold it, and for planar hulls, whose heights have no zero. band holds 0 before.
+// band[v]: a height above which nothing can be below the chord from path vertex v to the next; a chord of length l
+// between heights h and k stays below max(h, k) + l^2 / 4. Rounded up, and by more than depth's error. Behind a path's last
+// vertex there is no chord, and nothing is above it.
 #define BAND_SLACK (1.0 + 0x1p-20)
 
-kernel void path_bands(int n, global const int* restrict path_region, global const double2* restrict path_places,
-                       global const int* restrict axis, global const double* restrict cut,
-                       global volatile int* restrict band) {
+kernel void chord_bands(int n, global const int* restrict path_region, global const double2* restrict path_projections,
+                        global const int* restrict axis, global double* restrict band COUNTERS) {
   const int v = get_global_id(0);
-  if (v < n - 1) {
+  if (v < n) {
     const int r = path_region[v];
-    if (path_region[v + 1] == r) {
-      const double2 a = path_places[v];
-      const double2 b = path_places[v + 1];
-      const double across = fmax(fabs(a.x - cut[r]), fabs(b.x - cut[r]));
+    double height = INFINITY;
+    if (v + 1 < n && path_region[v + 1] == r) {
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 6);
+      const double2 a = path_projections[v];
+      const double2 b = path_projections[v + 1];
       const double along = b.y - a.y;
-      const double height = is_planar(axis[r]) ? INFINITY : BAND_SLACK * (across * across + 0.25 * along * along);
-      // No subnormal floats, which devices may flush to zero.
-      atomic_max(&band[r], as_int(convert_float_rtp(fmax(height, 0x1p-120))));
+      height = fmax(a.x, b.x);
+      if (!is_planar(axis[r])) height = BAND_SLACK * (height + 0.25 * along * along);
     }
+    band[v] = height;
   }
 }
 
-static inline int is_above_band(double s, double q, int band) { return (s - q) * (s - q) > (double)as_float(band); }
-
-// Internal points, by buckets: their neighbours in the list are their neighbours along the line, so only the first of a
-// region's in a bucket needs a search. ids and chord are written for the undecided alone.
+// Internal points, by buckets. A bucket's points of one region are neighbours along the line, often under one
+// chord: a search for the first of them in u, and a look whether the last is under the same one. For what is not dropped,
+// chord is the path vertex whose chord it is held against, and depth that below it; ids is written for the undecided alone.
 kernel void prune_points(int n, int elements, int keep_on, double bound, global const int* restrict regions,
                          global const int* restrict x_list, global const int* restrict y_list,
-                         global const int* restrict axis, global const double* restrict cut,
-                         global const double2* restrict points, global const int* restrict band,
-                         global const int* restrict path_offsets, global const int* restrict path,
-                         global const double2* restrict path_places, global int* restrict ids,
-                         global int* restrict chord, global uchar* restrict flags) {
+                         global const double2* restrict projections, global const int* restrict axis,
+                         global const double* restrict cut, global const double2* restrict points,
+                         global const double* restrict band, global const int* restrict path_offsets,
+                         global const int* restrict path, global const double2* restrict path_projections,
+                         global int* restrict ids, global int* restrict chord, global double* restrict depth,
+                         global uchar* restrict flags COUNTERS) {
   const int bucket = get_global_id(0);
   if (bucket < n) {
-    int region = -1, a = 0, first = 0, last = 0, low = -1, height = 0;
-    double q = 0.0;
-    for (int i = bucket * BUCKET; i < min(elements, (bucket + 1) * BUCKET); ++i) {
-      const int r = regions[i];
-      if (r != region) {
-        region = r;
-        a = axis[r];
-        q = cut[r];
-        height = band[r];
-        low = -1;
-        first = path_offsets[r];
-        last = path_offsets[r + 1] - 1;
+    const int end = min(elements, (bucket + 1) * BUCKET);
+    for (int begin = bucket * BUCKET; begin < end;) {
+      const int r = regions[begin];
+      const int first = path_offsets[r];
+      const int last = path_offsets[r + 1] - 1;
+      const int a = axis[r];
+      int run = begin + 1;
+      while (run < end && regions[run] == r) ++run;
+      const double u_begin = projections[begin].y;
+      const double u_end = projections[run - 1].y;
+      int low = search_path(fmin(u_begin, u_end), first, last, path_projections);
+      const int one_chord = low == last || path_projections[low + 1].y > fmax(u_begin, u_end);
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2 + search_comparisons(last - first + 1));
+      for (int i = begin; i < run; ++i) {
+        const double2 p = projections[i];
+        if (!one_chord) {
+          COUNTED(const int from = low;)
+          while (low < last && path_projections[low + 1].y <= p.y) ++low;
+          while (low > first && path_projections[low].y > p.y) --low;
+          COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2 + abs(low - from));
+        }
+        COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 1);
+        if (p.x > band[low]) {
+          flags[i] = 0;
+          continue;
+        }
+        const int id = a == AXIS_Y ? x_list[i] : y_list[i];
+        int above = low;
+        double below = 0.0;
+        const int keep = held_against(id, p, &above, first, last, a, cut[r], keep_on, bound, points, path,
+                                      path_projections, &below WITH_COUNTERS);
+        flags[i] = keep;
+        if (keep == 1 || keep == 2) {
+          chord[i] = above;
+          depth[i] = below;
+        }
+        if (keep == 2) ids[i] = id;
       }
-      const int id = a == AXIS_Y ? x_list[i] : y_list[i];
-      const double2 p = to_frame(points[id], a);
-      if (is_above_band(p.x, q, height)) {
-        flags[i] = 0;
-        continue;
-      }
-      if (low < 0) {
-        low = search_path(p.y, first, last, path_places);
-      } else {
-        while (low < last && path_places[low + 1].y <= p.y) ++low;
-        while (low > first && path_places[low].y > p.y) --low;
-      }
-      const int keep = held_against(id, p, low, first, last, is_planar(a), q, keep_on, bound, path, path_places);
-      flags[i] = keep;
-      if (keep == 2) {
-        ids[i] = id;
-        chord[i] = low;
-      }
+      begin = run;
     }
   }
 }
@@ -155,29 +181,30 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
 kernel void prune_corners(int n, int points_count, double bound, global const int* restrict corner_regions,
                           global const int* restrict corners, global const int* restrict axis,
                           global const double* restrict cut, global const double2* restrict points,
-                          global const int* restrict band, global const int* restrict path_offsets,
-                          global const int* restrict path,
-                          global const double2* restrict path_places, global int* restrict ids,
-                          global int* restrict chord, global uchar* restrict flags) {
+                          global const double* restrict band, global const int* restrict path_offsets,
+                          global const int* restrict path, global const double2* restrict path_projections,
+                          global int* restrict ids, global int* restrict chord, global double* restrict depth,
+                          global uchar* restrict flags COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int r = corner_regions[i];
     const int a = axis[r];
     const int id = corners[3 * i + 1];
-    const double2 p = to_frame(points[id], a);
-    int low = 0;
-    int keep = 0;
-    if (!is_above_band(p.x, cut[r], band[r])) {
-      const int first = path_offsets[r];
-      const int last = path_offsets[r + 1] - 1;
-      low = search_path(p.y, first, last, path_places);
-      keep = held_against(id, p, low, first, last, is_planar(a), cut[r], 0, bound, path, path_places);
-    }
+    const double2 p = project(to_frame(points[id], a), cut[r], is_planar(a));
+    const int first = path_offsets[r];
+    const int last = path_offsets[r + 1] - 1;
+    int low = search_path(p.y, first, last, path_projections);
+    double below = 0.0;
+    COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2 + search_comparisons(last - first + 1) + 1);
+    const int keep = p.x > band[low] ? 0
+                                     : held_against(id, p, &low, first, last, a, cut[r], 0, bound, points, path,
+                                                    path_projections, &below WITH_COUNTERS);
     flags[points_count + i] = keep;
-    if (keep == 2) {
-      ids[points_count + i] = id;
+    if (keep == 1 || keep == 2) {
       chord[points_count + i] = low;
+      depth[points_count + i] = below;
     }
+    if (keep == 2) ids[points_count + i] = id;
   }
 }
 
@@ -207,9 +234,9 @@ static inline int positions_below(int i, int kept, global const int* restrict po
 kernel void begin_paths(int n, int points_count, int kept, global const int* restrict positions,
                         global const int* restrict point_offsets, global const int* restrict corner_offsets,
                         global const int* restrict first_end, global const int* restrict last_end,
-                        global const int* restrict axis, global const double2* restrict points,
-                        global int* restrict path, global double2* restrict path_places,
-                        global int* restrict path_region, global int* restrict first, global int2* restrict before) {
+                        global const int* restrict axis, global const double* restrict cut,
+                        global const double2* restrict points, global int* restrict path, global double2* restrict path_projections,
+                        global int* restrict path_region, global int* restrict first, global int2* restrict before COUNTERS) {
   const int r = get_global_id(0);
   if (r <= n) {
     const int point_count = positions_below(point_offsets[r], kept, positions);
@@ -221,14 +248,15 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
     first[2 * r] = point_count + corner_count;
     if (r > 0) first[2 * r - 1] = point_count + corner_count;
     if (r < n) {
-      const int a = first_end[r];
-      const int b = last_end[r];
-      path[2 * r] = a;
-      path[2 * r + 1] = b;
-      // Sets without points have no ends.
-      path_places[2 * r] = a < 0 ? (double2)(0.0) : to_frame(points[a], axis[r]);
-      path_places[2 * r + 1] = b < 0 ? (double2)(0.0) : to_frame(points[b], axis[r]);
-      path_region[2 * r] = path_region[2 * r + 1] = r;
+      for (int side = 0; side < 2; ++side) {
+        const int id = side ? last_end[r] : first_end[r];
+        path[2 * r + side] = id;
+        // Sets without points have no ends.
+        COUNTED(if (id >= 0) COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);)
+        path_projections[2 * r + side] =
+            id < 0 ? (double2)(0.0) : project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
+        path_region[2 * r + side] = r;
+      }
     }
   }
 }
@@ -236,27 +264,76 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
 // The kept elements as quickhull's points.
 kernel void gather_points(int n, int points_count, int regions_count, global const int* restrict positions,
                           global const int2* restrict before, global const int* restrict regions,
+                          global const double2* restrict point_projections,
                           global const int* restrict x_list, global const int* restrict y_list,
                           global const int* restrict corner_regions, global const int* restrict corners,
-                          global const int* restrict axis, global const double2* restrict points,
-                          global int* restrict ids, global int* restrict segment, global double2* restrict places) {
+                          global const int* restrict axis, global const double* restrict cut,
+                          global const double2* restrict points, global int* restrict ids,
+                          global int* restrict segment, global double2* restrict projections COUNTERS) {
   const int k = get_global_id(0);
   if (k < n) {
     const int i = positions[k];
     int r, id, to;
+    double2 p;
     if (i < points_count) {
       r = regions[i];
+      p = point_projections[i];
       id = axis[r] == AXIS_Y ? x_list[i] : y_list[i];
       to = k + before[r].y;
     } else {
       r = corner_regions[i - points_count];
       id = corners[3 * (i - points_count) + 1];
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);
+      p = project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
       to = k - before[regions_count].x + before[r + 1].x;
     }
     ids[to] = id;
     segment[to] = 2 * r;
-    places[to] = to_frame(points[id], axis[r]);
+    projections[to] = p;
   }
+}
+
+// What is kept, by the path vertex whose chord it is below: keys for a stable sort...
+kernel void chord_keys(int n, global const int* restrict positions, global const int* restrict chord,
+                       global ulong* restrict keys) {
+  const int k = get_global_id(0);
+  if (k < n) keys[k] = chord[positions[k]];
+}
+
+// ...the sorted elements as quickhull's points...
+kernel void gather_below(int n, int points_count, global const ulong* restrict keys,
+                         global const int* restrict elements, global const int* restrict path_region,
+                         global const double* restrict element_depth,
+                         global const double2* restrict point_projections, global const int* restrict x_list,
+                         global const int* restrict y_list, global const int* restrict corners,
+                         global const int* restrict axis, global const double* restrict cut,
+                         global const double2* restrict points, global int* restrict ids,
+                         global int* restrict segment, global double2* restrict projections,
+                         global double* restrict depth COUNTERS) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const int i = elements[k];
+    const int v = keys[k];
+    const int r = path_region[v];
+    const int a = axis[r];
+    if (i < points_count) {
+      ids[k] = a == AXIS_Y ? x_list[i] : y_list[i];
+      projections[k] = point_projections[i];
+    } else {
+      const int id = corners[3 * (i - points_count) + 1];
+      ids[k] = id;
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);
+      projections[k] = project(to_frame(points[id], a), cut[r], is_planar(a));
+    }
+    segment[k] = v;
+    depth[k] = element_depth[i];
+  }
+}
+
+// ...and where those below each vertex's chord begin, closed by their number.
+kernel void chord_begins(int n, int kept, global const int* restrict segment, global int* restrict first) {
+  const int v = get_global_id(0);
+  if (v <= n) first[v] = positions_below(v, kept, segment);
 }
 
 // The candidates as a level's lists of their own: their regions, and where each region's begin.

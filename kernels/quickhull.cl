@@ -8,21 +8,27 @@
 // advance_paths and advance_points move. The deepest point is chosen by rounded depths and may be no vertex of the
 // hull: when no points are left, path_flags (and hull_depth_exact) find vertices on or above the segment of their
 // neighbours, compact_path drops them, until there are none.
+//
+// Quickhull's splits can be lopsided. A balanced round (Chan, Snoeyink and Yap 1997; with a random pair's slope in place of the
+// median one, Bhattacharya and Sen 1997) pairs neighbouring points of a segment: random_pairs takes one pair of each
+// segment, tilted_depths the points' depths above a line of that pair's slope, of which deepest_points takes the greatest; drop_pairs
+// then finds in each pair on one side of it a point that is above a chord, and drops that.
 
+#include "shared/counting.h"
 #include "shared/hull_height.h"
 #include "shared/segmented_arg_reduce.h"
 
-// places[i]: point i in its region's frame, as path_places. flags: 1 strictly below the chord, 0 not, 2 undecided.
+// projections[i]: of point i, as path_projections. flags: 1 strictly below the chord, 0 not, 2 undecided.
 kernel void hull_depths(int n, double bound, global const int* restrict segment,
-                        global const double2* restrict places, global const double2* restrict path_places,
+                        global const double2* restrict projections, global const double2* restrict path_projections,
                         global const int* restrict path_region, global const int* restrict axis,
-                        global const double* restrict cut, global double* restrict depth,
-                        global uchar* restrict flags) {
+                        global double* restrict depth, global uchar* restrict flags COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int v = segment[i];
-    const int r = path_region[v];
-    const double2 d = hull_depth(path_places[v], path_places[v + 1], places[i], cut[r], is_planar(axis[r]));
+    COUNT(COMPONENT_HULL, KIND_DEPTH, 1);
+    const double2 d =
+        hull_depth(path_projections[v], path_projections[v + 1], projections[i], is_planar(axis[path_region[v]]));
     const double error = bound * d.y;
     depth[i] = d.x;
     flags[i] = d.x > error ? 1 : d.x < -error || bound == 0.0 ? 0 : 2;
@@ -57,30 +63,85 @@ static inline ulong scramble(double u) {
   return z ^ (z >> 31);
 }
 
-// Whether point i is to be preferred to j: deeper; of equal depth, by a hash of u, so that flat chords split evenly; of
-// equal u, the lower projection, so that what else shares that u can be dropped. `balanced` ranks by the hash alone: a
-// random split, for input on which the deepest points are always next to the ends.
-static inline int is_deeper(int s, int i, int j, int balanced, global const int* restrict ids,
-                            global const double* restrict depth, global const double2* restrict places,
-                            global const int* restrict path_region, global const int* restrict axis,
-                            global const double* restrict cut) {
-  if (!balanced && depth[i] != depth[j]) return depth[i] > depth[j];
+// Whether u value p comes before q in a random order.
+static inline int comes_first(double p, double q) {
+  const ulong hp = scramble(p);
+  const ulong hq = scramble(q);
+  return hp != hq ? hp < hq : p < q;
+}
+
+// Whether point i is to be preferred to j: deeper; of equal depth, at random by u, so that flat chords split evenly; of
+// equal u, the lower projection, so that what else shares that u can be dropped.
+static inline int is_deeper(int s, int i, int j, global const int* restrict ids, global const double* restrict depth,
+                            global const double2* restrict projections, global const int* restrict path_region,
+                            global const int* restrict axis, global const double* restrict cut,
+                            global const double2* restrict points) {
+  if (depth[i] != depth[j]) return depth[i] > depth[j];
+  if (projections[i].y != projections[j].y) return comes_first(projections[i].y, projections[j].y);
+  if (ids[i] == ids[j]) return i < j;
   const int r = path_region[s];
-  const double2 p = places[i];
-  const double2 v = places[j];
-  if (p.y != v.y) {
-    const ulong hp = scramble(p.y);
-    const ulong hv = scramble(v.y);
-    return hp != hv ? hp < hv : p.y < v.y;
-  }
-  return ids[i] == ids[j] ? i < j : is_lower(p, v, cut[r], is_planar(axis[r]));
+  return is_lower(to_frame(points[ids[i]], axis[r]), to_frame(points[ids[j]], axis[r]), cut[r], is_planar(axis[r]));
 }
 #define KEPT(i) flags[i] == 1 ? i : -1
-#define DEEPER(s, i, j) is_deeper(s, i, j, balanced, ids, depth, places, path_region, axis, cut)
-SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, int balanced, global const uchar* restrict flags,
+#define DEEPER(s, i, j) is_deeper(s, i, j, ids, depth, projections, path_region, axis, cut, points)
+SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, global const uchar* restrict flags,
                      global const int* restrict ids, global const double* restrict depth,
-                     global const double2* restrict places, global const int* restrict path_region,
-                     global const int* restrict axis, global const double* restrict cut)
+                     global const double2* restrict projections, global const int* restrict path_region,
+                     global const int* restrict axis, global const double* restrict cut,
+                     global const double2* restrict points)
+
+// Whether points i and i + 1 are a pair: places 2k and 2k + 1 of one segment, both below its chord. Pairs of equal u have no slope.
+static inline int is_pair(int i, int n, global const int* restrict segment, global const int* restrict first,
+                          global const uchar* restrict flags) {
+  return i + 1 < n && ((i - first[segment[i]]) & 1) == 0 && segment[i + 1] == segment[i] && flags[i] == 1 &&
+         flags[i + 1] == 1;
+}
+#define SLOPED_PAIR(i) \
+  is_pair(i, n, segment, first, flags) && projections[i].y != projections[(i) + 1].y ? i : -1
+#define COMES_FIRST(s, i, j) (projections[i].y != projections[j].y ? comes_first(projections[i].y, projections[j].y) : i < j)
+SEGMENTED_ARG_REDUCE(random_pairs, SLOPED_PAIR, COMES_FIRST, global const int* restrict first,
+                     global const uchar* restrict flags, global const double2* restrict projections)
+
+kernel void tilted_depths(int n, global const int* restrict segment, global const double2* restrict projections,
+                          global const double2* restrict path_projections, global const int* restrict pair,
+                          global const double* restrict depth, global double* restrict tilted COUNTERS) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int s = segment[i];
+    const int k = pair[s];
+    double value = depth[i];
+    if (k >= 0) {
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 6);
+      const double slope = (depth[k + 1] - depth[k]) / (projections[k + 1].y - projections[k].y);
+      const double height = value - slope * (projections[i].y - path_projections[s].y);
+      if (isfinite(height)) value = height;
+    }
+    tilted[i] = value;
+  }
+}
+
+// Drops what is surely not below a chord to the new vertex; what floating point cannot decide stays, at no harm.
+kernel void drop_pairs(int n, double bound, global const int* restrict segment, global const int* restrict first,
+                       global const double2* restrict projections, global const int* restrict path_region,
+                       global const int* restrict axis, global const int* restrict deepest,
+                       global uchar* restrict flags COUNTERS) {
+  const int i = get_global_id(0);
+  if (i < n && is_pair(i, n, segment, first, flags)) {
+    const int s = segment[i];
+    const int planar = is_planar(axis[path_region[s]]);
+    const double2 middle = projections[deepest[s]];
+    const int swapped = projections[i].y > projections[i + 1].y;
+    const double2 p = projections[i + swapped];
+    const double2 q = projections[i + !swapped];
+    const int left = q.y < middle.y;
+    COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);
+    if (p.y < q.y && (left || p.y > middle.y)) {
+      COUNT(COMPONENT_HULL, KIND_DEPTH, 1);
+      const double2 d = left ? hull_depth(p, middle, q, planar) : hull_depth(middle, q, p, planar);
+      if (d.x < -bound * d.y || (bound == 0.0 && d.x == 0.0)) flags[left ? i + !swapped : i + swapped] = 0;
+    }
+  }
+}
 
 kernel void split_flags(int n, global const int* restrict deepest, global uint* restrict splits) {
   const int s = get_global_id(0);
@@ -88,26 +149,27 @@ kernel void split_flags(int n, global const int* restrict deepest, global uint* 
 }
 
 // Which half of its segment a kept point goes to; points that share u with the new vertex are above it, and go.
-kernel void side_flags(int n, global const int* restrict segment, global const double2* restrict places,
+kernel void side_flags(int n, global const int* restrict segment, global const double2* restrict projections,
                        global const uchar* restrict flags, global const int* restrict deepest,
-                       global uint2* restrict sides) {
+                       global uint2* restrict sides COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     uint2 side = (uint2)(0, 0);
     if (flags[i] == 1) {
-      const double u = places[i].y;
-      const double middle = places[deepest[segment[i]]].y;
+      const double u = projections[i].y;
+      const double middle = projections[deepest[segment[i]]].y;
       side = (uint2)(u < middle, u > middle);
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);
     }
     sides[i] = side;
   }
 }
 
 kernel void advance_points(int n, global const int* restrict ids, global const int* restrict segment,
-                           global const double2* restrict places, global const int* restrict first,
+                           global const double2* restrict projections, global const int* restrict first,
                            global const uint2* restrict sides, global const uint* restrict splits,
                            global int* restrict new_ids, global int* restrict new_segment,
-                           global double2* restrict new_places) {
+                           global double2* restrict new_projections) {
   const int i = get_global_id(0);
   if (i < n) {
     const uint2 before = sides[i];
@@ -118,18 +180,18 @@ kernel void advance_points(int n, global const int* restrict ids, global const i
       const int to = right ? before.y + sides[first[s + 1]].x : before.x + sides[first[s]].y;
       new_ids[to] = ids[i];
       new_segment[to] = s + splits[s] + right;
-      new_places[to] = places[i];
+      new_projections[to] = projections[i];
     }
   }
 }
 
 // sizes: the new number of points and of path vertices.
 kernel void advance_paths(int n, int points_count, global const int* restrict ids,
-                          global const double2* restrict places, global const int* restrict deepest,
+                          global const double2* restrict projections, global const int* restrict deepest,
                           global const int* restrict first, global const uint2* restrict sides,
                           global const uint* restrict splits, global const int* restrict path,
-                          global const double2* restrict path_places, global const int* restrict path_region,
-                          global int* restrict new_path, global double2* restrict new_places,
+                          global const double2* restrict path_projections, global const int* restrict path_region,
+                          global int* restrict new_path, global double2* restrict new_projections,
                           global int* restrict new_region, global int* restrict new_first,
                           global uint* restrict sizes) {
   const int v = get_global_id(0);
@@ -137,13 +199,13 @@ kernel void advance_paths(int n, int points_count, global const int* restrict id
     const int to = v + splits[v];
     const uint2 begin = sides[first[v]];
     new_path[to] = path[v];
-    new_places[to] = path_places[v];
+    new_projections[to] = path_projections[v];
     new_region[to] = path_region[v];
     new_first[to] = begin.x + begin.y;
     const int i = deepest[v];
     if (i >= 0) {
       new_path[to + 1] = ids[i];
-      new_places[to + 1] = places[i];
+      new_projections[to + 1] = projections[i];
       new_region[to + 1] = path_region[v];
       new_first[to + 1] = sides[first[v + 1]].x + begin.y;
     }
@@ -166,34 +228,72 @@ kernel void find_path_offsets(int n, global const int* restrict path_region, glo
   }
 }
 
-// flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours.
-kernel void path_flags(int n, double bound, global const double2* restrict path_places,
+// flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours. Of two neighbours with
+// equal u, the one whose projection is not the lower one is above. kept: where the vertices stood in the path of the
+// round before; those whose neighbours are the same need no second look.
+kernel void path_flags(int n, double bound, int first_round, global const int* restrict kept,
+                       global const int* restrict path, global const double2* restrict path_projections,
                        global const int* restrict path_region, global const int* restrict path_offsets,
                        global const int* restrict axis, global const double* restrict cut,
-                       global uchar* restrict flags) {
+                       global const double2* restrict points, global uchar* restrict flags COUNTERS) {
   const int k = get_global_id(0);
   if (k < n) {
     const int r = path_region[k];
     uchar flag = 1;
-    if (k > path_offsets[r] && k < path_offsets[r + 1] - 1) {
-      const double2 d =
-          hull_depth(path_places[k - 1], path_places[k + 1], path_places[k], cut[r], is_planar(axis[r]));
-      const double error = bound * d.y;
-      flag = d.x > error ? 1 : d.x < -error || bound == 0.0 ? 0 : 2;
+    const int inner = k > path_offsets[r] && k < path_offsets[r + 1] - 1;
+    if (inner && (first_round || kept[k + 1] - kept[k - 1] > 2)) {
+      const double2 before = path_projections[k - 1];
+      const double2 after = path_projections[k + 1];
+      const double2 p = path_projections[k];
+      const int planar = is_planar(axis[r]);
+      COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2);
+      if (before.y == p.y || after.y == p.y) {
+        COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 4);
+        const int other = before.y == p.y ? k - 1 : k + 1;
+        flag = is_lower(to_frame(points[path[k]], axis[r]), to_frame(points[path[other]], axis[r]), cut[r], planar);
+      } else {
+        COUNT(COMPONENT_HULL, KIND_DEPTH, 1);
+        const double2 d = hull_depth(before, after, p, planar);
+        const double error = bound * d.y;
+        flag = d.x > error ? 1 : d.x < -error || bound == 0.0 ? 0 : 2;
+      }
     }
     flags[k] = flag;
   }
 }
 
+// A path's vertices as points below the chord between its ends, to begin again with: see begin_paths in prune.cl.
+kernel void restart_paths(int n, global const int* restrict path_offsets, global const int* restrict path,
+                          global const double2* restrict path_projections, global int* restrict ends,
+                          global double2* restrict end_projections, global int* restrict end_region,
+                          global int* restrict first) {
+  const int r = get_global_id(0);
+  if (r < n) {
+    for (int side = 0; side < 2; ++side) {
+      const int v = side ? path_offsets[r + 1] - 1 : path_offsets[r];
+      ends[2 * r + side] = path[v];
+      end_projections[2 * r + side] = path_projections[v];
+      end_region[2 * r + side] = r;
+      first[2 * r + side] = path_offsets[r + side];
+    }
+    if (r == n - 1) first[2 * n] = path_offsets[n];
+  }
+}
+
+kernel void restart_segments(int n, global const int* restrict path_region, global int* restrict segment) {
+  const int v = get_global_id(0);
+  if (v < n) segment[v] = 2 * path_region[v];
+}
+
 kernel void compact_path(int n, global const int* restrict kept, global const int* restrict path,
-                         global const double2* restrict path_places, global const int* restrict path_region,
-                         global int* restrict new_path, global double2* restrict new_places,
+                         global const double2* restrict path_projections, global const int* restrict path_region,
+                         global int* restrict new_path, global double2* restrict new_projections,
                          global int* restrict new_region) {
   const int k = get_global_id(0);
   if (k < n) {
     const int from = kept[k];
     new_path[k] = path[from];
-    new_places[k] = path_places[from];
+    new_projections[k] = path_projections[from];
     new_region[k] = path_region[from];
   }
 }

@@ -8,6 +8,7 @@
 // each border edge up, restore_border flips in those that are missing, within their circle's polygon. count_fans
 // counts and then writes, a work-item a corner, the triangles in the corner's wedge whose smallest vertex it is.
 
+#include "shared/counting.h"
 #include "shared/planar.h"
 #include "shared/search.h"
 
@@ -66,6 +67,7 @@ typedef struct {
   double orient_bound;
   double circle_bound;
   int free_head;
+  COUNTED(uint orientations; uint circles;)
 } rings;
 
 static inline rings rings_on(global int* origin, global int2* around, global const int* vertices,
@@ -78,6 +80,7 @@ static inline rings rings_on(global int* origin, global int2* around, global con
   g.orient_bound = orient_bound;
   g.circle_bound = circle_bound;
   g.free_head = -1;
+  COUNTED(g.orientations = g.circles = 0;)
   return g;
 }
 
@@ -86,13 +89,21 @@ static inline int next_left(const rings* g, int e) { return g->around[e ^ 1].y; 
 static inline int previous_right(const rings* g, int e) { return g->around[e ^ 1].x; }
 static inline double2 place_of(const rings* g, int v) { return g->points[g->vertices[v]]; }
 
-static inline int turns_left(const rings* g, int a, int b, int c) {
+#define COUNT_RINGS(g)                                                                                       \
+  COUNTED(COUNT(COMPONENT_ENDGAME, KIND_ORIENTATION, (g).orientations);                                      \
+          COUNT(COMPONENT_ENDGAME, KIND_CIRCLE, (g).circles);                                                \
+          atomic_max(counters + COUNTER_DEAREST,                                                             \
+                     ORIENT_OPERATIONS * (g).orientations + CIRCLE_OPERATIONS * (g).circles);)
+
+static inline int turns_left(rings* g, int a, int b, int c) {
+  COUNTED(++g->orientations;)
   const double2 p = place_of(g, a), q = place_of(g, b), r = place_of(g, c);
   const int sign = orient_filtered(p, q, r, g->orient_bound);
   return (sign != UNDECIDED ? sign : orient_exact(p, q, r)) > 0;
 }
 
-static inline int in_circle(const rings* g, int a, int b, int c, int d) {
+static inline int in_circle(rings* g, int a, int b, int c, int d) {
+  COUNTED(++g->circles;)
   const double2 p = place_of(g, a), q = place_of(g, b), r = place_of(g, c), s = place_of(g, d);
   const int sign = circle_filtered(p, q, r, s, g->circle_bound);
   return (sign != UNDECIDED ? sign : circle_exact(p, q, r, s)) > 0;
@@ -134,8 +145,8 @@ static inline void remove_edge(rings* g, int e) {
   g->free_head = e;
 }
 
-static inline int left_of(const rings* g, int v, int e) { return turns_left(g, v, g->origin[e], edge_destination(g, e)); }
-static inline int right_of(const rings* g, int v, int e) { return turns_left(g, v, edge_destination(g, e), g->origin[e]); }
+static inline int left_of(rings* g, int v, int e) { return turns_left(g, v, g->origin[e], edge_destination(g, e)); }
+static inline int right_of(rings* g, int v, int e) { return turns_left(g, v, edge_destination(g, e), g->origin[e]); }
 
 // Two or three vertices, in order: an edge or a triangle or a straight pair of edges. Returns the counter-clockwise hull
 // edge out of the first vertex and the clockwise one out of the last.
@@ -208,7 +219,8 @@ static inline int block_begin(int size, int depth, long j) { return (int)((j * s
 kernel void merge_strips(int n, int depth, double orient_bound, double circle_bound,
                          global const int* restrict vertices, global const int* restrict vertex_region,
                          global const int* restrict vertex_offsets, global const double2* restrict points,
-                         global int* origin, global int2* around, global int2* hull_edges, global int2* free_lists) {
+                         global int* origin, global int2* around, global int2* hull_edges,
+                         global int2* free_lists COUNTERS) {
   const int v = get_global_id(0);
   if (v < n) {
     const int region = vertex_region[v];
@@ -244,6 +256,7 @@ kernel void merge_strips(int n, int depth, double orient_bound, double circle_bo
       hull_edges[v] = merge_halves(&g, hull_edges[v], hull_edges[middle]);
       free_lists[v] = (int2)(g.free_head, right.y);
     }
+    COUNT_RINGS(g)
   }
 }
 
@@ -287,7 +300,7 @@ kernel void restore_border(int n, global const int* restrict missing, global con
                            global const int* restrict vertices, global int* vertex_edge,
                            global const double2* restrict points, double orient_bound, double circle_bound,
                            global int* origin, global int2* around, global int* border_edge,
-                           global volatile int* restrict broken) {
+                           global volatile int* restrict broken COUNTERS) {
   const int l = get_global_id(0);
   if (l < n && missing[l]) {
     rings g = rings_on(origin, around, vertices, points, orient_bound, circle_bound);
@@ -307,6 +320,7 @@ kernel void restore_border(int n, global const int* restrict missing, global con
         } else {
           const double2 q = place_of(&g, origin[e ^ 1]);
           const double2 r = place_of(&g, origin[f ^ 1]);
+          COUNTED(g.orientations += 2;)
           const int a = orient_filtered(p, q, target, orient_bound);
           const int b = orient_filtered(p, target, r, orient_bound);
           const int after = (a != UNDECIDED ? a : orient_exact(p, q, target)) > 0;
@@ -337,6 +351,7 @@ kernel void restore_border(int n, global const int* restrict missing, global con
       }
       border_edge[c] = found;
     }
+    COUNT_RINGS(g)
   }
 }
 

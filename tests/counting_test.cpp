@@ -63,8 +63,8 @@ double2 operator-(double2 a) { return {-a.x, -a.y}; }
 #undef PAIR
 
 // The filter of a depth, as the kernels have it where they call hull_depth.
-int depth_filtered(double2 a, double2 b, double2 p, Counted q, Counted bound) {
-  const double2 d = hull_depth(a, b, p, q, 0);
+int depth_filtered(double2 a, double2 b, double2 p, Counted bound) {
+  const double2 d = hull_depth(a, b, p, 0);
   const Counted error = bound * d.y;
   return d.x > error ? 1 : d.x < -error ? 0 : UNDECIDED;
 }
@@ -78,10 +78,10 @@ using counted::tally;
 
 Counted bound(double value) { return {value, true}; }
 
+// One comparison decides a predicate.
 void expect_weights(const OperationCounts& one) {
   EXPECT_EQ(tally.plain + 1, one.operations());
   EXPECT_EQ(tally.plain + tally.bound + tally.comparisons, one.operations_with_bounds());
-  tally = {};
 }
 
 OperationCounts count_of(void (recursive::Counter::*count)()) {
@@ -94,14 +94,34 @@ OperationCounts count_of(void (recursive::Counter::*count)()) {
 
 TEST(Counting, Depth) {
   tally = {};
-  EXPECT_EQ(counted::depth_filtered({1.0, 0.0}, {2.0, 4.0}, {7.0, 1.0}, 0.5, bound(HULL_DEPTH_BOUND)), 0);
+  EXPECT_EQ(counted::depth_filtered({1.0, 0.0}, {2.0, 4.0}, {49.0, 1.0}, bound(HULL_DEPTH_BOUND)), 0);
   expect_weights(count_of(&recursive::Counter::depth));
+  EXPECT_EQ(tally.plain + 1, recursive::kDepthOperations);
+}
+
+TEST(Counting, Projection) {
+  tally = {};
+  counted::project({3.0, 1.0}, 0.5, 0);
+  EXPECT_EQ(tally.plain, recursive::kProjectOperations);
 }
 
 TEST(Counting, Orientation) {
   tally = {};
   EXPECT_EQ(counted::orient_filtered({0.0, 0.0}, {0.0, 1.0}, {1.0, 0.0}, bound(ORIENT_BOUND)), -1);
   expect_weights(count_of(&recursive::Counter::orientation));
+  EXPECT_EQ(tally.plain + 1, recursive::kOrientOperations);
+}
+
+// An angle takes an orientation and a dot product.
+TEST(Counting, Angles) {
+  tally = {};
+  const counted::angle seen = counted::angle_at({0.0, 1.0}, {0.0, 0.0}, {1.0, 0.0});
+  EXPECT_EQ(counted::angle_side(seen, bound(ORIENT_BOUND)), 1);
+  EXPECT_EQ(tally.plain + 1, recursive::kOrientOperations + recursive::kDotOperations);
+  const counted::angle other = counted::angle_at({0.5, 0.5}, {0.0, 0.0}, {1.0, 0.0});
+  tally = {};
+  counted::angle_compared(seen, other, bound(ANGLE_BOUND));
+  EXPECT_EQ(tally.plain + 1, recursive::kAngleOperations);
 }
 
 TEST(Counting, Circle) {

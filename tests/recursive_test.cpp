@@ -151,7 +151,7 @@ std::vector<std::int32_t> brute_force_hull(const std::vector<HullPoint>& points,
   for (const HullPoint& p : points) {
     bool is_vertex = true;
     for (const HullPoint& a : points) {
-      if (a.u() == p.u() && a.id != p.id && line.is_lower(a.place, p.place)) is_vertex = false;
+      if (a.u() == p.u() && a.id != p.id && line.is_lower(a, p)) is_vertex = false;
       for (const HullPoint& b : points) {
         if (!is_vertex || !(a.u() < p.u() && p.u() < b.u())) continue;
         is_vertex = recursive::kernel::hull_depth_sign(a.place, b.place, p.place, line.q, line.planar()) > 0;
@@ -169,12 +169,12 @@ std::vector<std::int32_t> brute_force_hull(const std::vector<HullPoint>& points,
 // Takes some points, both ends among them, as a border in any order, and each of these twice.
 HullPoints hull_points(std::vector<HullPoint> points, const Line& line, FixtureRandom& random) {
   const auto before = [&](const HullPoint& a, const HullPoint& b) {
-    return a.u() != b.u() ? a.u() < b.u() : line.is_lower(a.place, b.place);
+    return a.u() != b.u() ? a.u() < b.u() : line.is_lower(a, b);
   };
   std::sort(points.begin(), points.end(), before);
   HullPoints result{line, points.front(), points.back(), {}, {}};
   for (const HullPoint& p : points) {
-    if (p.u() == points.back().u() && line.is_lower(p.place, result.last.place)) result.last = p;
+    if (p.u() == points.back().u() && line.is_lower(p, result.last)) result.last = p;
   }
   for (const HullPoint& p : points) {
     const bool is_end = p.u() == result.first.u() || p.u() == result.last.u();
@@ -212,7 +212,7 @@ void expect_hulls(const std::vector<HullPoint>& points, const Line& line, const 
 std::vector<HullPoint> placed(const recursive::PointSets& sets, const Line& line) {
   std::vector<HullPoint> points;
   for (std::size_t id = 0; id < sets.points.size(); ++id) {
-    points.push_back({static_cast<std::int32_t>(id), line.place(sets.points[id])});
+    points.push_back(line.at(static_cast<std::int32_t>(id), line.place(sets.points[id])));
   }
   return points;
 }
@@ -259,15 +259,15 @@ TEST(RecursiveHull, TiesInTheProjection) {
   std::vector<HullPoint> mirrored, on_line, on_circle;
   for (int k = 0; k < 40; ++k) {
     const double s = static_cast<double>(random.integer(0, 9)), u = static_cast<double>(2 * k + k % 2);
-    mirrored.push_back({2 * k, {s, u}});
-    if (s != 0) mirrored.push_back({2 * k + 1, {-s, u}});
-    on_line.push_back({k, {0, u}});
+    mirrored.push_back(line.at(2 * k, {s, u}));
+    if (s != 0) mirrored.push_back(line.at(2 * k + 1, {-s, u}));
+    on_line.push_back(line.at(k, {0, u}));
   }
   const double legs[][2] = {{63, 16}, {60, 25}, {56, 33}, {52, 39}, {39, 52}, {33, 56}, {25, 60}, {16, 63}};
   for (const auto& leg : legs) {
     for (const double s : {leg[0], -leg[0]}) {
       for (const double u : {leg[1], -leg[1]}) {
-        on_circle.push_back({static_cast<std::int32_t>(on_circle.size()), {s, u}});
+        on_circle.push_back(line.at(static_cast<std::int32_t>(on_circle.size()), {s, u}));
       }
     }
   }
@@ -282,12 +282,12 @@ TEST(RecursiveHull, TiesInTheProjection) {
 // for each point, and quadratic work with more exponents than a double has.
 TEST(RecursiveHull, BalanceEndsBadRounds) {
   std::vector<HullPoint> points;
+  const Line line{AXIS_PLANAR_LOWER, 0};
   for (int i = 0; i < 400; ++i) {
-    points.push_back({i, {std::ldexp(1.0, i / 2 - 100), std::ldexp(1.0 + i % 2 * 0.5, i / 2 - 100)}});
+    const double u = std::ldexp(1.0 + i % 2 * 0.5, i / 2 - 100);
+    points.push_back(line.at(i, {u * u, u}));
   }
   FixtureRandom random(5);
-  const Line line{AXIS_PLANAR_LOWER, points[0].place.x};
-  for (HullPoint& p : points) p.place.x = p.place.y * p.place.y;
   const HullPoints task = hull_points(points, line, random);
   const recursive::Predicates predicates{Bounds{HULL_DEPTH_BOUND, ORIENT_BOUND, CIRCLE_BOUND}};
   for (const Hull variant : {Hull::quickhull, Hull::balanced}) {

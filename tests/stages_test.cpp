@@ -98,7 +98,8 @@ class Call {
         persistent_(used.context(), used.device()),
         state_(used.context(), used.device()),
         scope_(used.arena()),
-        work{used, persistent_, &state_, &state_, statistics_} {
+        work{used, persistent_, statistics_} {
+    work.children = &state_;
     if (used.tuning().separate_buffers) {
       persistent_.separate_buffers();
       state_.separate_buffers();
@@ -242,7 +243,11 @@ struct Met {
   MergeCounts merge;
 };
 
-cl_double2 framed(const Frame& frame, const cl_double2& p) { return {{frame.s(p), frame.u(p)}}; }
+/// (h, u), rounded as the kernels do.
+cl_double2 projected(const Frame& frame, const cl_double2& p) {
+  const double across = frame.s(p) - frame.q;
+  return {{frame.planar() ? across : across * across, frame.u(p)}};
+}
 
 /// Paths as they should be, or made by hand: ids in the order of u for each region.
 struct HostPaths {
@@ -252,20 +257,20 @@ struct HostPaths {
       for (const int id : paths[r]) {
         vertices.push_back(id);
         regions.push_back(static_cast<cl_int>(r));
-        places.push_back(framed(frames[r], points[id]));
+        projections.push_back(projected(frames[r], points[id]));
       }
       offsets.push_back(static_cast<cl_int>(vertices.size()));
     }
   }
   std::vector<cl_int> vertices, regions, offsets{0};
-  std::vector<cl_double2> places;
+  std::vector<cl_double2> projections;
 };
 
 Paths upload_paths(Call& call, const HostPaths& paths) {
   Paths uploaded;
   uploaded.size = paths.vertices.size();
   uploaded.vertices = testing::upload(call.runtime, paths.vertices);
-  uploaded.places = testing::upload(call.runtime, paths.places);
+  uploaded.projections = testing::upload(call.runtime, paths.projections);
   uploaded.regions = testing::upload(call.runtime, paths.regions);
   uploaded.offsets = testing::upload(call.runtime, paths.offsets);
   return uploaded;
@@ -273,7 +278,7 @@ Paths upload_paths(Call& call, const HostPaths& paths) {
 
 void expect_paths(Call& call, const Paths& paths, const HostPaths& expected) {
   EXPECT_TRUE(same(call.read(paths.vertices, paths.size), expected.vertices));
-  EXPECT_TRUE(same(call.read(paths.places, paths.size), expected.places));
+  EXPECT_TRUE(same(call.read(paths.projections, paths.size), expected.projections));
   EXPECT_TRUE(same(call.read(paths.regions, paths.size), expected.regions));
   EXPECT_TRUE(same(call.read(paths.offsets, expected.offsets.size()), expected.offsets));
 }
@@ -283,13 +288,13 @@ HullPoints upload_hull_points(Call& call, const ExactPoints& points, const std::
                               const std::vector<std::vector<int>>& ids_of_regions,
                               const std::vector<std::vector<int>>& ends) {
   std::vector<cl_int> ids, segments, first;
-  std::vector<cl_double2> places;
+  std::vector<cl_double2> projections;
   for (std::size_t r = 0; r < ids_of_regions.size(); ++r) {
     first.push_back(static_cast<cl_int>(ids.size()));
     for (const int id : ids_of_regions[r]) {
       ids.push_back(id);
       segments.push_back(static_cast<cl_int>(2 * r));
-      places.push_back(framed(frames[r], points[id]));
+      projections.push_back(projected(frames[r], points[id]));
     }
     first.push_back(static_cast<cl_int>(ids.size()));
   }
@@ -298,24 +303,45 @@ HullPoints upload_hull_points(Call& call, const ExactPoints& points, const std::
   uploaded.size = ids.size();
   uploaded.ids = testing::upload(call.runtime, ids);
   uploaded.segments = testing::upload(call.runtime, segments);
-  uploaded.places = testing::upload(call.runtime, places);
+  uploaded.projections = testing::upload(call.runtime, projections);
   uploaded.ends = upload_paths(call, HostPaths(points, frames, ends));
   uploaded.first = testing::upload(call.runtime, first);
   return uploaded;
 }
 
-/// The flag that prune should give: 0 dropped, 1 kept, 3 an end of the path.
-int prune_flag_twin(const ExactPoints& points, const Frame& frame, const std::vector<int>& path, int id,
-                    bool keep_on) {
+/// The projections of a level's internal points.
+Buffer<cl_double2> upload_projections(Call& call, const ExactPoints& points,
+                                      const std::vector<Region>& regions, const std::vector<Frame>& frames) {
+  std::vector<cl_double2> projections;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    for (const int id : frames[r].axis == 1 ? regions[r].x_list : regions[r].y_list) {
+      projections.push_back(projected(frames[r], points[id]));
+    }
+  }
+  return testing::upload(call.runtime, projections);
+}
+
+/// What prune should say of a point: 0 dropped, 1 kept, 3 on the path; of what is kept, the vertex of the
+/// path whose chord it is below.
+struct PruneTwin {
+  cl_uchar flag = 0;
+  cl_int chord = 0;
+};
+PruneTwin prune_twin(const ExactPoints& points, const Frame& frame, const std::vector<int>& path, int id,
+                     bool keep_on) {
   const double u = frame.u(points[id]);
   const auto above = std::upper_bound(
       path.begin(), path.end(), u, [&](double value, int other) { return value < frame.u(points[other]); });
   const int v = *(above - 1);
-  const bool first = above - 1 == path.begin(), last = above == path.end();
-  if (id == v) return keep_on || (!first && !last) ? 1 : 3;
-  if (frame.u(points[v]) == u) return keep_on ? last : points.is_lower(frame, id, v);
+  const bool last = above == path.end();
+  const auto chord = static_cast<cl_int>(above - 1 - path.begin());
+  if (id == v) return {static_cast<cl_uchar>(keep_on ? 1 : 3), chord};
+  if (frame.u(points[v]) == u) {
+    const bool kept = keep_on ? last : points.is_lower(frame, id, v);
+    return {kept, keep_on || !last ? chord : chord - 1};
+  }
   const int sign = points.depth_sign(frame, v, *above, id);
-  return sign > 0 || (keep_on && sign == 0);
+  return {sign > 0 || (keep_on && sign == 0), chord};
 }
 
 /// Prune against paths made by hand, which need be no hulls: of some of each region's points.
@@ -324,30 +350,39 @@ void check_prune(Call& call, const ExactPoints& points, const PointTable& table,
                  const std::vector<std::vector<int>>& paths, bool keep_on) {
   Arena::Scope scope(call.work.scratch());
   if (keep_on) level.corners = 0;  // as initial_borders has it
-  const Paths uploaded = upload_paths(call, HostPaths(points, frames, paths));
+  const HostPaths host_paths(points, frames, paths);
+  const Paths uploaded = upload_paths(call, host_paths);
+  level.projections = upload_projections(call, points, regions, frames);
   const Pruned pruned = allocate_pruned(call.work, level);
   prune(call.work, table, level, uploaded, keep_on, pruned);
   ASSERT_EQ(pruned.elements, level.points + level.corners);
   const auto flags = call.read(pruned.flags, pruned.elements);
+  const auto chords = call.read(pruned.chord, pruned.elements);
   const auto corner_ids = call.read(level.corner_ids, 3 * level.corners);
   std::vector<cl_uchar> expected;
+  std::size_t wrong_chords = 0;
+  const auto expect = [&](std::size_t r, int id, bool on) {
+    const PruneTwin twin = prune_twin(points, frames[r], paths[r], id, on);
+    // Chords are for quickhull, which goes on with what is strictly below.
+    wrong_chords +=
+        !keep_on && twin.flag == 1 && chords[expected.size()] != host_paths.offsets[r] + twin.chord;
+    expected.push_back(twin.flag);
+  };
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    for (const int id : frames[r].axis == 1 ? regions[r].x_list : regions[r].y_list) {
-      expected.push_back(static_cast<cl_uchar>(prune_flag_twin(points, frames[r], paths[r], id, keep_on)));
-    }
+    for (const int id : frames[r].axis == 1 ? regions[r].x_list : regions[r].y_list) expect(r, id, keep_on);
   }
   std::size_t region_of = 0, corners_left = regions.empty() ? 0 : regions[0].corners.size();
   for (std::size_t c = 0; c < level.corners; ++c) {
     while (corners_left == 0) corners_left = regions[++region_of].corners.size();
     --corners_left;
-    expected.push_back(static_cast<cl_uchar>(
-        prune_flag_twin(points, frames[region_of], paths[region_of], corner_ids[3 * c + 1], false)));
+    expect(region_of, corner_ids[3 * c + 1], false);
   }
   EXPECT_TRUE(same(flags, expected)) << (keep_on ? "keep_on" : "");
+  EXPECT_EQ(wrong_chords, 0u);
 }
 
 /// Prune's candidates: of each region's points in a bucket, the first of those nearest to the line.
-void check_candidates(Call& call, const ExactPoints& points, const PointTable& table, const Level& level,
+void check_candidates(Call& call, const ExactPoints& points, const Level& level,
                       const std::vector<Region>& regions, const std::vector<Frame>& frames) {
   const std::string source = host::kernel_source("prune");
   std::smatch match;
@@ -356,8 +391,8 @@ void check_candidates(Call& call, const ExactPoints& points, const PointTable& t
   Arena::Scope scope(call.work.scratch());
   const auto flags = testing::guarded<cl_uchar>(call.runtime, level.points);
   call.runtime.map("prune", "candidate_flags", (level.points + bucket - 1) / bucket,
-                   static_cast<cl_int>(level.points), level.point_regions, level.x_list, level.y_list,
-                   level.axis, level.cut, table.points, flags);
+                   static_cast<cl_int>(level.points), level.point_regions,
+                   upload_projections(call, points, regions, frames), flags);
   std::vector<cl_uchar> expected;
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const auto& list = frames[r].axis == 1 ? regions[r].x_list : regions[r].y_list;
@@ -365,7 +400,7 @@ void check_candidates(Call& call, const ExactPoints& points, const PointTable& t
     double best_distance = HUGE_VAL;
     for (std::size_t i = 0; i < list.size(); ++i) {
       expected.push_back(0);
-      const double distance = std::fabs(frames[r].s(points[list[i]]) - frames[r].q);
+      const double distance = projected(frames[r], points[list[i]]).s[0];
       if (distance < best_distance) {
         best = expected.size() - 1;
         best_distance = distance;
@@ -579,14 +614,25 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::v
         }
         rough.push_back(some);
       }
-      check_candidates(call, points, table, level, regions.open, frames);
+      check_candidates(call, points, level, regions.open, frames);
       check_prune(call, points, table, level, regions.open, frames, rough, false);
       check_prune(call, points, table, level, regions.open, frames, expected_paths, true);
       check_quickhull(call, points, table, level, regions.open, frames, expected_paths, random);
+      for (const Hull variant : {Hull::quickhull, Hull::balanced}) {
+        SCOPED_TRACE(to_string(variant));
+        Arena::Scope variant_scope(work.scratch());
+        work.hull = variant;
+        LevelStatistics ignored;
+        project(work, table, level);
+        const Paths paths = hulls(work, table, level, ignored);
+        work.hull = Hull::prune;
+        expect_paths(call, paths, HostPaths(points, frames, expected_paths));
+      }
     }
 
     const std::size_t undecided = call.undecided();
     LevelStatistics statistics;
+    project(work, table, level);
     const Paths paths = hulls(work, table, level, statistics);
     met.undecided_hull += call.undecided() - undecided;
     met.survivors += statistics.survivors;
@@ -882,7 +928,6 @@ TEST(LevelLoop, UndecidedPredicates) {
     }
   });
   EXPECT_GT(met.undecided_hull, 100u);
-  EXPECT_GT(met.undecided_merge, 100u);
   EXPECT_GT(met.undecided_endgame + met.large, 10u);
   EXPECT_GT(met.merge.corners_by_parts[3], 0u);
   EXPECT_GT(met.merge.pinch_points, 0u);
@@ -964,7 +1009,7 @@ TEST(LevelLoop, AHundredThousandTinyRegions) {
 // Quickhull's balanced rounds
 
 /// Points (2^i, 4^i): the deepest is always next to the end, so that splits by depth alone take a round each.
-TEST(Quickhull, SplitsAtRandomAfterManyRounds) {
+TEST(Quickhull, BalancesAfterManyRounds) {
   under_each_tuning([](Runtime& runtime) {
     Call call(runtime);
     constexpr int kPoints = 120;
@@ -991,6 +1036,39 @@ TEST(Quickhull, SplitsAtRandomAfterManyRounds) {
     expect_paths(call, strict(call.work, table, level, paths), HostPaths(points, frames, {all}));
   });
 }
+
+/// A parabola's points and one far below: each round lays bare one more vertex on either side, until
+/// quickhull of what is left ends that. Two regions, so that only one of them has much to do.
+void check_restart(Runtime& runtime) {
+  Call call(runtime);
+  constexpr int kHalf = 40;
+  std::vector<cl_double2> places;
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    places.push_back({{static_cast<double>(i), i == 0 ? -1000.0 * kHalf * kHalf : 1.0 * i * i}});
+  }
+  const ExactPoints points(places);
+  PointTable table;
+  table.count = places.size();
+  table.points = testing::upload(runtime, places);
+  std::vector<int> all(places.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> some{0, 3, kHalf};
+  const std::vector<Frame> frames{{2, 0.0}, {2, 0.0}};
+  Level level;
+  level.regions = 2;
+  level.axis = testing::upload(runtime, std::vector<cl_int>{2, 2});
+  level.cut = testing::upload(runtime, std::vector<cl_double>{0.0, 0.0});
+  const std::vector<int> expected{0, kHalf, 2 * kHalf};
+  ASSERT_EQ(points.lower_hull(frames[0], all), expected);
+  for (const Bounds& bounds : {Bounds{}, kUndecided}) {
+    call.work.bounds = bounds;
+    const Paths paths = upload_paths(call, HostPaths(points, frames, {all, some}));
+    expect_paths(call, strict(call.work, table, level, paths),
+                 HostPaths(points, frames, {expected, points.lower_hull(frames[1], some)}));
+  }
+}
+
+TEST(Quickhull, CleanUpThatLaysBareOneVertexAtATime) { under_each_tuning(check_restart); }
 
 // -----------------------------------------------------------------------------------------------------------
 // Regions of cocircular vertices
@@ -1597,12 +1675,13 @@ TEST(Kernels, AllAreLaunched) {
     Met met;
     FixtureRandom random(26);
     check_levels(runtime, coarse_points(40, 3, random), {0, 0, 9, 12, 40}, {}, met);
-    check_levels(runtime, make_fixture("uniform", 5000, 31), {false, false, false, 1}, met);
+    check_levels(runtime, make_fixture("uniform", 5000, 31), {false, false, true, 1}, met);
     std::vector<cl_double2> places;
     std::vector<std::vector<int>> cells;
     make_cells(25 * 13, {5}, random, places, cells);
     check_cells(runtime, places, cells, {0, 0, 0}, random);
     check_output(runtime, testing::reference_delaunay(make_fixture("uniform", 10, 27)), random);
+    check_restart(runtime);
     EXPECT_EQ(self_test_failure(runtime), "");
     for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
     runtime.set_profiling(false);

@@ -420,6 +420,30 @@ TEST(SmallTriangulation, Sets) {
   }
 }
 
+/// What other modes and hull variants launch, and the kernels that count.
+TEST(SmallTriangulation, OtherExecutions) {
+  for (const char* const name : {"uniform", "grid", "integer-circle"}) {
+    SCOPED_TRACE(name);
+    const Coordinates points = make_fixture(name, 40, 5);
+    for (const Hull hull : {Hull::quickhull, Hull::balanced}) {
+      Options options;
+      options.hull = hull;
+      EXPECT_TRUE(valid(points, triangulate(points, options))) << to_string(hull);
+    }
+    for (const Mode mode : {Mode::recursive_device, Mode::partition}) {
+      Options options;
+      options.mode = mode;
+      options.partition_levels = 2;
+      EXPECT_TRUE(valid(points, triangulate(points, options))) << to_string(mode);
+    }
+    Options options;
+    options.count = true;
+    const Triangulation counted = triangulate(points, options);
+    EXPECT_TRUE(valid(points, counted));
+    EXPECT_GT(counted.statistics.work.start[static_cast<std::size_t>(Component::hull)].operations(), 100u);
+  }
+}
+
 TEST(SmallTriangulation, Alternate) {
   Options options;
   options.cut = Cut::alternate;

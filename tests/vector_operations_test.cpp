@@ -566,8 +566,10 @@ TEST(SegmentedArg, IsThePlainLoopForAllCutsOf11) {
 TEST(SegmentedArg, PassesOverElementsThatAreNoCandidates) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() + "/shared");
-  std::filesystem::copy_file(std::string(FLAUNAY_TEST_DATA) + "/../../kernels/shared/segmented_arg_reduce.h",
-                             folder.path() + "/shared/segmented_arg_reduce.h");
+  for (const char* const header : {"/shared/segmented_arg_reduce.h", "/shared/counting.h"}) {
+    std::filesystem::copy_file(std::string(FLAUNAY_TEST_DATA) + "/../../kernels" + header,
+                               folder.path() + header);
+  }
   folder.write("kept.cl",
                "#include \"shared/segmented_arg_reduce.h\"\n"
                "#define KEPT(i) values[i] > 0 ? i : -1\n"

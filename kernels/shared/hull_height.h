@@ -18,25 +18,26 @@
 // of the terms' magnitudes. Nothing underflows: see docs/exactness.md.
 #define HULL_DEPTH_BOUND (10.0 * 0x1p-53)
 
-// (depth, magnitude). a, b, p in the frame (s, u).
-static inline double2 hull_depth(double2 a, double2 b, double2 p, double q, int planar) {
+// A point (s, u) as it is projected: (h, u), h = (s - q)^2 being the height but for what depends on u alone; for a planar
+// hull s - q, q being any height near by. Rounded.
+static inline double2 project(double2 p, double q, int planar) {
+  const double across = p.x - q;
+  return PAIR(planar ? across : across * across, p.y);
+}
+
+// (depth, magnitude). a, b, p projected.
+static inline double2 hull_depth(double2 a, double2 b, double2 p, int planar) {
   const double to_b = b.y - p.y;
   const double from_a = p.y - a.y;
   const double length = b.y - a.y;
-  const double as = a.x - q;
-  const double bs = b.x - q;
-  const double ps = p.x - q;
-  const double ha = planar ? as : as * as;
-  const double hb = planar ? bs : bs * bs;
-  const double hp = planar ? ps : ps * ps;
-  const double ta = ha * to_b;
-  const double tb = hb * from_a;
+  const double ta = a.x * to_b;
+  const double tb = b.x * from_a;
   const double tu = planar ? 0.0 : length * (from_a * to_b);
-  const double tp = length * hp;
+  const double tp = length * p.x;
   return PAIR(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
 }
 
-// The exact sign of depth: -(bu * ds(c) - cu * ds(b)) with everything relative to a, where for the cut at q
+// The exact sign of depth, a, b, p in the frame (s, u): -(bu * ds(c) - cu * ds(b)) with everything relative to a, where for the cut at q
 // ds(p) = p_s (p_s + t) + p_u^2, t = 2 (a_s - q), and for a planar hull ds(p) = p_s.
 static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int planar) {
   const double2 bu = two_sum(b.y, -a.y);

@@ -59,6 +59,43 @@ static inline int circle_filtered(double2 a, double2 b, double2 c, double2 d, do
   return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
 
+// The angle under which a point sees the edge from a to b: its cotangent is dot / cross. Magnitudes bound the errors.
+typedef struct {
+  double dot, cross, dot_magnitude, cross_magnitude;
+} angle;
+
+static inline angle angle_at(double2 p, double2 a, double2 b) {
+  const double2 pa = a - p;
+  const double2 pb = b - p;
+  const double left = pa.x * pb.y;
+  const double right = pa.y * pb.x;
+  const double xx = pa.x * pb.x;
+  const double yy = pa.y * pb.y;
+  angle seen;
+  seen.dot = xx + yy;
+  seen.cross = left - right;
+  seen.dot_magnitude = fabs(xx) + fabs(yy);
+  seen.cross_magnitude = fabs(left) + fabs(right);
+  return seen;
+}
+
+// As orient_filtered of a, b and the point: 1 if it lies left of the edge.
+static inline int angle_side(angle seen, double bound) {
+  const double error = bound * seen.cross_magnitude;
+  return seen.cross > error ? 1 : seen.cross < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+}
+
+// 1 if a point left of the edge sees it under a wider angle than another, which is to lie inside the circle through the edge and
+// that one; -1, 0 if on it, UNDECIDED. The error of a cross or dot product is below 4.02 e times its magnitude, that of
+// the products below 9.1 e times theirs, that of the difference below 10.2 e of the sum: see docs/exactness.md.
+#define ANGLE_BOUND (11.0 * 0x1p-53)
+static inline int angle_compared(angle seen, angle other, double bound) {
+  const double det = other.dot * seen.cross - seen.dot * other.cross;
+  const double error =
+      bound * (other.dot_magnitude * seen.cross_magnitude + seen.dot_magnitude * other.cross_magnitude);
+  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+}
+
 static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
   double2 dx[3], dy[3];
   dx[0] = two_sum(a.x, -d.x);

@@ -1,7 +1,9 @@
-// A small region without internal points, triangulated by one work-item.
+// A small region without internal points, triangulated by one work-item. EXACT: 1 to decide what floating point cannot,
+// 0 to give up there.
 #ifndef FLAUNAY_REGION_TRIANGLES_H
 #define FLAUNAY_REGION_TRIANGLES_H
 
+#include "shared/counting.h"
 #include "shared/planar.h"
 
 #ifndef SMALL_REGION
@@ -10,133 +12,169 @@
 #define REGION_UNDECIDED -1
 #define REGION_BROKEN -2
 
-// Defines int NAME(corners, count, points, orient_bound, circle_bound, triangles): the triangles of the region with
-// `count` corners, three ids each, into triangles[] (which may be corners[]: it is read first and holds count
-// - 2 triangles at least); returns their number or REGION_UNDECIDED if a predicate was.
-//
-// Gift wrapping: of an open directed edge (a, b), with untriangulated region on its left, the apex is the vertex left
-// of it whose circle holds no other vertex left of it. The triangle closes the edge and closes or opens two others.
-// Border edges are Delaunay edges, so no vertex in a circle hides behind one; but of several vertices on one circle some
-// may: an open edge between two of them cuts the circle's polygon. So among those the apex is one that no such edge
-// separates from (a, b). O(triangles * vertices) predicates.
-#define REGION_TRIANGLES(NAME, ORIENT, CIRCLE)                                                                       \
-  static inline int NAME(global const int* corners, int count, global const double2* restrict points,                \
-                         double orient_bound, double circle_bound, global int* triangles) {                          \
-    if (count == 3) {                                                                                                \
-      const int3 t = (int3)(corners[0], corners[1], corners[2]);                                                     \
-      triangles[0] = t.x;                                                                                            \
-      triangles[1] = t.y;                                                                                            \
-      triangles[2] = t.z;                                                                                            \
-      return 1;                                                                                                      \
-    }                                                                                                                \
-    int ids[SMALL_REGION];                                                                                           \
-    double2 p[SMALL_REGION];                                                                                         \
-    uchar of_corner[SMALL_REGION];                                                                                   \
-    uchar edge_a[3 * SMALL_REGION], edge_b[3 * SMALL_REGION];                                                        \
-    uchar made[3 * SMALL_REGION];                                                                                    \
-    int vertices = 0;                                                                                                \
-    for (int i = 0; i < count; ++i) {                                                                                \
-      const int id = corners[3 * i + 1];                                                                             \
-      int v = 0;                                                                                                     \
-      while (v < vertices && ids[v] != id) ++v;                                                                      \
-      if (v == vertices) {                                                                                           \
-        ids[v] = id;                                                                                                 \
-        p[v] = points[id];                                                                                           \
-        ++vertices;                                                                                                  \
-      }                                                                                                              \
-      of_corner[i] = v;                                                                                              \
-    }                                                                                                                \
-    int open = 0;                                                                                                    \
-    for (int i = 0; i < count; ++i) {                                                                                \
-      const int after = corners[3 * i + 2];                                                                          \
-      int v = 0;                                                                                                     \
-      while (v < vertices && ids[v] != after) ++v;                                                                   \
-      if (v == vertices) return REGION_BROKEN;                                                                       \
-      edge_a[open] = of_corner[i];                                                                                   \
-      edge_b[open] = v;                                                                                              \
-      ++open;                                                                                                        \
-    }                                                                                                                \
-    int total = 0;                                                                                                   \
-    while (open > 0) {                                                                                               \
-      --open;                                                                                                        \
-      const int a = edge_a[open];                                                                                    \
-      const int b = edge_b[open];                                                                                    \
-      int apex = -1;                                                                                                 \
-      int tied = 0;                                                                                                  \
-      for (int v = 0; v < vertices; ++v) {                                                                           \
-        if (v == a || v == b) continue;                                                                              \
-        const int turn = ORIENT(p[a], p[b], p[v], orient_bound);                                                     \
-        if (turn == UNDECIDED) return REGION_UNDECIDED;                                                              \
-        if (turn <= 0) continue;                                                                                     \
-        if (apex < 0) {                                                                                              \
-          apex = v;                                                                                                  \
-          continue;                                                                                                  \
-        }                                                                                                            \
-        const int inside = CIRCLE(p[a], p[b], p[apex], p[v], circle_bound);                                          \
-        if (inside == UNDECIDED) return REGION_UNDECIDED;                                                            \
-        if (inside > 0) {                                                                                            \
-          apex = v;                                                                                                  \
-          tied = 0;                                                                                                  \
-        } else if (inside == 0) {                                                                                    \
-          tied = 1;                                                                                                  \
-        }                                                                                                            \
-      }                                                                                                              \
-      if (apex < 0 || total >= count - 2) return REGION_BROKEN;                                                      \
-      if (tied) {                                                                                                    \
-        uchar on_circle[SMALL_REGION];                                                                               \
-        for (int v = 0; v < vertices; ++v) {                                                                         \
-          int on = v == a || v == b || v == apex;                                                                    \
-          if (!on && ORIENT(p[a], p[b], p[v], orient_bound) > 0) {                                                   \
-            const int inside = CIRCLE(p[a], p[b], p[apex], p[v], circle_bound);                                      \
-            if (inside == UNDECIDED) return REGION_UNDECIDED;                                                        \
-            on = inside == 0;                                                                                        \
-          }                                                                                                          \
-          on_circle[v] = on;                                                                                         \
-        }                                                                                                            \
-        int visible = -1;                                                                                            \
-        for (int v = 0; v < vertices && visible < 0; ++v) {                                                          \
-          if (!on_circle[v] || v == a || v == b) continue;                                                           \
-          int hidden = 0;                                                                                            \
-          for (int e = 0; e < open && !hidden; ++e) {                                                                \
-            const int c = edge_a[e];                                                                                 \
-            const int d = edge_b[e];                                                                                 \
-            if (!on_circle[c] || !on_circle[d] || c == v || d == v) continue;                                        \
-            const int reference = c != a && d != a ? a : b;                                                          \
-            if (reference == c || reference == d) continue;                                                          \
-            const int mine = ORIENT(p[c], p[d], p[v], orient_bound);                                                 \
-            const int theirs = ORIENT(p[c], p[d], p[reference], orient_bound);                                       \
-            if (mine == UNDECIDED || theirs == UNDECIDED) return REGION_UNDECIDED;                                   \
-            hidden = mine * theirs < 0;                                                                              \
-          }                                                                                                          \
-          if (!hidden) visible = v;                                                                                  \
-        }                                                                                                            \
-        if (visible < 0) return REGION_BROKEN;                                                                       \
-        apex = visible;                                                                                              \
-      }                                                                                                              \
-      made[3 * total] = a;                                                                                           \
-      made[3 * total + 1] = b;                                                                                       \
-      made[3 * total + 2] = apex;                                                                                    \
-      ++total;                                                                                                       \
-      for (int side = 0; side < 2; ++side) {                                                                         \
-        const int from = side ? apex : b;                                                                            \
-        const int to = side ? a : apex;                                                                              \
-        int e = 0;                                                                                                   \
-        while (e < open && (edge_a[e] != from || edge_b[e] != to)) ++e;                                              \
-        if (e < open) {                                                                                              \
-          --open;                                                                                                    \
-          edge_a[e] = edge_a[open];                                                                                  \
-          edge_b[e] = edge_b[open];                                                                                  \
-        } else if (open < 3 * SMALL_REGION) {                                                                        \
-          edge_a[open] = to;                                                                                         \
-          edge_b[open] = from;                                                                                       \
-          ++open;                                                                                                    \
-        } else {                                                                                                     \
-          return REGION_BROKEN;                                                                                      \
-        }                                                                                                            \
-      }                                                                                                              \
-    }                                                                                                                \
-    for (int i = 0; i < 3 * total; ++i) triangles[i] = ids[made[i]];                                                 \
-    return total;                                                                                                    \
+#if EXACT
+#define DECIDE(sign, exact_sign) ((sign) == UNDECIDED ? (exact_sign) : (sign))
+#else
+#define DECIDE(sign, exact_sign) (sign)
+#endif
+
+// A region's border as simple cycles: corner v has vertex ids[v] at p[v]; chain holds one cycle's corners in order.
+typedef struct {
+  double2 p[SMALL_REGION];
+  uchar chain[SMALL_REGION];
+  double orient_bound, circle_bound, angle_bound;
+  COUNTED(uint orientations; uint arithmetic; uint circles;)
+} region_cycle;
+
+static inline double2 on_chain(const region_cycle* g, int k) { return g->p[g->chain[k]]; }
+
+static inline int turn_of(region_cycle* g, double2 a, double2 b, double2 c) {
+  COUNTED(++g->orientations;)
+  const int sign = orient_filtered(a, b, c, g->orient_bound);
+  return DECIDE(sign, orient_exact(a, b, c));
+}
+
+static inline int in_circle(region_cycle* g, double2 a, double2 b, double2 c, double2 d) {
+  COUNTED(++g->circles;)
+  const int sign = circle_filtered(a, b, c, d, g->circle_bound);
+  return DECIDE(sign, circle_exact(a, b, c, d));
+}
+
+// Of the vertices on the circle through base, chain i to j, and apex, one that no edge of the chain hides from the base.
+static inline int visible_apex(region_cycle* g, int i, int j, int apex) {
+  const double2 a = on_chain(g, j);
+  const double2 b = on_chain(g, i);
+  uchar on_circle[SMALL_REGION];
+  for (int v = i; v <= j; ++v) {
+    int on = v == i || v == j || v == apex;
+    if (!on) {
+      const int turn = turn_of(g, a, b, on_chain(g, v));
+      if (turn == UNDECIDED) return REGION_UNDECIDED;
+      if (turn > 0) {
+        const int inside = in_circle(g, a, b, on_chain(g, apex), on_chain(g, v));
+        if (inside == UNDECIDED) return REGION_UNDECIDED;
+        on = inside == 0;
+      }
+    }
+    on_circle[v] = on;
   }
+  for (int v = i + 1; v < j; ++v) {
+    if (!on_circle[v]) continue;
+    int hidden = 0;
+    for (int e = i; e < j && !hidden; ++e) {
+      if (!on_circle[e] || !on_circle[e + 1] || e == v || e + 1 == v) continue;
+      const double2 reference = e == i ? a : b;
+      const int mine = turn_of(g, on_chain(g, e), on_chain(g, e + 1), on_chain(g, v));
+      const int theirs = turn_of(g, on_chain(g, e), on_chain(g, e + 1), reference);
+      if (mine == UNDECIDED || theirs == UNDECIDED) return REGION_UNDECIDED;
+      hidden = mine * theirs < 0;
+    }
+    if (!hidden) return v;
+  }
+  return REGION_BROKEN;
+}
+
+// The apex of the triangle on the edge from chain j to chain i, the polygon of i to j on its left: the vertex left of it
+// that sees it under the largest angle, which is the one whose circle holds no other.
+static inline int apex_of(region_cycle* g, int i, int j) {
+  if (j == i + 2) return i + 1;
+  const double2 a = on_chain(g, j);
+  const double2 b = on_chain(g, i);
+  int apex = REGION_BROKEN;
+  angle widest;
+  int tied = 0;
+  for (int v = i + 1; v < j; ++v) {
+    const double2 p = on_chain(g, v);
+    const angle seen = angle_at(p, a, b);
+    COUNTED(++g->orientations; g->arithmetic += DOT_OPERATIONS;)
+    const int left = angle_side(seen, g->orient_bound);
+    const int turn = DECIDE(left, orient_exact(a, b, p));
+    if (turn == UNDECIDED) return REGION_UNDECIDED;
+    if (turn < 0 || turn == 0) continue;
+    int wider = 1;
+    if (apex >= 0) {
+      COUNTED(g->arithmetic += ANGLE_OPERATIONS;)
+      const int sign = angle_compared(seen, widest, g->angle_bound);
+      wider = DECIDE(sign, circle_exact(a, b, on_chain(g, apex), p));
+      if (wider == UNDECIDED) return REGION_UNDECIDED;
+    }
+    if (wider > 0) {
+      apex = v;
+      widest = seen;
+      tied = 0;
+    } else if (wider == 0) {
+      tied = 1;
+    }
+  }
+  return tied ? visible_apex(g, i, j, apex) : apex;
+}
+
+// The triangles of the region with `count` corners, three ids each, into triangles[] (which may be corners[]: it is
+// read first and holds count - 2 triangles at least); returns their number, or REGION_UNDECIDED if a predicate was.
+//
+// The corners link into simple cycles. Of each, the triangle on one edge leaves two chains, which their own edges close
+// to polygons again. Border edges are Delaunay edges, so no vertex in a circle hides behind one; but of several vertices on
+// one circle some may. A region that is left undecided is not counted. O(count^2) predicates at worst.
+static inline int region_triangles(global const int* corners, int count, global const double2* restrict points,
+                                   double orient_bound, double circle_bound, global int* triangles COUNTERS) {
+  if (count == 3) {
+    const int3 t = (int3)(corners[0], corners[1], corners[2]);
+    triangles[0] = t.x;
+    triangles[1] = t.y;
+    triangles[2] = t.z;
+    COUNT_REGION(count, 0)
+    return 1;
+  }
+  region_cycle g;
+  g.orient_bound = orient_bound;
+  g.circle_bound = circle_bound;
+  g.angle_bound = circle_bound == 0.0 ? 0.0 : ANGLE_BOUND;
+  COUNTED(g.orientations = g.arithmetic = g.circles = 0;)
+  int ids[SMALL_REGION];
+  uchar after[SMALL_REGION];
+  for (int v = 0; v < count; ++v) {
+    ids[v] = corners[3 * v + 1];
+    g.p[v] = points[ids[v]];
+  }
+  for (int v = 0; v < count; ++v) {
+    const int wanted = corners[3 * v + 2];
+    int w = 0;
+    while (w < count && (ids[w] != wanted || corners[3 * w] != ids[v])) ++w;
+    if (w == count) return REGION_BROKEN;
+    after[v] = w;
+  }
+  uchar made[3 * SMALL_REGION];
+  uchar2 pending[SMALL_REGION];
+  ulong taken = 0;
+  int total = 0;
+  for (int start = 0; start < count; ++start) {
+    if (taken >> start & 1) continue;
+    int length = 0;
+    for (int v = start; !(taken >> v & 1); v = after[v]) {
+      taken |= 1UL << v;
+      g.chain[length++] = v;
+    }
+    if (length < 3) return REGION_BROKEN;
+    int depth = 0;
+    pending[depth++] = (uchar2)(0, length - 1);
+    while (depth > 0) {
+      const uchar2 ends = pending[--depth];
+      const int apex = apex_of(&g, ends.x, ends.y);
+      if (apex < 0) return apex;
+      made[3 * total] = g.chain[ends.x];
+      made[3 * total + 1] = g.chain[apex];
+      made[3 * total + 2] = g.chain[ends.y];
+      ++total;
+      if (apex - ends.x > 1) pending[depth++] = (uchar2)(ends.x, apex);
+      if (ends.y - apex > 1) pending[depth++] = (uchar2)(apex, ends.y);
+    }
+  }
+  COUNT(COMPONENT_ENDGAME, KIND_ARITHMETIC, g.arithmetic);
+  COUNT(COMPONENT_ENDGAME, KIND_ORIENTATION, g.orientations);
+  COUNT(COMPONENT_ENDGAME, KIND_CIRCLE, g.circles);
+  COUNT_REGION(count, g.arithmetic + ORIENT_OPERATIONS * g.orientations + CIRCLE_OPERATIONS * g.circles)
+  for (int k = 0; k < 3 * total; ++k) triangles[k] = ids[made[k]];
+  return total;
+}
 
 #endif

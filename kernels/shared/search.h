@@ -21,11 +21,11 @@ static inline int segment_of(int i, int count, global const int* restrict offset
 
 // The last path vertex of first..last with u no greater than the given one; first if there is none. Places are (s, u),
 // ascending in u.
-static inline int search_path(double u, int first, int last, global const double2* restrict path_places) {
+static inline int search_path(double u, int first, int last, global const double2* restrict path_projections) {
   int low = first, high = last + 1;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
-    if (path_places[middle].y <= u) {
+    if (path_projections[middle].y <= u) {
       low = middle;
     } else {
       high = middle;

@@ -5,7 +5,7 @@ namespace {
 
 // Operations of one evaluation, as kernels/shared/{hull_height,planar}.h write it: additions, multiplications
 // and the comparison of the result with 0. tests/counting_test.cpp holds them to the code.
-constexpr std::uint64_t kDepth = 18;
+constexpr std::uint64_t kDepth = 12;
 constexpr std::uint64_t kOrientation = 8;
 constexpr std::uint64_t kCircle = 30;
 // With the sum of magnitudes, its product with the bound, and a second comparison.

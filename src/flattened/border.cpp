@@ -29,8 +29,10 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
               planar.point_regions);
   runtime.map("border", "set_ends", sets, table.set_offsets, table.points, planar.axis, planar.cut,
               planar.first_end, planar.last_end);
+  work.add_depth(Component::hull, log2_ceiling(n));
   runtime.map("border", "doubled_offsets", sets, table.set_offsets, planar.point_offsets);
   LevelStatistics ignored;
+  project(work, table, planar);
   const Paths paths = hulls(work, table, planar, ignored);
 
   const Pruned on = allocate_pruned(work, planar);

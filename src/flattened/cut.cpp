@@ -11,6 +11,8 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
   work.runtime.map("cut", "cut_regions", level.regions, cl_int{alternate_axis}, cl_int{depth},
                    level.point_offsets, level.x_list, level.y_list, table.points, level.axis, level.cut,
                    level.first_end, level.last_end, work.largest);
+  work.add_depth(Component::cut, alternate_axis < 0 ? 3 : 0);
+  work.add_depth(Component::hull, log2_ceiling(level.corners));
   for (const cl_int direction : {1, -1}) {
     host::segmented_arg_reduce(work.runtime, "prune", "extreme_vertices", level.corner_regions, level.corners,
                                direction > 0 ? level.first_end : level.last_end, direction, level.corner_ids,

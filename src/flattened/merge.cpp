@@ -14,7 +14,7 @@ Children place_children(Workspace& work, const Buffer<cl_uint8>& sizes, std::siz
   next.points = total.s[2];
   retired.regions = total.s[3];
   retired.corners = total.s[4];
-  Arena& state = *work.next_state;
+  Arena& state = *work.children;
   next.x_list = state.allocate<cl_int>(next.points);
   next.y_list = state.allocate<cl_int>(next.points);
   next.point_regions = state.allocate<cl_int>(next.points);
@@ -37,16 +37,21 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
 
+  // A corner takes three turns at most.
+  work.add_depth(Component::merge, log2_ceiling(paths.size) + 3 * (2 + kOrientOperations) +
+                                       scan_depth(level.corners) + scan_depth(paths.size) +
+                                       scan_depth(2 * level.regions));
+  work.add_depth(Component::split, 1 + scan_depth(level.points));
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
   runtime.map("merge", "corner_codes", level.corners, static_cast<cl_int>(level.points), work.bounds.orient,
               paths.flags, level.corner_ids, level.corner_regions, level.axis, level.cut, table.points,
-              paths.offsets, paths.vertices, paths.places, places, codes);
+              paths.offsets, paths.vertices, paths.projections, places, codes);
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, codes, level.corners);
     run_list(work, "merge", "corner_codes_exact", list, level.corner_ids, level.corner_regions, level.axis,
-             table.points, paths.offsets, paths.vertices, paths.places, places, codes);
+             level.cut, table.points, paths.offsets, paths.vertices, places, codes);
   }
   const auto corner_sides = scratch.allocate<cl_uint2>(level.corners + 1);
   runtime.map("merge", "corner_counts", level.corners, codes, corner_sides);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "flattened/counting.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 #include "host/vector_operations.hpp"
@@ -21,9 +22,9 @@ using host::Buffer;
 struct Workspace {
   host::Runtime& runtime;
   Arena& persistent;  ///< lives as long as the call
-  Arena* state;       ///< of the level at work
-  Arena* next_state;  ///< of the level that it makes
   Statistics& statistics;
+  Arena* children = nullptr;  ///< of the regions that a step makes
+  Hull hull = Hull::prune;
   Bounds bounds{};
   /// Bits set by kernels on a broken invariant; see check_invariants.
   Buffer<cl_int> broken{};
@@ -34,7 +35,13 @@ struct Workspace {
   /// Internal points of each level's largest region; kMostLevels of them.
   Buffer<cl_int> largest{};
 
+  /// Options::count; null otherwise.
+  Counting* counting = nullptr;
+
   Arena& scratch() { return runtime.arena(); }
+  void add_depth(Component component, std::uint64_t operations) {
+    if (counting != nullptr) counting->add_depth(component, operations);
+  }
 };
 
 /// Distinct points by id, the rank in (set, x, y).
@@ -63,6 +70,8 @@ struct Level {
   Buffer<cl_int> corner_offsets{};  ///< regions + 1
   Buffer<cl_int> axis{};
   Buffer<cl_double> cut{};
+  /// Of internal points, in the places of the list that is sorted along their region's cut line.
+  Buffer<cl_double2> projections{};
   Buffer<cl_int> first_end{}, last_end{};  ///< ends of each region's hull
 };
 
@@ -78,7 +87,7 @@ struct RetiredRegions {
 struct Paths {
   std::size_t size = 0;
   Buffer<cl_int> vertices{};
-  Buffer<cl_double2> places{};  ///< in their regions' frames: (s, u)
+  Buffer<cl_double2> projections{};  ///< (h, u); see kernels/shared/hull_height.h
   Buffer<cl_int> regions{};
   Buffer<cl_int> offsets{};  ///< regions + 1
   /// Prune's flags of internal points and corners: 0 is not on the path.
@@ -107,28 +116,37 @@ constexpr std::size_t kMostLevels = 32;
 /// Chooses the cuts of a level, the depth-th. alternate_axis: 0 or 1, or -1 for the interquartile rule.
 void cut(Workspace& work, const PointTable& table, Level& level, int depth, int alternate_axis);
 
-/// The strict hulls of a level's regions, whose ends are known: prune, quickhull, clean-up.
+/// Gives the level its projections.
+void project(Workspace& work, const PointTable& table, Level& level);
+
+/// The strict hulls of a level's regions, whose ends are known: prune (or not: Workspace::hull), quickhull,
+/// clean-up.
+/// Needs the level's projections.
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics);
 
-/// What prune says of internal points, and behind them of corners: 0 not on the hull, 1 perhaps, 3 an end of
-/// it.
+/// What prune says of internal points, and behind them of corners: 0 not on the hull, 1 perhaps, 3 a vertex
+/// of the path.
 struct Pruned {
   std::size_t elements = 0;
   Buffer<cl_uchar> flags{};
+  /// Of what is kept: the path vertex whose chord it is below, and the depth below it.
+  Buffer<cl_int> chord{};
+  Buffer<cl_double> depth{};
 };
 Pruned allocate_pruned(Workspace& work, const Level& level);
 /// Holds all elements against paths; keep_on also keeps what lies on them.
 void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
            const Pruned& pruned);
 
-/// What quickhull starts from: each region's two ends as its path, and points grouped by segment, segment v
-/// being below the chord from path vertex v to the next.
+/// What quickhull starts from: a path for each region, of its two ends at least, and points grouped by
+/// segment, segment v being below the chord from path vertex v to the next.
 struct HullPoints {
   std::size_t size = 0;
   Buffer<cl_int> ids{}, segments{};
-  Buffer<cl_double2> places{};  ///< in their regions' frames: (s, u)
-  Paths ends{};                 ///< two vertices a region; no offsets
-  Buffer<cl_int> first{};       ///< where each segment's points begin, closed by their number
+  Buffer<cl_double2> projections{};  ///< (h, u)
+  Buffer<cl_double> depths{};        ///< below their chords, which they all are, if that is known
+  Paths ends{};                      ///< no offsets needed
+  Buffer<cl_int> first{};            ///< where each segment's points begin, closed by their number
 };
 Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& points,
                 int& rounds);
@@ -171,6 +189,14 @@ void run_list(Workspace& work, const char* file, const char* kernel, const Buffe
               const Arguments&... arguments) {
   work.runtime.launch(file, kernel, work.runtime.tuning().list_workers, work.runtime.tuning().chunk_group,
                       work.list_length, list, arguments...);
+}
+
+/// The first count elements; one host wait.
+template <typename T>
+std::vector<T> read_all(Workspace& work, const Buffer<T>& from, std::size_t count) {
+  std::vector<T> values(count);
+  work.runtime.read(from, 0, count, values.data());
+  return values;
 }
 
 /// Throws Error(internal) if a kernel found an invariant broken.

@@ -5,11 +5,19 @@
 #include <utility>
 
 #include "flattened/device_info.hpp"
+#include "flattened/executions.hpp"
+#include "flattened/partition.hpp"
 #include "flattened/self_test.hpp"
 #include "flattened/stages.hpp"
 #include "host/device.hpp"
+#include "recursive/mesh.hpp"
+#include "recursive/regions.hpp"
 
 namespace flaunay {
+
+using host::Arena;
+using host::Buffer;
+
 namespace {
 
 double now() {
@@ -18,16 +26,29 @@ double now() {
 
 // Kernels index with 32-bit integers: at most 6 corners a point, of 3 ids each.
 constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
-// What the arenas are made to hold for each input point; enough for all inputs measured
+// What the arenas are made to hold for each input point; enough for points in general position
 // (docs/performance.md). An input that needs more gets further blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // twice: of the level at work and of the next
-constexpr std::size_t kScratchBytesPerPoint = 170;
-constexpr std::size_t kBytesPerPoint =
-    kPersistentBytesPerPoint + 2 * kStateBytesPerPoint + kScratchBytesPerPoint;
+constexpr std::size_t kScratchBytesPerPoint = 118;
+// The most that any input measured has needed, those made to be bad among them.
+constexpr std::size_t kBytesPerPoint = 300;
+
+// Every failure of OpenCL as an Error.
+template <typename Work>
+auto with_errors(const Work& work) {
+  try {
+    return work();
+  } catch (const host::DeviceError& error) {
+    throw Error(ErrorKind::device, error.what());
+  } catch (const boost::compute::opencl_error& error) {
+    throw Error(ErrorKind::device,
+                fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
+  }
+}
 
 host::Runtime make_runtime(const std::string& wanted) {
-  try {
+  return with_errors([&] {
     const boost::compute::device device = host::find_device(wanted);
     if (!host::has_fp64(device)) {
       throw host::DeviceError(
@@ -36,12 +57,7 @@ host::Runtime make_runtime(const std::string& wanted) {
                       device.name()));
     }
     return host::Runtime(device);
-  } catch (const host::DeviceError& error) {
-    throw Error(ErrorKind::device, error.what());
-  } catch (const boost::compute::opencl_error& error) {
-    throw Error(ErrorKind::device,
-                fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
-  }
+  });
 }
 
 }  // namespace
@@ -96,21 +112,129 @@ struct Triangulator::Implementation {
     return persistent.held_bytes() + even.held_bytes() + odd.held_bytes() + runtime.arena().held_bytes();
   }
 
+  struct Call;
+  /// Throws Error for what this device cannot do.
+  void check_request(std::size_t n, const Options& options) const;
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options);
+  Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options);
+  /// Canonical form, neighbours, and everything to the host.
+  void write_result(Call& call, const Buffer<cl_int>& triangles, const flattened::Borders& borders,
+                    Triangulation& result);
+  void finish_partition(Call& call, flattened::Recursion& recursion, const flattened::Borders& borders,
+                        Triangulation& result);
 
   host::Runtime runtime;
   host::Arena persistent, even, odd;
 };
 
-Triangulation Triangulator::Implementation::triangulate(const double* coordinates,
-                                                        const std::vector<std::size_t>& offsets,
-                                                        const Options& options) {
-  using namespace flattened;
+// One call: the accounts, the arenas' contents and the points, sorted.
+struct Triangulator::Implementation::Call {
+  Call(Implementation& owner, const double* coordinates, const std::vector<std::size_t>& offsets,
+       const Options& wanted, Statistics& statistics, std::vector<std::int32_t>& representatives);
+
+  void end_phase(const char* name) {
+    const double time = now();
+    work.statistics.phases.push_back({name, time - phase_begin});
+    phase_begin = time;
+  }
+  void report(const char* stage, double done) const {
+    if (options.progress) options.progress(stage, -1, done);
+  }
+  /// After the last level: invariants, the largest regions, the counts.
+  void end_levels(std::size_t done, std::size_t wanted);
+  void finish_statistics();
+
   const double begin = now();
-  check_offsets(offsets);
+  double phase_begin = begin;
+  Implementation& owner;
+  const Options& options;
+  Arena::Scope scope;
+  flattened::Workspace work;
+  std::unique_ptr<flattened::Counting> counting;
+  flattened::PointTable table;
+};
+
+Triangulator::Implementation::Call::Call(Implementation& owner_, const double* coordinates,
+                                         const std::vector<std::size_t>& offsets, const Options& wanted,
+                                         Statistics& statistics, std::vector<std::int32_t>& representatives)
+    : owner(owner_),
+      options(wanted),
+      scope(owner_.persistent),
+      work{owner_.runtime, owner_.persistent, statistics} {
   const std::size_t n = offsets.back();
-  const std::size_t sets = offsets.size() - 1;
+  host::Runtime& runtime = owner.runtime;
+  Arena& persistent = owner.persistent;
+  runtime.reset_accounts();
+  runtime.set_profiling(options.profile);
+  persistent.reserve(n * kPersistentBytesPerPoint);
+  owner.even.reserve(n * kStateBytesPerPoint);
+  owner.odd.reserve(n * kStateBytesPerPoint);
+  runtime.arena().reserve(n * kScratchBytesPerPoint);
+  work.hull = options.hull;
+  work.broken = persistent.allocate<cl_int>(1);
+  work.list_length = persistent.allocate<cl_uint>(1);
+  work.undecided = persistent.allocate<cl_uint>(1);
+  work.largest = persistent.allocate<cl_int>(flattened::kMostLevels);
+  runtime.fill(work.largest, flattened::kMostLevels, cl_int{0});
+  runtime.fill(work.broken, 1, cl_int{0});
+  runtime.fill(work.undecided, 1, cl_uint{0});
+  if (options.count) {
+    counting = std::make_unique<flattened::Counting>(runtime, persistent, statistics.work);
+    work.counting = counting.get();
+  }
+  report("sorting", 0.0);
+  representatives.resize(n);
+  table = ingest(work, coordinates, offsets, representatives.data());
+  if (counting) {
+    const std::vector<cl_int> distinct = read_all(work, table.set_offsets, table.sets + 1);
+    counting->add_sort(offsets);
+    counting->add_sort({distinct.begin(), distinct.end()});
+  }
+  statistics.device = runtime.device().name();
+  statistics.points = n;
+  statistics.duplicates = n - table.count;
+  end_phase("sort");
+  report("borders", 0.05);
+}
+
+void Triangulator::Implementation::Call::end_levels(std::size_t done, std::size_t wanted) {
+  check_invariants(work);
+  auto& levels = work.statistics.levels;
+  const std::vector<cl_int> largest = read_all(work, work.largest, levels.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    levels[l].largest_region = static_cast<std::size_t>(largest[l]);
+  }
+  if (done != wanted) {
+    throw Error(ErrorKind::internal,
+                fmt::format("{} triangles instead of {}; please report the input", done, wanted));
+  }
+  if (counting) counting->finish();
+  // What follows is the same for every mode and is not counted.
+  work.counting = nullptr;
+  counting.reset();
+}
+
+void Triangulator::Implementation::Call::finish_statistics() {
+  Statistics& statistics = work.statistics;
+  host::Runtime& runtime = owner.runtime;
+  statistics.undecided = runtime.read_one(work.undecided, 0);
+  statistics.device_bytes_peak = owner.held_bytes();
+  statistics.kernel_launches = runtime.launches();
+  statistics.host_waits = runtime.waits();
+  statistics.build_seconds = runtime.build_seconds();
+  for (const auto& [name, time] : runtime.kernel_times()) {
+    statistics.kernels.push_back({name, time.launches, time.seconds});
+  }
+  std::sort(statistics.kernels.begin(), statistics.kernels.end(),
+            [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
+  statistics.seconds = now() - begin;
+}
+
+void Triangulator::Implementation::check_request(std::size_t n, const Options& options) const {
+  if (options.hull == Hull::monotone_chain) {
+    throw Error(ErrorKind::usage, "monotone-chain hulls are computed by mode recursive only");
+  }
   if (n > capacity()) {
     throw Error(
         n > kMostPoints ? ErrorKind::input : ErrorKind::device,
@@ -119,97 +243,110 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
                     n, capacity(), runtime.device().name(), runtime.device().global_memory_size(),
                     runtime.device().max_memory_alloc_size(), kBytesPerPoint));
   }
+}
+
+Triangulation Triangulator::Implementation::triangulate(const double* coordinates,
+                                                        const std::vector<std::size_t>& offsets,
+                                                        const Options& options) {
+  using namespace flattened;
+  if (options.mode == Mode::recursive || options.mode == Mode::dwyer) {
+    return triangulate_on_host(coordinates, offsets, options);
+  }
+  check_offsets(offsets);
+  const std::size_t n = offsets.back();
+  const std::size_t sets = offsets.size() - 1;
+  check_request(n, options);
   Triangulation result;
   Statistics& statistics = result.statistics;
   statistics.device = runtime.device().name();
-  statistics.points = n;
-  result.representatives.resize(n);
   result.triangle_offsets.assign(sets + 1, 0);
   result.hull_offsets.assign(sets + 1, 0);
   if (n == 0) return result;
 
-  runtime.reset_accounts();
-  runtime.set_profiling(options.profile);
-  persistent.reserve(n * kPersistentBytesPerPoint);
-  even.reserve(n * kStateBytesPerPoint);
-  odd.reserve(n * kStateBytesPerPoint);
-  runtime.arena().reserve(n * kScratchBytesPerPoint);
-  double phase_begin = begin;
-  const auto end_phase = [&](const char* name) {
-    const double time = now();
-    statistics.phases.push_back({name, time - phase_begin});
-    phase_begin = time;
-  };
-  const auto report = [&](const char* stage, int level, double done) {
-    if (options.progress) options.progress(stage, level, done);
-  };
-
-  Arena::Scope persistent_scope(persistent);
-  Workspace work{runtime, persistent, &even, &odd, statistics};
-  work.broken = persistent.allocate<cl_int>(1);
-  work.list_length = persistent.allocate<cl_uint>(1);
-  work.undecided = persistent.allocate<cl_uint>(1);
-  work.largest = persistent.allocate<cl_int>(kMostLevels);
-  runtime.fill(work.largest, kMostLevels, cl_int{0});
-  runtime.fill(work.broken, 1, cl_int{0});
-  runtime.fill(work.undecided, 1, cl_uint{0});
-  report("sorting", -1, 0.0);
-  PointTable table = ingest(work, coordinates, offsets, result.representatives.data());
-  for (std::size_t i = 0; i < n; ++i)
-    statistics.duplicates += result.representatives[i] != static_cast<cl_int>(i);
-  end_phase("sort");
-
-  report("borders", -1, 0.05);
-  Level level, next;
-  RetiredRegions retired;
-  // The first regions are made in the even arena.
-  std::swap(work.state, work.next_state);
-  auto state_scope = std::make_unique<Arena::Scope>(*work.next_state);
-  const Borders borders = initial_borders(work, table, level, retired);
-  const std::size_t triangle_count = borders.triangles;
-  const auto triangles = persistent.allocate<cl_int>(3 * triangle_count);
-  std::size_t done = endgame(work, table, retired, triangles, 0);
-  end_phase("borders");
-
-  const std::size_t internal_points = level.points;
-  for (int depth = 0; level.regions > 0; ++depth) {
-    const double level_begin = now();
-    std::swap(work.state, work.next_state);
-    auto next_scope = std::make_unique<Arena::Scope>(*work.next_state);
-    {
-      Arena::Scope scope(work.scratch());
-      LevelStatistics level_statistics;
-      level_statistics.regions = level.regions;
-      level_statistics.internal_points = level.points;
-      level_statistics.corners = level.corners;
-      cut(work, table, level, depth, options.cut == Cut::alternate ? depth % 2 : -1);
-      const Paths paths = hulls(work, table, level, level_statistics);
-      level_statistics.path_vertices = paths.size;
-      next = Level{};
-      merge(work, table, level, paths, next, retired);
-      done += endgame(work, table, retired, triangles, done);
-      level_statistics.seconds = now() - level_begin;
-      statistics.levels.push_back(level_statistics);
+  Call call(*this, coordinates, offsets, options, statistics, result.representatives);
+  Workspace& work = call.work;
+  PointTable& table = call.table;
+  Recursion recursion(work, table, options, {&even, &odd});
+  const Borders borders = recursion.begin();
+  call.end_phase("borders");
+  if (options.mode == Mode::partition) {
+    finish_partition(call, recursion, borders, result);
+  } else {
+    if (options.mode == Mode::flattened) {
+      recursion.flattened();
+    } else {
+      recursion.recursive();
     }
-    level = next;
-    state_scope = std::move(next_scope);
-    report("levels", depth,
-           0.1 + 0.8 * (1.0 - static_cast<double>(level.points) /
-                                  static_cast<double>(std::max<std::size_t>(1, internal_points))));
+    call.end_levels(recursion.done(), borders.triangles);
+    call.end_phase("levels");
+    call.report("canonical form", 0.9);
+    write_result(call, recursion.triangles(), borders, result);
   }
-  state_scope.reset();
-  check_invariants(work);
-  std::vector<cl_int> largest(statistics.levels.size());
-  runtime.read(work.largest, 0, largest.size(), largest.data());
-  for (std::size_t l = 0; l < largest.size(); ++l)
-    statistics.levels[l].largest_region = static_cast<std::size_t>(largest[l]);
-  if (done != triangle_count) {
-    throw Error(ErrorKind::internal,
-                fmt::format("{} triangles instead of {}; please report the input", done, triangle_count));
-  }
-  end_phase("levels");
+  statistics.triangles = borders.triangles;
+  statistics.hull_vertices = borders.size;
+  call.finish_statistics();
+  return result;
+}
 
-  report("canonical form", -1, 0.9);
+// A few levels on the device, the rest and the canonical form on the host, where the triangles are then.
+void Triangulator::Implementation::finish_partition(Call& call, flattened::Recursion& recursion,
+                                                    const flattened::Borders& borders,
+                                                    Triangulation& result) {
+  using namespace flattened;
+  const Options& options = call.options;
+  recursion.flattened(partition_levels(call.table.input_count, options));
+  const recursive::PointSets sets = to_host(call.work, call.table, result.representatives);
+  std::vector<std::int32_t> triangles = recursion.read_triangles();
+  const recursive::RegionArrays regions = recursion.read_regions();
+  call.end_phase("partition");
+  call.report("regions", 0.4);
+  const std::vector<std::int32_t> solved =
+      recursive::solve_regions(sets.predicates, sets.points.data(), regions, options.threads);
+  triangles.insert(triangles.end(), solved.begin(), solved.end());
+  call.end_levels(triangles.size() / 3, borders.triangles);
+  call.end_phase("regions");
+  call.report("canonical form", 0.9);
+  Triangulation finished = recursive::finish(sets, std::move(triangles), {}, options);
+  finished.statistics = std::move(result.statistics);
+  result = std::move(finished);
+  call.end_phase("canonical form");
+}
+
+Partition Triangulator::Implementation::partition(const double* coordinates, std::size_t n, int levels,
+                                                  const Options& options) {
+  using namespace flattened;
+  if (levels < 0) throw Error(ErrorKind::usage, "a partition's number of levels cannot be negative");
+  check_request(n, options);
+  Partition result;
+  result.statistics.device = runtime.device().name();
+  if (n == 0) return result;
+  std::vector<std::int32_t> representatives;
+  Call call(*this, coordinates, {0, n}, options, result.statistics, representatives);
+  Recursion recursion(call.work, call.table, options, {&even, &odd});
+  const Borders borders = recursion.begin();
+  call.end_phase("borders");
+  recursion.flattened(std::min<int>(levels, kMostLevels));
+  check_invariants(call.work);
+  result.regions = to_input(call.work, call.table, recursion.read_regions());
+  const std::size_t rows = 3 * recursion.done();
+  const auto triangles = call.work.scratch().allocate<cl_int>(rows);
+  runtime.map("output", "map_ids", rows, recursion.triangles(), call.table.source, triangles);
+  result.triangles = read_all(call.work, triangles, rows);
+  call.end_phase("levels");
+  result.statistics.triangles = borders.triangles;
+  result.statistics.hull_vertices = borders.size;
+  call.finish_statistics();
+  return result;
+}
+
+void Triangulator::Implementation::write_result(Call& call, const Buffer<cl_int>& triangles,
+                                                const flattened::Borders& borders, Triangulation& result) {
+  using namespace flattened;
+  const std::size_t triangle_count = borders.triangles;
+  Workspace& work = call.work;
+  const PointTable& table = call.table;
+  const Options& options = call.options;
+  const std::size_t sets = table.sets;
   const std::size_t rows = 3 * triangle_count;
   {
     Arena::Scope scope(work.scratch());
@@ -236,9 +373,9 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
     match_edges(work, triangles, triangle_count, twins);
     canonicalize(work, table, triangles, triangle_count, twins);
     check_invariants(work);
-    end_phase("canonical form");
+    call.end_phase("canonical form");
 
-    report("output", -1, 0.95);
+    call.report("output", 0.95);
     const auto output = work.scratch().allocate<cl_int>(rows);
     const auto neighbors = work.scratch().allocate<cl_int>(options.neighbors ? rows : 0);
     runtime.map("output", "finish_rows", triangle_count, cl_int{options.neighbors}, triangles, twins,
@@ -255,22 +392,7 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
     runtime.read(hull, 0, borders.size, result.hull.data());
     result.hull_offsets = borders.hull_offsets;
   }
-  end_phase("output");
-
-  statistics.triangles = triangle_count;
-  statistics.hull_vertices = borders.size;
-  statistics.undecided = runtime.read_one(work.undecided, 0);
-  statistics.device_bytes_peak = held_bytes();
-  statistics.kernel_launches = runtime.launches();
-  statistics.host_waits = runtime.waits();
-  statistics.build_seconds = runtime.build_seconds();
-  for (const auto& [name, time] : runtime.kernel_times()) {
-    statistics.kernels.push_back({name, time.launches, time.seconds});
-  }
-  std::sort(statistics.kernels.begin(), statistics.kernels.end(),
-            [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
-  statistics.seconds = now() - begin;
-  return result;
+  call.end_phase("output");
 }
 
 Triangulator::Triangulator(const std::string& device)
@@ -293,13 +415,42 @@ Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n
 
 Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  try {
-    return implementation_->triangulate(coordinates, offsets, options);
-  } catch (const host::DeviceError& error) {
-    throw Error(ErrorKind::device, error.what());
-  } catch (const boost::compute::opencl_error& error) {
-    throw Error(ErrorKind::device, fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
+  return with_errors([&] { return implementation_->triangulate(coordinates, offsets, options); });
+}
+
+Partition Triangulator::partition(const double* coordinates, std::size_t n, int levels,
+                                  const Options& options) {
+  return with_errors([&] { return implementation_->partition(coordinates, n, levels, options); });
+}
+
+const char* to_string(Mode mode) noexcept {
+  switch (mode) {
+    case Mode::flattened:
+      return "flattened";
+    case Mode::recursive_device:
+      return "recursive-device";
+    case Mode::recursive:
+      return "recursive";
+    case Mode::partition:
+      return "partition";
+    case Mode::dwyer:
+      return "dwyer";
   }
+  return "";
+}
+
+const char* to_string(Hull hull) noexcept {
+  switch (hull) {
+    case Hull::prune:
+      return "prune";
+    case Hull::quickhull:
+      return "quickhull";
+    case Hull::balanced:
+      return "balanced";
+    case Hull::monotone_chain:
+      return "monotone-chain";
+  }
+  return "";
 }
 
 const char* version() noexcept { return FLAUNAY_VERSION; }

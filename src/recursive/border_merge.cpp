@@ -27,13 +27,13 @@ class PathVertex {
   Position position_of(const HullPoint& p) {
     if (next_ && p.id == next_->id) return Position::next;
     if (previous_ && p.id == previous_->id) return Position::previous;
-    if (next_ && is_less(next_->u(), p.u())) {
-      return turns_left(*next_, p) ? Position::left : Position::right;
-    }
-    if (previous_ && is_less(p.u(), previous_->u())) {
+    counter_.arithmetic(2);
+    if (next_ && next_->u() < p.u()) return turns_left(*next_, p) ? Position::left : Position::right;
+    if (previous_ && p.u() < previous_->u()) {
       return turns_left(*previous_, p) ? Position::right : Position::left;
     }
-    return is_less(p.s(), line_.q) ? Position::left : Position::right;
+    counter_.arithmetic();
+    return p.s() < line_.q ? Position::left : Position::right;
   }
 
   // Whether of two directions on one side of the path f comes first, counter-clockwise within that side.
@@ -52,10 +52,6 @@ class PathVertex {
   }
 
  private:
-  bool is_less(double a, double b) {
-    counter_.arithmetic();
-    return a < b;
-  }
   bool turns_left(const HullPoint& f, const HullPoint& g) {
     counter_.orientation();
     return predicates_.orient(vertex_.place, f.place, g.place) > 0;
@@ -101,12 +97,16 @@ SplitBorder merge_border(const Predicates& predicates, const std::vector<Point>&
                          const Border& border, const LowerHull& hull, const std::vector<char>& is_internal,
                          Counter& counter) {
   const Path& path = hull.path;
-  const auto placed = [&](std::int32_t id) { return HullPoint{id, line.place(points[id])}; };
+  const auto placed = [&](std::int32_t id) { return line.at(id, line.place(points[id])); };
   SplitBorder sides;
   for (std::size_t i = 0; i < border.size(); ++i) {
     const Corner& corner = border[i];
     const HullPoint vertex = placed(corner.vertex);
-    const std::size_t place = hull.corners[i] == Kept::no ? 0 : search_path(path, vertex.u(), counter);
+    std::size_t place = 0;
+    if (hull.corners[i] != Kept::no) {
+      place = search_path(path, vertex.u());
+      counter.arithmetic(search_comparisons(path.size()));
+    }
     if (path[place].id == vertex.id) {
       PathVertex around(predicates, line, path, place, counter);
       split_corner(around, placed(corner.before), vertex.id, placed(corner.after), sides);
@@ -120,8 +120,9 @@ SplitBorder merge_border(const Predicates& predicates, const std::vector<Point>&
     sides[kLeft].push_back({path[k - 1].id, path[k].id, path[k + 1].id});
     sides[kRight].push_back({path[k + 1].id, path[k].id, path[k - 1].id});
   }
-  counter.critical_path(reduce_depth(path.size()) + 2 * (2 + 8) + scan_depth(border.size()) +
-                        scan_depth(path.size()) + scan_depth(2));
+  // A corner takes three turns at most.
+  counter.critical_path(search_comparisons(path.size()) + 3 * (2 + kOrientOperations) +
+                        scan_depth(border.size()) + scan_depth(path.size()) + scan_depth(2));
   return sides;
 }
 

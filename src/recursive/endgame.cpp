@@ -1,7 +1,10 @@
 #include "recursive/endgame.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+
+#include "recursive/regions.hpp"
 
 namespace flaunay::recursive {
 namespace {
@@ -61,22 +64,32 @@ class Polygon {
   }
 
  private:
-  // The vertex left of the edge whose circle holds no other vertex left of it. No orientation is needed to
-  // know which are: the circle through a Delaunay edge and its apex is empty, so to the edge's right any
-  // circle through the edge and a vertex on its left holds nothing, and the sign that says "inside" of a
-  // circle through a vertex on the right says that what is to the left goes before it.
+  // The vertex left of the edge from `high` to `low` that sees it under the widest angle, which is the one
+  // whose circle holds no other.
   std::size_t apex_of(std::size_t low, std::size_t high) {
-    std::size_t apex = low + 1;
+    if (high - low == 2) return low + 1;
+    const Point a = places_[high], b = places_[low];
+    std::size_t apex = low;  // none
+    kernel::angle widest{};
     bool tied = false;
-    for (std::size_t v = low + 2; v < high; ++v) {
-      const int inside = circle(high, low, apex, v);
-      if (inside > 0 || (inside == 0 && orient(high, low, apex) <= 0)) {
+    for (std::size_t v = low + 1; v < high; ++v) {
+      const kernel::angle seen = kernel::angle_at(places_[v], a, b);
+      counter_.arithmetic(kDotOperations);
+      if (side(seen, high, low, v) <= 0) continue;
+      int wider = 1;
+      if (apex != low) {
+        counter_.arithmetic(kAngleOperations);
+        wider = predicates_.wider_angle(a, b, places_[v], seen, places_[apex], widest);
+      }
+      if (wider > 0) {
         apex = v;
+        widest = seen;
         tied = false;
-      } else if (inside == 0) {
-        tied |= orient(high, low, v) > 0;
+      } else if (wider == 0) {
+        tied = true;
       }
     }
+    if (apex == low) fail();
     return tied ? visible_apex(low, high, apex) : apex;
   }
 
@@ -85,13 +98,13 @@ class Polygon {
   std::size_t visible_apex(std::size_t low, std::size_t high, std::size_t any) {
     std::vector<std::size_t> on_circle{low};
     for (std::size_t v = low + 1; v < high; ++v) {
-      if (v == any || (circle(high, low, any, v) == 0 && orient(high, low, v) > 0)) on_circle.push_back(v);
+      if (v == any || (orient(high, low, v) > 0 && circle(high, low, any, v) == 0)) on_circle.push_back(v);
     }
     on_circle.push_back(high);
     for (std::size_t k = 1; k + 1 < on_circle.size(); ++k) {
       if (is_visible(low, high, on_circle[k], on_circle)) return on_circle[k];
     }
-    throw Error(ErrorKind::internal, "a region's border does not enclose it; please report the input");
+    fail();
   }
 
   bool is_visible(std::size_t low, std::size_t high, std::size_t v,
@@ -104,6 +117,16 @@ class Polygon {
     return true;
   }
 
+  [[noreturn]] static void fail() {
+    throw Error(ErrorKind::internal, "a region's border does not enclose it; please report the input");
+  }
+
+  // Of vertex v, which sees the edge from a to b.
+  int side(const kernel::angle& seen, std::size_t a, std::size_t b, std::size_t v) {
+    counter_.orientation();
+    const int sign = kernel::angle_side(seen, predicates_.bounds.orient);
+    return sign == UNDECIDED ? exact_orient(places_[a], places_[b], places_[v]) : sign;
+  }
   int orient(std::size_t a, std::size_t b, std::size_t c) {
     counter_.orientation();
     return predicates_.orient(places_[a], places_[b], places_[c]);
@@ -119,27 +142,47 @@ class Polygon {
   Counter& counter_;
 };
 
-void large_region_triangles(const Predicates& predicates, const std::vector<Point>& points,
-                            const Border& border, std::vector<std::int32_t>& triangles, Counter& counter) {
-  for (std::vector<std::int32_t>& cycle : cycles_of(border)) {
-    Polygon(predicates, points, std::move(cycle), counter).append_triangles(triangles);
+// All that dwyer() does, one after the other where it is so there.
+void add_dwyer(const Work& work, Counter& counter) {
+  const auto add = [&counter](const Work::Components& components) {
+    for (const OperationCounts& counts : components) counter.add(counts);
+  };
+  add(work.start);
+  for (const Work::Components& level : work.levels) add(level);
+}
+
+void large_region(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
+                  std::vector<std::int32_t>& triangles, Counter& counter) {
+  RegionArrays region;
+  region.point_offsets = {0, 0};
+  region.corner_offsets = {0, static_cast<std::int32_t>(border.size())};
+  for (const auto& [before, vertex, after] : border) {
+    region.corners.insert(region.corners.end(), {before, vertex, after});
   }
+  Work work;
+  try {
+    const std::vector<std::int32_t> inside = solve_region(predicates, points.data(), region, 0, &work);
+    triangles.insert(triangles.end(), inside.begin(), inside.end());
+  } catch (const Error& error) {
+    throw Error(ErrorKind::internal, std::string("a region: ") + error.what() + "; please report the input");
+  }
+  add_dwyer(work, counter);
 }
 
 }  // namespace
 
-void region_triangles(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
-                      std::vector<std::int32_t>& triangles, Counter& counter) {
+void end_game(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
+              std::vector<std::int32_t>& triangles, Counter& counter) {
   if (border.size() == 3) {
     triangles.insert(triangles.end(), {border[0].vertex, border[0].after, border[0].before});
   } else if (border.size() > kSmallRegion) {
-    large_region_triangles(predicates, points, border, triangles, counter);
+    large_region(predicates, points, border, triangles, counter);
   } else {
     for (std::vector<std::int32_t>& cycle : cycles_of(border)) {
       Polygon(predicates, points, std::move(cycle), counter).append_triangles(triangles);
     }
+    counter.sequential();
   }
-  counter.sequential();
 }
 
 }  // namespace flaunay::recursive

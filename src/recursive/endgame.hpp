@@ -13,9 +13,9 @@ namespace flaunay::recursive {
 constexpr std::size_t kSmallRegion = 48;
 
 /// Appends the triangles of a region, 3 ids each, counter-clockwise: of cocircular vertices any that fit
-/// together. Throws Error(internal) if the border is not made of closed cycles. O(k^2) for k corners at
-/// worst.
-void region_triangles(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
-                      std::vector<std::int32_t>& triangles, Counter& counter);
+/// together. Throws Error(internal) if the border is not made of closed cycles. O(k^2) for k corners of a
+/// small region at worst, else by dwyer() in O(k log k).
+void end_game(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
+              std::vector<std::int32_t>& triangles, Counter& counter);
 
 }  // namespace flaunay::recursive

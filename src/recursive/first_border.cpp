@@ -12,44 +12,45 @@ using Ids = std::vector<std::int32_t>;
 // Of the points from `first` to `last` of a planar frame, in the order of u, those on the lower hull and its
 // edges.
 std::vector<HullPoint> planar_hull(const Predicates& predicates, const HullPoints& points, Hull variant,
-                                   Counter& counter) {
+                                   OperationCounts& work) {
+  Counter counter;
   LevelStatistics ignored;
+  // The last vertex was found by a search.
+  counter.arithmetic(search_comparisons(points.internal.size()));
+  counter.critical_path(search_comparisons(points.internal.size()));
   const LowerHull hull = lower_hull(predicates, points, variant, counter, ignored);
-  return pick(points.internal,
-              Prune(predicates, points.line, hull.path, true, counter).sorted(points.internal));
+  Prune prune(predicates, points.line, hull.path, true, counter);
+  std::vector<HullPoint> on_hull = pick(points.internal, prune.run(points).internal);
+  add_beside(work, counter.counts());
+  return on_hull;
 }
 
 }  // namespace
 
 Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, Hull variant,
-                    Counter& counter) {
+                    OperationCounts& work) {
+  if (low == high) return {};
   const auto x_of = [&](std::int32_t id) { return sets.points[id].x; };
-  if (high - low < 3 || x_of(low) == x_of(high - 1)) return {};
   // Where the first column ends and the last one begins.
-  const auto comparing = [&counter](double a, double b) {
-    counter.arithmetic();
-    return a < b;
-  };
   const auto begin = sets.points.begin() + low, end = sets.points.begin() + high;
   const auto behind_first =
-      std::upper_bound(begin, end, x_of(low), [&](double x, Point p) { return comparing(x, p.x); });
-  const auto last =
-      std::lower_bound(begin, end, x_of(high - 1), [&](Point p, double x) { return comparing(p.x, x); });
+      std::upper_bound(begin, end, x_of(low), [](double x, Point p) { return x < p.x; });
+  const auto last = std::lower_bound(begin, end, x_of(high - 1), [](Point p, double x) { return p.x < x; });
   const auto last_of_first = low + static_cast<std::int32_t>(behind_first - begin) - 1;
   const auto first_of_last = low + static_cast<std::int32_t>(last - begin);
 
   const Line below{AXIS_PLANAR_LOWER, sets.points[low].y};
   const Line above{AXIS_PLANAR_UPPER, -sets.points[high - 1].y};
   const auto placed = [&](const Line& line, std::int32_t id) {
-    return HullPoint{id, line.place(sets.points[id])};
+    return line.at(id, line.place(sets.points[id]));
   };
   HullPoints lower{below, placed(below, low), placed(below, first_of_last), {}, {}};
   HullPoints upper{above, placed(above, high - 1), placed(above, last_of_first), {}, {}};
   for (std::int32_t id = low; id < high; ++id) lower.internal.push_back(placed(below, id));
   for (std::int32_t id = high; id-- > low;) upper.internal.push_back(placed(above, id));
 
-  const std::vector<HullPoint> there = planar_hull(sets.predicates, lower, variant, counter);
-  const std::vector<HullPoint> back = planar_hull(sets.predicates, upper, variant, counter);
+  const std::vector<HullPoint> there = planar_hull(sets.predicates, lower, variant, work);
+  const std::vector<HullPoint> back = planar_hull(sets.predicates, upper, variant, work);
   const auto count = static_cast<std::size_t>(high - low);
   if (there.size() == count && back.size() == count) return {};
   // The first and the last point are on both.

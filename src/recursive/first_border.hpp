@@ -9,8 +9,8 @@ namespace flaunay::recursive {
 
 /// The corners of the convex hull of the points with ids low..high-1, those on its edges included,
 /// counter-clockwise from the smallest id; none for points on one line. By the planar hulls of the given
-/// variant.
+/// variant, the lower and the upper one side by side. work: what they take is added.
 Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, Hull variant,
-                    Counter& counter);
+                    OperationCounts& work);
 
 }  // namespace flaunay::recursive

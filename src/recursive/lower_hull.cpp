@@ -1,62 +1,58 @@
 #include "recursive/lower_hull.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "recursive/quickhull.hpp"
+#include "recursive/sort.hpp"
 
 namespace flaunay::recursive {
 namespace {
 
+// What every variant does first; corners are projected when they are looked at.
+void count_projections(const std::vector<HullPoint>& points, Counter& counter) {
+  counter.arithmetic(kProjectOperations * points.size());
+}
+
 LowerHull by_prune(const Predicates& predicates, const HullPoints& points, Counter& counter,
                    LevelStatistics& statistics) {
-  const Path chords =
-      chord_path(predicates, points.line, points.first, points.last, points.internal, counter, statistics);
-  Prune prune(predicates, points.line, chords, false, counter);
-  std::vector<HullPoint> survivors = pick(points.internal, prune.sorted(points.internal));
-  LowerHull hull;
-  hull.corners = prune.unsorted(points.corners);
-  const std::vector<HullPoint> border = pick(points.corners, hull.corners);
-  survivors.insert(survivors.end(), border.begin(), border.end());
-  statistics.survivors += survivors.size();
-  int rounds = 0;
-  Quickhull quickhull(predicates, points.line, counter);
-  hull.path = quickhull.run(points.first, points.last, survivors, kMostQuickhullRounds, rounds);
-  quickhull.strict(hull.path);
-  statistics.hull_rounds = std::max(statistics.hull_rounds, rounds);
-  return hull;
+  PrunedHull hull = pruned_hull(predicates, points, counter, statistics);
+  statistics.survivors = hull.survivors;
+  statistics.hull_rounds = hull.rounds;
+  return {std::move(hull.path), std::move(hull.corners)};
 }
 
 Path by_quickhull(const Predicates& predicates, const HullPoints& points, std::size_t balanced_from,
                   Counter& counter, LevelStatistics& statistics) {
   std::vector<HullPoint> all = points.internal;
   all.insert(all.end(), points.corners.begin(), points.corners.end());
-  int rounds = 0;
-  Quickhull quickhull(predicates, points.line, counter);
-  Path path = quickhull.run(points.first, points.last, all, balanced_from, rounds);
+  statistics.survivors = all.size();
+  count_projections(points.corners, counter);
+  counter.arithmetic(2 * kProjectOperations);
+  Quickhull quickhull(predicates, points.line, balanced_from, counter);
+  Path path = quickhull.run(points.first, points.last, all, statistics.hull_rounds);
   quickhull.strict(path);
-  statistics.hull_rounds = std::max(statistics.hull_rounds, rounds);
   return path;
 }
 
 // Andrew's scan (1979) from left to right, of points ascending in u.
 Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, Counter& counter) {
-  const auto before = [&counter](const HullPoint& a, const HullPoint& b) {
-    counter.arithmetic();
-    return a.u() < b.u();
-  };
+  const auto before = [](const HullPoint& a, const HullPoint& b) { return a.u() < b.u(); };
   std::vector<HullPoint> internal = points.internal;
   if (!internal.empty() && internal.front().u() > internal.back().u()) {
     std::reverse(internal.begin(), internal.end());
   }
   std::vector<HullPoint> corners = points.corners;
-  std::sort(corners.begin(), corners.end(), before);
+  std::stable_sort(corners.begin(), corners.end(), before);
   std::vector<HullPoint> all(internal.size() + corners.size());
   std::merge(internal.begin(), internal.end(), corners.begin(), corners.end(), all.begin(), before);
+  count_projections(corners, counter);
+  counter.arithmetic(comparisons_to_sort(corners.size()) + all.size());
 
   const Line& line = points.line;
   const auto is_below = [&](const HullPoint& a, const HullPoint& b, const HullPoint& p) {
     counter.depth();
-    return predicates.depth(a.place, b.place, p.place, line.q, line.planar()).sign > 0;
+    return line.depth(predicates, a, b, p).sign > 0;
   };
   Path path(1, points.first);
   for (const HullPoint& p : all) {
@@ -64,8 +60,8 @@ Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, C
     if (p.u() == path.back().u()) {
       // Of one column only the lowest counts.
       if (p.id == path.back().id) continue;
-      counter.arithmetic(4);
-      if (!line.is_lower(p.place, path.back().place)) continue;
+      counter.arithmetic(kLowerOperations);
+      if (!line.is_lower(p, path.back())) continue;
       path.pop_back();
     }
     while (path.size() > 1 && !is_below(path[path.size() - 2], p, path.back())) path.pop_back();
@@ -75,19 +71,32 @@ Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, C
   return path;
 }
 
+// Both are of one level.
+void accumulate(LevelStatistics& level, const LevelStatistics& region) {
+  level.candidates += region.candidates;
+  level.survivors += region.survivors;
+  level.candidate_rounds = std::max(level.candidate_rounds, region.candidate_rounds);
+  level.hull_rounds = std::max(level.hull_rounds, region.hull_rounds);
+}
+
 }  // namespace
 
 LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hull variant, Counter& counter,
                      LevelStatistics& statistics) {
-  if (variant == Hull::prune) return by_prune(predicates, points, counter, statistics);
+  LevelStatistics own;
   LowerHull hull;
-  hull.corners.assign(points.corners.size(), Kept::yes);
-  if (variant == Hull::monotone_chain) {
-    hull.path = by_monotone_chain(predicates, points, counter);
+  count_projections(points.internal, counter);
+  counter.critical_path(kProjectOperations);
+  if (variant == Hull::prune) {
+    hull = by_prune(predicates, points, counter, own);
   } else {
+    hull.corners.assign(points.corners.size(), Kept::yes);
     const std::size_t balanced_from = variant == Hull::balanced ? kRoundsBeforeBalance : kMostQuickhullRounds;
-    hull.path = by_quickhull(predicates, points, balanced_from, counter, statistics);
+    hull.path = variant == Hull::monotone_chain
+                    ? by_monotone_chain(predicates, points, counter)
+                    : by_quickhull(predicates, points, balanced_from, counter, own);
   }
+  accumulate(statistics, own);
   return hull;
 }
 

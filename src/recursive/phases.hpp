@@ -13,7 +13,7 @@ class Phases {
   explicit Phases(const Options& options) : options_(options) {}
 
   void progress(const char* stage, double done) const {
-    if (options_.progress) options_.progress(stage, 0, done);
+    if (options_.progress) options_.progress(stage, -1, done);
   }
   void end(const char* name) {
     const Clock::time_point now = Clock::now();

@@ -45,23 +45,26 @@ struct Depth {
 struct Predicates {
   Bounds bounds{};
 
-  /// Of p below the chord from a to b, all in the frame (s, u) of the line s = q, a's u below b's; with
+  /// Of p below the chord from a to b, all as projected for one line, a's u no greater than b's; with
   /// `planar` of the plane itself. Positive if p lies strictly below. See kernels/shared/hull_height.h.
-  Depth depth_filtered(Point a, Point b, Point p, double q, bool planar) const {
-    const auto [depth, magnitude] = kernel::hull_depth(a, b, p, q, planar);
+  Depth depth_filtered(Point a, Point b, Point p, bool planar) const {
+    const auto [depth, magnitude] = kernel::hull_depth(a, b, p, planar);
     const double error = bounds.hull * magnitude;
     return {depth, depth > error ? 1 : depth < -error ? -1 : bounds.hull == 0 ? 0 : UNDECIDED};
-  }
-  Depth depth(Point a, Point b, Point p, double q, bool planar) const {
-    Depth depth = depth_filtered(a, b, p, q, planar);
-    if (depth.sign == UNDECIDED) depth.sign = kernel::hull_depth_sign(a, b, p, q, planar);
-    return depth;
   }
 
   /// 1 if a, b, c turn left, -1 right, 0 straight.
   int orient(Point a, Point b, Point c) const {
     const int sign = kernel::orient_filtered(a, b, c, bounds.orient);
     return sign == UNDECIDED ? exact_orient(a, b, c) : sign;
+  }
+  /// 1 if a point left of the edge from a to b, which sees it as `seen`, sees it under a wider angle than
+  /// another, which sees it as `other`: it then lies inside the circle through the edge and that one. -1
+  /// outside, 0 on it.
+  int wider_angle(Point a, Point b, Point p, const kernel::angle& seen, Point other_point,
+                  const kernel::angle& other) const {
+    const int sign = kernel::angle_compared(seen, other, bounds.circle == 0 ? 0 : ANGLE_BOUND);
+    return sign == UNDECIDED ? exact_circle(a, b, other_point, p) : sign;
   }
   /// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
   int circle(Point a, Point b, Point c, Point d) const {

@@ -1,5 +1,6 @@
 #include "recursive/prune.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,25 +11,50 @@ namespace {
 
 // Candidates from which on it pays to prune them by candidates of their own.
 constexpr std::size_t kManyCandidates = 256;
+// One band: see chord_bands in kernels/prune.cl.
+constexpr std::uint64_t kBandOperations = 6;
 
 // Of each bucket the point nearest to the line.
-std::vector<HullPoint> candidates_of(const Line& line, const std::vector<HullPoint>& points,
-                                     Counter& counter) {
+std::vector<HullPoint> candidates_of(const std::vector<HullPoint>& points, Counter& counter) {
   std::vector<HullPoint> candidates;
-  double best = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance = line.planar() ? points[i].s() : std::fabs(points[i].s() - line.q);
     if (i % kBucket == 0) {
       candidates.push_back(points[i]);
-      best = distance;
-    } else if (distance < best) {
+    } else if (points[i].height() < candidates.back().height()) {
       candidates.back() = points[i];
-      best = distance;
     }
   }
-  counter.arithmetic((line.planar() ? 1 : 2) * points.size());
-  counter.critical_path(2 + reduce_depth(kBucket) + scan_depth(points.size()));
+  counter.arithmetic(points.size());
+  counter.critical_path(reduce_depth(kBucket) + scan_depth(points.size()));
   return candidates;
+}
+
+// A path over the internal points, good enough to prune by.
+Path chord_path(const Predicates& predicates, const HullPoints& points, Counter& counter,
+                LevelStatistics& statistics) {
+  HullPoints thin{points.line, points.first, points.last, candidates_of(points.internal, counter), {}};
+  counter.arithmetic(2 * kProjectOperations);
+  statistics.candidates += thin.internal.size();
+  if (thin.internal.size() > kManyCandidates) {
+    PrunedHull hull = pruned_hull(predicates, thin, counter, statistics);
+    statistics.candidate_rounds += hull.rounds;
+    return std::move(hull.path);
+  }
+  int rounds = 0;
+  Quickhull quickhull(predicates, points.line, kMostQuickhullRounds, counter);
+  Path path = quickhull.run(points.first, points.last, thin.internal, rounds);
+  statistics.candidate_rounds += rounds;
+  quickhull.strict(path);
+  return path;
+}
+
+// Adds what is kept to the chords that it is below.
+void group(const std::vector<HullPoint>& points, const std::vector<Held>& held, BelowChords& below) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (held[i].kept != Kept::yes) continue;
+    std::vector<Below>& segment = below[held[i].chord];
+    segment.push_back({points[i], held[i].depth, segment.size()});
+  }
 }
 
 }  // namespace
@@ -44,111 +70,122 @@ void Prune::make_bands() {
   constexpr double kSlack = 1 + 0x1p-20;
   bands_.assign(path_.size(), std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k + 1 < path_.size(); ++k) {
-    if (line_.planar()) {
-      bands_[k] = std::fmax(path_[k].s(), path_[k + 1].s());
-    } else {
-      const double across =
-          std::fmax(std::fabs(path_[k].s() - line_.q), std::fabs(path_[k + 1].s() - line_.q));
-      const double along = path_[k + 1].u() - path_[k].u();
-      bands_[k] = kSlack * (across * across + 0.25 * along * along);
-    }
+    bands_[k] = std::fmax(path_[k].height(), path_[k + 1].height());
+    if (line_.planar()) continue;
+    const double along = path_[k + 1].u() - path_[k].u();
+    bands_[k] = kSlack * (bands_[k] + 0.25 * along * along);
   }
-  const std::uint64_t operations = line_.planar() ? 1 : 9;
-  counter_.arithmetic(operations * (path_.size() - 1));
-  counter_.critical_path(operations);
+  counter_.arithmetic(kBandOperations * (path_.size() - 1));
+  counter_.critical_path(kBandOperations);
 }
 
 bool Prune::is_above_band(const HullPoint& p, std::size_t low) {
-  if (line_.planar()) {
-    counter_.arithmetic();
-    return p.s() > bands_[low];
-  }
-  counter_.arithmetic(3);
-  return (p.s() - line_.q) * (p.s() - line_.q) > bands_[low];
+  counter_.arithmetic();
+  return p.height() > bands_[low];
 }
 
-std::size_t search_path(const Path& path, double u, Counter& counter) {
+std::size_t search_path(const Path& path, double u) {
   std::size_t low = 0, high = path.size();
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
-    counter.arithmetic();
     (path[middle].u() <= u ? low : high) = middle;
   }
   return low;
 }
 
-// p against the chord that begins with vertex `low`.
-Kept Prune::held_against(const HullPoint& p, std::size_t low) {
+// p against the chord that begins with vertex `low`. Below it in the column of the last vertex is below the
+// chord that ends there. What is lower than the path's vertex of its u is a vertex before that: the first
+// round must take it, as against later chords from that vertex its mirror image in the line would not be
+// below.
+Held Prune::held_against(const HullPoint& p, std::size_t low) {
   const HullPoint& v = path_[low];
-  const bool is_last = low + 1 == path_.size();
+  const std::size_t last = path_.size() - 1;
   counter_.arithmetic();
   if (v.u() == p.u()) {
-    if (p.id == v.id) return keep_on_ || (low != 0 && !is_last) ? Kept::yes : Kept::end;
-    if (keep_on_) return is_last ? Kept::yes : Kept::no;
-    counter_.arithmetic(4);
-    return line_.is_lower(p.place, v.place) ? Kept::yes : Kept::no;
+    if (p.id == v.id) return {keep_on_ ? Kept::yes : Kept::on_path};
+    if (keep_on_) return {low == last ? Kept::yes : Kept::no};
+    counter_.arithmetic(kLowerOperations);
+    if (!line_.is_lower(p, v)) return {};
+    return {Kept::yes, std::min(low, last - 1), std::numeric_limits<double>::infinity()};
   }
   counter_.depth();
-  const int sign = predicates_.depth(v.place, path_[low + 1].place, p.place, line_.q, line_.planar()).sign;
-  return sign > 0 || (keep_on_ && sign == 0) ? Kept::yes : Kept::no;
+  const Depth depth = line_.depth(predicates_, path_[low], path_[low + 1], p);
+  if (depth.sign < 0 || (depth.sign == 0 && !keep_on_)) return {};
+  return {Kept::yes, low, depth.value};
 }
 
-std::vector<Kept> Prune::sorted(const std::vector<HullPoint>& points) {
-  std::vector<Kept> kept(points.size(), Kept::no);
+// Side by side, each point by a search of its own where its bucket is under several chords.
+Pruned Prune::run(const HullPoints& points) {
+  Pruned pruned{sorted(points.internal), unsorted(points.corners)};
+  counter_.critical_path(kProjectOperations + 2 + 2 * search_comparisons(path_.size()) + 1 + 1 +
+                         kLowerOperations + kDepthOperations +
+                         scan_depth(points.internal.size() + points.corners.size()));
+  return pruned;
+}
+
+std::vector<Held> Prune::sorted(const std::vector<HullPoint>& points) {
+  std::vector<Held> held(points.size());
   for (std::size_t begin = 0; begin < points.size(); begin += kBucket) {
     const std::size_t end = std::min(points.size(), begin + kBucket);
-    std::size_t low = search_path(path_, points[begin].u(), counter_);
-    const std::size_t last_low = end - begin > 1 ? walk(low, points[end - 1].u()) : low;
+    const auto [least, greatest] = std::minmax({points[begin].u(), points[end - 1].u()});
+    std::size_t low = search_path(path_, least);
+    const bool one_chord = low + 1 == path_.size() || path_[low + 1].u() > greatest;
+    counter_.arithmetic(2 + search_comparisons(path_.size()));
     for (std::size_t i = begin; i < end; ++i) {
-      if (low != last_low) low = walk(low, points[i].u());
-      if (!is_above_band(points[i], low)) kept[i] = held_against(points[i], low);
+      if (!one_chord) low = walk(low, points[i].u());
+      if (!is_above_band(points[i], low)) held[i] = held_against(points[i], low);
     }
   }
-  counter_.critical_path(2 * reduce_depth(path_.size()) + 3 + 1 + 18 + scan_depth(points.size()));
-  return kept;
+  return held;
 }
 
-std::vector<Kept> Prune::unsorted(const std::vector<HullPoint>& points) {
-  std::vector<Kept> kept(points.size(), Kept::no);
+std::vector<Held> Prune::unsorted(const std::vector<HullPoint>& points) {
+  std::vector<Held> held(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::size_t low = search_path(path_, points[i].u(), counter_);
-    if (!is_above_band(points[i], low)) kept[i] = held_against(points[i], low);
+    const std::size_t low = search_path(path_, points[i].u());
+    counter_.arithmetic(kProjectOperations + search_comparisons(path_.size()));
+    if (!is_above_band(points[i], low)) held[i] = held_against(points[i], low);
   }
-  return kept;
+  return held;
 }
 
 // From a vertex to the last one with u no greater than the given one.
 std::size_t Prune::walk(std::size_t low, double u) {
-  const auto compared = [this](bool result) {
-    counter_.arithmetic();
-    return result;
-  };
-  while (low + 1 < path_.size() && compared(path_[low + 1].u() <= u)) ++low;
-  while (low > 0 && compared(path_[low].u() > u)) --low;
+  const std::size_t from = low;
+  while (low + 1 < path_.size() && path_[low + 1].u() <= u) ++low;
+  while (low > 0 && path_[low].u() > u) --low;
+  counter_.arithmetic(2 + (low > from ? low - from : from - low));
   return low;
 }
 
-std::vector<HullPoint> pick(const std::vector<HullPoint>& points, const std::vector<Kept>& kept) {
+std::vector<HullPoint> pick(const std::vector<HullPoint>& points, const std::vector<Held>& held) {
   std::vector<HullPoint> picked;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (kept[i] == Kept::yes) picked.push_back(points[i]);
+    if (held[i].kept == Kept::yes) picked.push_back(points[i]);
   }
   return picked;
 }
 
-Path chord_path(const Predicates& predicates, const Line& line, const HullPoint& first, const HullPoint& last,
-                const std::vector<HullPoint>& points, Counter& counter, LevelStatistics& statistics) {
-  std::vector<HullPoint> candidates = candidates_of(line, points, counter);
-  statistics.candidates += candidates.size();
-  if (candidates.size() > kManyCandidates) {
-    const Path path = chord_path(predicates, line, first, last, candidates, counter, statistics);
-    candidates = pick(candidates, Prune(predicates, line, path, false, counter).sorted(candidates));
-  }
-  int rounds = 0;
-  const Path path =
-      Quickhull(predicates, line, counter).run(first, last, candidates, kMostQuickhullRounds, rounds);
-  statistics.candidate_rounds = std::max(statistics.candidate_rounds, rounds);
-  return path;
+PrunedHull pruned_hull(const Predicates& predicates, const HullPoints& points, Counter& counter,
+                       LevelStatistics& statistics) {
+  const Path chords = chord_path(predicates, points, counter, statistics);
+  const auto [internal, corners] = Prune(predicates, points.line, chords, false, counter).run(points);
+  BelowChords below(chords.size());
+  group(points.internal, internal, below);
+  group(points.corners, corners, below);
+
+  PrunedHull hull;
+  for (const Held& held : corners) hull.corners.push_back(held.kept);
+  for (const std::vector<Below>& segment : below) hull.survivors += segment.size();
+  // Corners that are kept are projected once more.
+  counter.arithmetic(kProjectOperations * static_cast<std::uint64_t>(std::count(
+                                              hull.corners.begin(), hull.corners.end(), Kept::yes)));
+  counter.critical_path(reduce_depth(chords.size()) * scan_depth(hull.survivors));
+
+  Quickhull quickhull(predicates, points.line, kMostQuickhullRounds, counter);
+  hull.path = quickhull.go_on(chords, std::move(below), hull.rounds);
+  quickhull.strict(hull.path);
+  return hull;
 }
 
 }  // namespace flaunay::recursive

@@ -2,17 +2,13 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace flaunay::recursive {
-
-struct Quickhull::Below {
-  HullPoint point;
-  double rank;           // the greatest becomes a vertex
-  std::size_t position;  // in the segment, of all of its points
-  bool dropped = false;
-};
-
 namespace {
+
+// Dropping can lay bare one vertex at a time; after so many rounds quickhull sorts out what is left.
+constexpr int kCleanUpRounds = 8;
 
 // The finaliser of SplitMix64 (Steele, Lea and Flood, 2014), on the bits of u.
 std::uint64_t scramble(double u) {
@@ -24,88 +20,108 @@ std::uint64_t scramble(double u) {
   return z ^ (z >> 31);
 }
 
-// Calls use(p, q) for every pair of points in positions 2k and 2k + 1, both below the chord, p before q in u.
-// Pairs of equal u are none: the lower one is a rival of the other, and says nothing of what lies between two
-// vertices.
+// Whether u value p comes before q in a random order.
+bool comes_first(double p, double q) {
+  const std::uint64_t hash_p = scramble(p), hash_q = scramble(q);
+  return hash_p != hash_q ? hash_p < hash_q : p < q;
+}
+
+// Calls use(p, q) for every pair of points in positions 2k and 2k + 1, both below the chord.
 template <typename Belows, typename Use>
 void for_each_pair(Belows& below, const Use& use) {
   for (std::size_t k = 0; k + 1 < below.size(); ++k) {
     auto& p = below[k];
     auto& q = below[k + 1];
-    if (p.position % 2 != 0 || q.position != p.position + 1 || p.point.u() == q.point.u()) continue;
-    if (p.point.u() < q.point.u()) {
-      use(p, q);
-    } else {
-      use(q, p);
-    }
+    if (p.position % 2 == 0 && q.position == p.position + 1) use(p, q);
   }
 }
 
 }  // namespace
 
 Path Quickhull::run(const HullPoint& first, const HullPoint& last, const std::vector<HullPoint>& points,
-                    std::size_t balanced_from, int& rounds) {
-  balanced_from_ = balanced_from;
-  round_sizes_.clear();
+                    int& rounds) {
   path_.assign(1, first);
   extend(first, last, points, 0);
   path_.push_back(last);
+  return take_path(false, rounds);
+}
+
+Path Quickhull::go_on(const Path& path, BelowChords below, int& rounds) {
+  for (std::size_t v = 0; v < path.size(); ++v) {
+    path_.push_back(path[v]);
+    if (below[v].empty()) continue;
+    const std::size_t points = below[v].size();
+    note_segment(points, 0);
+    split(path[v], path[v + 1], std::move(below[v]), points, 0);
+  }
+  return take_path(true, rounds);
+}
+
+// Hands out the path that is done, with the critical path of the rounds that it took.
+Path Quickhull::take_path(bool first_is_known, int& rounds) {
   for (std::size_t round = 0; round < round_sizes_.size(); ++round) {
     const std::size_t m = round_sizes_[round];
-    counter_.critical_path(18 + reduce_depth(m) + 2 + scan_depth(m));
-    if (round >= balanced_from_) counter_.critical_path(3 + reduce_depth(m) + 3 + 18);
+    const bool is_known = first_is_known && round == 0;
+    counter_.critical_path((is_known ? 0 : kDepthOperations) + reduce_depth(m) + 2 + scan_depth(m));
+    if (round >= balanced_from_) counter_.critical_path(6 + reduce_depth(m) + 2 + kDepthOperations);
   }
   rounds = static_cast<int>(round_sizes_.size());
-  return std::move(path_);
+  round_sizes_.clear();
+  return std::exchange(path_, {});
+}
+
+void Quickhull::note_segment(std::size_t points, std::size_t round) {
+  if (round == round_sizes_.size()) round_sizes_.push_back(0);
+  round_sizes_[round] += points;
 }
 
 // Appends what lies between a and b.
 void Quickhull::extend(const HullPoint& a, const HullPoint& b, const std::vector<HullPoint>& points,
                        std::size_t round) {
   if (points.empty()) return;
-  if (round == round_sizes_.size()) round_sizes_.push_back(0);
-  round_sizes_[round] += points.size();
-
+  note_segment(points.size(), round);
   std::vector<Below> below = points_below(a, b, points);
-  if (below.empty()) return;
-  if (round >= balanced_from_) tilt(a.u(), below);
+  if (!below.empty()) split(a, b, std::move(below), points.size(), round);
+}
+
+// The same, with what is below the chord, of a segment of so many points.
+void Quickhull::split(const HullPoint& a, const HullPoint& b, std::vector<Below> below, std::size_t points,
+                      std::size_t round) {
+  if (round >= balanced_from_) tilt(a.u(), points, below);
   const HullPoint e = deepest(below);
   if (round >= balanced_from_) drop_hidden(e, below);
 
   // Points that share u with the new vertex are above it, and go.
   std::vector<HullPoint> left, right;
-  for (const Below& b_k : below) {
-    if (b_k.dropped) continue;
-    if (b_k.point.u() < e.u()) left.push_back(b_k.point);
-    if (b_k.point.u() > e.u()) right.push_back(b_k.point);
+  for (const Below& p : below) {
+    if (p.dropped) continue;
+    counter_.arithmetic(2);
+    if (p.point.u() < e.u()) left.push_back(p.point);
+    if (p.point.u() > e.u()) right.push_back(p.point);
   }
-  counter_.arithmetic(2 * below.size());
   extend(a, e, left, round + 1);
   path_.push_back(e);
   extend(e, b, right, round + 1);
 }
 
-std::vector<Quickhull::Below> Quickhull::points_below(const HullPoint& a, const HullPoint& b,
-                                                      const std::vector<HullPoint>& points) {
+std::vector<Below> Quickhull::points_below(const HullPoint& a, const HullPoint& b,
+                                           const std::vector<HullPoint>& points) {
   std::vector<Below> below;
   for (std::size_t i = 0; i < points.size(); ++i) {
     counter_.depth();
-    if (points[i].id == a.id || points[i].id == b.id) continue;
-    const Depth depth = predicates_.depth(a.place, b.place, points[i].place, line_.q, line_.planar());
+    const Depth depth = line_.depth(predicates_, a, b, points[i]);
     if (depth.sign > 0) below.push_back({points[i], depth.value, i});
   }
   return below;
 }
 
-// Of equal rank the one of the smaller hash, so that flat chords split evenly; of equal u, the lower one, so
-// that what else shares that u can be dropped.
+// Of equal rank the one that is first at random by u, so that flat chords split evenly; of equal u, the lower
+// one, so that what else shares that u can be dropped.
 HullPoint Quickhull::deepest(const std::vector<Below>& below) {
   const auto is_deeper = [this](const Below& a, const Below& b) {
     if (a.rank != b.rank) return a.rank > b.rank;
-    const double u = a.point.u(), v = b.point.u();
-    if (u == v) return a.point.id != b.point.id && line_.is_lower(a.point.place, b.point.place);
-    const std::uint64_t hash_u = scramble(u), hash_v = scramble(v);
-    return hash_u != hash_v ? hash_u < hash_v : u < v;
+    if (a.point.u() != b.point.u()) return comes_first(a.point.u(), b.point.u());
+    return a.point.id != b.point.id && line_.is_lower(a.point, b.point);
   };
   const Below* best = &below[0];
   for (const Below& other : below) {
@@ -116,21 +132,21 @@ HullPoint Quickhull::deepest(const std::vector<Below>& below) {
 }
 
 // Ranks points by their depth below a line that is parallel to a random pair: the vertex there leaves on one
-// side at least one point of half of the pairs, whichever they are (Bhattacharya and Sen 1997).
-void Quickhull::tilt(double origin, std::vector<Below>& below) {
-  double slope = 0;
-  std::uint64_t least = 0;
-  bool found = false;
+// side at least one point of half of the pairs, whichever they are (Bhattacharya and Sen 1997). A pair of
+// equal u has no slope.
+void Quickhull::tilt(double origin, std::size_t points, std::vector<Below>& below) {
+  const Below* first = nullptr;
+  const Below* second = nullptr;
   for_each_pair(below, [&](const Below& p, const Below& q) {
-    counter_.arithmetic(4);
-    const std::uint64_t hash = scramble((p.position < q.position ? p : q).point.u());
-    if (found && hash >= least) return;
-    found = true;
-    least = hash;
-    slope = (q.rank - p.rank) / (q.point.u() - p.point.u());
+    if (p.point.u() == q.point.u()) return;
+    if (first) counter_.arithmetic();
+    if (first && !comes_first(p.point.u(), first->point.u())) return;
+    first = &p;
+    second = &q;
   });
-  if (!found) return;
-  counter_.arithmetic(3 * below.size());
+  if (!first) return;
+  counter_.arithmetic(6 * points);
+  const double slope = (second->rank - first->rank) / (second->point.u() - first->point.u());
   for (Below& b : below) {
     const double tilted = b.rank - slope * (b.point.u() - origin);
     if (std::isfinite(tilted)) b.rank = tilted;
@@ -140,32 +156,59 @@ void Quickhull::tilt(double origin, std::vector<Below>& below) {
 // In a pair on one side of e, the point nearer to e is no vertex if it is not below the chord of the other
 // and e.
 void Quickhull::drop_hidden(const HullPoint& e, std::vector<Below>& below) {
-  for_each_pair(below, [&](Below& p, Below& q) {
+  for_each_pair(below, [&](Below& one, Below& two) {
+    const bool swapped = one.point.u() > two.point.u();
+    Below& p = swapped ? two : one;
+    Below& q = swapped ? one : two;
     const bool left = q.point.u() < e.u();
-    if (!left && !(p.point.u() > e.u())) return;
+    counter_.arithmetic(2);
+    if (!(p.point.u() < q.point.u()) || !(left || p.point.u() > e.u())) return;
     counter_.depth();
-    const Depth depth =
-        left ? predicates_.depth_filtered(p.point.place, e.place, q.point.place, line_.q, line_.planar())
-             : predicates_.depth_filtered(e.place, q.point.place, p.point.place, line_.q, line_.planar());
+    const Point &a = p.point.projection, &b = q.point.projection, &middle = e.projection;
+    const Depth depth = left ? predicates_.depth_filtered(a, middle, b, line_.planar())
+                             : predicates_.depth_filtered(middle, b, a, line_.planar());
     if (depth.sign <= 0) (left ? q : p).dropped = true;
   });
 }
 
+bool Quickhull::is_strict(const HullPoint& before, const HullPoint& p, const HullPoint& after) {
+  counter_.arithmetic(2);
+  if (before.u() == p.u() || after.u() == p.u()) {
+    counter_.arithmetic(kLowerOperations);
+    return line_.is_lower(p, before.u() == p.u() ? before : after);
+  }
+  counter_.depth();
+  return line_.depth(predicates_, before, after, p).sign > 0;
+}
+
+// What has kept its neighbours since it was looked at needs no second look.
 void Quickhull::strict(Path& path) {
-  std::size_t before;
-  do {
-    before = path.size();
-    Path kept(1, path.front());
-    for (std::size_t k = 1; k + 1 < path.size(); ++k) {
-      counter_.depth();
-      const Depth depth =
-          predicates_.depth(path[k - 1].place, path[k + 1].place, path[k].place, line_.q, line_.planar());
-      if (depth.sign > 0) kept.push_back(path[k]);
+  std::vector<char> is_changed(path.size(), 1);
+  for (int round = 1;; ++round) {
+    if (round == kCleanUpRounds) {
+      int ignored = 0;
+      path = run(path.front(), path.back(), path, ignored);
+      is_changed.assign(path.size(), 1);
     }
-    kept.push_back(path.back());
-    counter_.critical_path(18 + scan_depth(path.size()));
+    Path kept;
+    std::vector<char> is_kept_changed;
+    bool lost_last = false;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      const bool inner = k > 0 && k + 1 < path.size();
+      if (inner && is_changed[k] && !is_strict(path[k - 1], path[k], path[k + 1])) {
+        is_kept_changed.back() = 1;
+        lost_last = true;
+        continue;
+      }
+      kept.push_back(path[k]);
+      is_kept_changed.push_back(lost_last);
+      lost_last = false;
+    }
+    counter_.critical_path(2 + kDepthOperations + scan_depth(path.size()));
+    if (kept.size() == path.size()) return;
     path = std::move(kept);
-  } while (path.size() < before);
+    is_changed = std::move(is_kept_changed);
+  }
 }
 
 }  // namespace flaunay::recursive

@@ -7,6 +7,7 @@
 #include "recursive/endgame.hpp"
 #include "recursive/first_border.hpp"
 #include "recursive/lower_hull.hpp"
+#include "recursive/sort.hpp"
 
 namespace flaunay::recursive {
 namespace {
@@ -18,6 +19,9 @@ struct Region {
   Ids by_x, by_y;
   Border border;
 };
+
+// Regions of more corners count as such of this size; MOST_COUNTED_SIZE in the kernels.
+constexpr std::size_t kMostCountedSize = 1023;
 
 // The level of what comes before the first cut.
 constexpr int kStart = -1;
@@ -83,21 +87,26 @@ class Recursion {
 };
 
 Region Recursion::whole_set(std::int32_t low, std::int32_t high) {
-  Counter hull, sorting;
+  OperationCounts hull;
+  Counter sorting;
   Region region;
   region.border = first_border(sets_, low, high, options_.hull, hull);
-  note_work(Component::hull, kStart, hull);
+  add_beside(start(Component::hull), hull);
   for (const Corner& corner : region.border) on_border_[corner.vertex] = 1;
+  const auto count = static_cast<std::size_t>(high - low);
+  sorting.arithmetic(comparisons_to_sort(count));
+  sorting.critical_path(depth_of_sort(count));
+  note_work(Component::cut, kStart, sorting);
+  if (region.border.empty()) return region;
+  std::vector<Keyed> by_y;
   for (std::int32_t id = low; id < high; ++id) {
+    by_y.push_back({sort_key(points_[id].y), id});
     if (!on_border_[id]) region.by_x.push_back(id);
   }
-  if (region.border.empty()) region.by_x.clear();
-  region.by_y = region.by_x;
-  std::sort(region.by_y.begin(), region.by_y.end(), [&](std::int32_t a, std::int32_t b) {
-    sorting.arithmetic();
-    return points_[a].y != points_[b].y ? points_[a].y < points_[b].y : a < b;
-  });
-  note_work(Component::cut, kStart, sorting);
+  sort_by_key(by_y);
+  for (const Keyed& point : by_y) {
+    if (!on_border_[point.index]) region.by_y.push_back(point.index);
+  }
   return region;
 }
 
@@ -124,20 +133,18 @@ LowerHull Recursion::dividing_path(const Region& region, const Line& line, int l
   Counter counter;
   HullPoints points{line, {}, {}, {}, {}};
   for (const std::int32_t id : line.axis == AXIS_X ? region.by_y : region.by_x) {
-    points.internal.push_back({id, line.place(points_[id])});
+    points.internal.push_back(line.at(id, line.place(points_[id])));
   }
   for (const Corner& corner : region.border) {
-    points.corners.push_back({corner.vertex, line.place(points_[corner.vertex])});
+    points.corners.push_back(line.at(corner.vertex, line.place(points_[corner.vertex])));
   }
   const auto comes_before = [&](const HullPoint& a, const HullPoint& b) {
-    return a.u() != b.u() ? a.u() < b.u() : line.is_lower(a.place, b.place);
+    return a.u() != b.u() ? a.u() < b.u() : line.is_lower(a, b);
   };
   points.first = points.last = points.corners[0];
   for (const HullPoint& p : points.corners) {
     if (comes_before(p, points.first)) points.first = p;
-    if (p.u() != points.last.u() ? p.u() > points.last.u() : line.is_lower(p.place, points.last.place)) {
-      points.last = p;
-    }
+    if (p.u() != points.last.u() ? p.u() > points.last.u() : line.is_lower(p, points.last)) points.last = p;
   }
   counter.arithmetic(2 * (points.corners.size() - 1));
   counter.critical_path(reduce_depth(points.corners.size()));
@@ -184,10 +191,11 @@ std::array<Region, 2> Recursion::split(const Region& region, const Line& line, c
 
 void Recursion::finish(const Border& border, int level) {
   Counter counter;
-  region_triangles(predicates_, points_, border, triangles_, counter);
+  end_game(predicates_, points_, border, triangles_, counter);
   note_work(Component::endgame, level, counter);
-  if (work_.endgame_sizes.size() <= border.size()) work_.endgame_sizes.resize(border.size() + 1);
-  ++work_.endgame_sizes[border.size()];
+  const std::size_t size = std::min(border.size(), kMostCountedSize);
+  if (work_.endgame_sizes.size() <= size) work_.endgame_sizes.resize(size + 1);
+  ++work_.endgame_sizes[size];
 }
 
 void Recursion::note_region(const Region& region, int level) {

@@ -153,36 +153,6 @@ class RegionCutter {
   std::vector<char> is_border_;  // by half-edge
 };
 
-// One region of the arrays with points of its own.
-Ids solve_region(const Predicates& predicates, const Point* points, const RegionArrays& regions,
-                 std::size_t r) {
-  const auto corner = [&](std::int32_t c, int k) { return regions.corners[3 * std::size_t(c) + k]; };
-  const std::int32_t first_corner = regions.corner_offsets[r], last_corner = regions.corner_offsets[r + 1];
-  Ids ids(regions.points.begin() + regions.point_offsets[r],
-          regions.points.begin() + regions.point_offsets[r + 1]);
-  const auto internal = static_cast<std::ptrdiff_t>(ids.size());
-  for (std::int32_t c = first_corner; c < last_corner; ++c) ids.push_back(corner(c, 1));
-  std::sort(ids.begin() + internal, ids.end());
-  std::inplace_merge(ids.begin(), ids.begin() + internal, ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-
-  std::vector<Point> own(ids.size());
-  std::transform(ids.begin(), ids.end(), own.begin(), [points](std::int32_t id) { return points[id]; });
-  const auto position = [&ids](std::int32_t id) {
-    const auto found = std::lower_bound(ids.begin(), ids.end(), id);
-    if (found == ids.end() || *found != id) throw Error(ErrorKind::input, "its border is not closed");
-    return static_cast<std::int32_t>(found - ids.begin());
-  };
-  std::vector<BorderEdge> border;
-  for (std::int32_t c = first_corner; c < last_corner; ++c) {
-    border.emplace_back(position(corner(c, 1)), position(corner(c, 2)));
-  }
-  Ids triangles =
-      region_triangles(predicates, own.data(), own.size(), border, dwyer(predicates, own.data(), own.size()));
-  for (std::int32_t& vertex : triangles) vertex = ids[vertex];
-  return triangles;
-}
-
 // The first region, by number, that failed.
 class Failure {
  public:
@@ -231,6 +201,35 @@ std::size_t thread_count(int threads, std::size_t regions) {
 Ids region_triangles(const Predicates& predicates, const Point* points, std::size_t n,
                      const std::vector<BorderEdge>& border, Mesh mesh) {
   return RegionCutter(predicates, points, n, border, std::move(mesh)).run();
+}
+
+Ids solve_region(const Predicates& predicates, const Point* points, const RegionArrays& regions,
+                 std::size_t r, Work* work) {
+  const auto corner = [&](std::int32_t c, int k) { return regions.corners[3 * std::size_t(c) + k]; };
+  const std::int32_t first_corner = regions.corner_offsets[r], last_corner = regions.corner_offsets[r + 1];
+  Ids ids(regions.points.begin() + regions.point_offsets[r],
+          regions.points.begin() + regions.point_offsets[r + 1]);
+  const auto internal = static_cast<std::ptrdiff_t>(ids.size());
+  for (std::int32_t c = first_corner; c < last_corner; ++c) ids.push_back(corner(c, 1));
+  std::sort(ids.begin() + internal, ids.end());
+  std::inplace_merge(ids.begin(), ids.begin() + internal, ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+
+  std::vector<Point> own(ids.size());
+  std::transform(ids.begin(), ids.end(), own.begin(), [points](std::int32_t id) { return points[id]; });
+  const auto position = [&ids](std::int32_t id) {
+    const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+    if (found == ids.end() || *found != id) throw Error(ErrorKind::input, "its border is not closed");
+    return static_cast<std::int32_t>(found - ids.begin());
+  };
+  std::vector<BorderEdge> border;
+  for (std::int32_t c = first_corner; c < last_corner; ++c) {
+    border.emplace_back(position(corner(c, 1)), position(corner(c, 2)));
+  }
+  Ids triangles = region_triangles(predicates, own.data(), own.size(), border,
+                                   dwyer(predicates, own.data(), own.size(), work));
+  for (std::int32_t& vertex : triangles) vertex = ids[vertex];
+  return triangles;
 }
 
 Ids solve_regions(const Predicates& predicates, const Point* points, const RegionArrays& regions,

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "flaunay/flaunay.hpp"
 #include "recursive/mesh.hpp"
 #include "recursive/predicates.hpp"
 
@@ -38,8 +39,13 @@ struct RegionArrays {
   std::size_t size() const { return point_offsets.empty() ? 0 : point_offsets.size() - 1; }
 };
 
+/// The triangles of one of the regions, 3 ids each, counter-clockwise, by dwyer() on its own points. points:
+/// of all ids. work: as dwyer's. Throws Error(input) if its corners are no border. O(n log n).
+std::vector<std::int32_t> solve_region(const Predicates& predicates, const Point* points,
+                                       const RegionArrays& regions, std::size_t r, Work* work = nullptr);
+
 /// The triangles of all regions, 3 ids each, counter-clockwise, region after region; the same whatever the
-/// number of threads. Each region is triangulated by dwyer() on its own points.
+/// number of threads. Each by solve_region.
 ///
 /// points: of all ids. threads: host threads, at least 1; 0 takes one per core. Throws Error(internal) that
 /// names the first region whose corners are no border. O(n log n) work.

@@ -12,8 +12,10 @@ kernel void hull_filtered(int n, int axis, double bound_scale, global const doub
   const int i = get_global_id(0);
   if (i < n) {
     global const double* c = cases + 7 * i;
-    const double2 d = hull_depth(to_frame((double2)(c[0], c[1]), axis), to_frame((double2)(c[2], c[3]), axis),
-                                 to_frame((double2)(c[4], c[5]), axis), c[6], is_planar(axis));
+    const int planar = is_planar(axis);
+    const double2 d = hull_depth(project(to_frame((double2)(c[0], c[1]), axis), c[6], planar),
+                                 project(to_frame((double2)(c[2], c[3]), axis), c[6], planar),
+                                 project(to_frame((double2)(c[4], c[5]), axis), c[6], planar), planar);
     const double bound = bound_scale * HULL_DEPTH_BOUND;
     const double error = bound * d.y;
     depth[i] = d.x;
@@ -67,6 +69,19 @@ kernel void circle_filtered_cases(int n, double bound_scale, global const double
     global const double* c = cases + 8 * i;
     signs[i] = circle_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
                                (double2)(c[6], c[7]), bound_scale * CIRCLE_BOUND);
+  }
+}
+
+// The same, by the angles under which c and d see the edge from a to b.
+kernel void angle_compared_cases(int n, double bound_scale, global const double* restrict cases,
+                                 global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 8 * i;
+    const double2 a = (double2)(c[0], c[1]);
+    const double2 b = (double2)(c[2], c[3]);
+    signs[i] = angle_compared(angle_at((double2)(c[6], c[7]), a, b), angle_at((double2)(c[4], c[5]), a, b),
+                              bound_scale * ANGLE_BOUND);
   }
 }
 

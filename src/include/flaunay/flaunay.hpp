@@ -53,6 +53,10 @@ enum class Hull {
   monotone_chain,  ///< Andrew's scan over points sorted along the cut; Mode::recursive only
 };
 
+/// As the command line names them: "recursive-device", "monotone-chain"...
+const char* to_string(Mode mode) noexcept;
+const char* to_string(Hull hull) noexcept;
+
 /// What a caller can ask of one triangulation.
 struct Options {
   Mode mode = Mode::flattened;
@@ -100,7 +104,8 @@ struct Work {
   using Components = std::array<OperationCounts, kComponents>;
   Components start{};
   std::vector<Components> levels;
-  /// Corners of each region that the end game triangulated: histogram[k] regions of k corners.
+  /// Corners of each region that the end game triangulated: histogram[k] regions of k corners. Regions of more
+  /// than 1023 corners count as such of 1023; there are no zeros at the end.
   std::vector<std::uint64_t> endgame_sizes;
 };
 

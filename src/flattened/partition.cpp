@@ -1,0 +1,70 @@
+#include "flattened/partition.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "flattened/counting.hpp"
+
+namespace flaunay::flattened {
+namespace {
+
+// So that threads that end early find more to do, and so that a region is worth a thread's while.
+constexpr std::size_t kRegionsPerThread = 4;
+constexpr std::size_t kLeastPointsPerRegion = 1024;
+
+std::size_t thread_count(int wanted) {
+  return wanted > 0 ? wanted : std::max(1u, std::thread::hardware_concurrency());
+}
+
+}  // namespace
+
+int partition_levels(std::size_t n, const Options& options) {
+  if (options.partition_levels > 0) return std::min<int>(options.partition_levels, kMostLevels);
+  const std::size_t regions =
+      std::min(kRegionsPerThread * thread_count(options.threads), n / kLeastPointsPerRegion);
+  return static_cast<int>(log2_ceiling(std::max<std::size_t>(1, regions)));
+}
+
+recursive::PointSets to_host(Workspace& work, const PointTable& table,
+                             const std::vector<std::int32_t>& representatives) {
+  recursive::PointSets sets;
+  sets.points.resize(table.count);
+  static_assert(sizeof(recursive::Point) == sizeof(cl_double2));
+  work.runtime.read(table.points, 0, table.count, reinterpret_cast<cl_double2*>(sets.points.data()));
+  sets.source = read_all(work, table.source, table.count);
+  sets.set_offsets = read_all(work, table.set_offsets, table.sets + 1);
+  sets.representatives = representatives;
+  sets.predicates.bounds = work.bounds;
+  return sets;
+}
+
+std::vector<Region> to_input(Workspace& work, const PointTable& table,
+                             const recursive::RegionArrays& regions) {
+  const std::vector<cl_int> source = read_all(work, table.source, table.count);
+  std::vector<Region> result(regions.size());
+  // Where each border id stands in its region's points, for the region at hand.
+  std::vector<std::int32_t> position(table.count, -1);
+  for (std::size_t r = 0; r < result.size(); ++r) {
+    Region& region = result[r];
+    for (std::int32_t i = regions.point_offsets[r]; i < regions.point_offsets[r + 1]; ++i) {
+      region.points.push_back(source[regions.points[i]]);
+    }
+    const auto first = regions.corners.begin() + 3 * regions.corner_offsets[r];
+    const auto last = regions.corners.begin() + 3 * regions.corner_offsets[r + 1];
+    std::vector<std::int32_t> vertices;
+    for (auto corner = first; corner != last; corner += 3) vertices.push_back(corner[1]);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (const std::int32_t id : vertices) {
+      position[id] = static_cast<std::int32_t>(region.points.size());
+      region.points.push_back(source[id]);
+    }
+    for (auto corner = first; corner != last; corner += 3) {
+      region.border.push_back(position[corner[1]]);
+      region.border.push_back(position[corner[2]]);
+    }
+  }
+  return result;
+}
+
+}  // namespace flaunay::flattened
