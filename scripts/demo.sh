@@ -30,13 +30,25 @@ say 'Verifying every triangle with exact arithmetic, independently, on the host'
 say 'A picture of 2,000 points'
 "$flaunay" generate kuzmin 2000 --seed 1 -o "$demo/kuzmin.npy"
 "$flaunay" triangulate "$demo/kuzmin.npy" -o "$demo/kuzmin.svg"
-pictures="$PWD/$demo/kuzmin.svg"
-if command -v rsvg-convert >/dev/null; then
-  rsvg-convert "$demo/kuzmin.svg" -o "$demo/kuzmin.png"
-  pictures+=" and $PWD/$demo/kuzmin.png"
-fi
+
+say 'Its 16 regions after four levels, each solved on its own, put together again and verified'
+"$flaunay" partition "$demo/kuzmin.npy" --levels 4 -o "$demo/regions" --force --picture "$demo/regions.svg"
+for region in "$demo"/regions/region-*.node; do
+  "$flaunay" triangulate "$region" --mode dwyer --quiet -o "${region%.node}.npy"
+done
+"$flaunay" assemble "$demo/kuzmin.npy" "$demo/regions" --triangles "$demo/kuzmin-triangles.npy"
+"$flaunay" verify "$demo/kuzmin.npy" "$demo/kuzmin-triangles.npy"
+
+pictures=()
+for name in kuzmin regions; do
+  pictures+=("$PWD/$demo/$name.svg")
+  if command -v rsvg-convert >/dev/null; then
+    rsvg-convert "$demo/$name.svg" -o "$demo/$name.png"
+    pictures+=("$PWD/$demo/$name.png")
+  fi
+done
 
 say 'Done'
-echo "picture:    $pictures"
+printf 'picture:    %s\n' "${pictures[@]}"
 echo "triangles:  $PWD/$demo/million-triangles.npy"
 echo "statistics: $PWD/$demo/million-stats.json"

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -88,6 +89,19 @@ Array read_array(const fs::path& path) {
   array.values.resize((file.size() - start) / 4);
   if (!array.values.empty()) std::memcpy(array.values.data(), file.data() + start, 4 * array.values.size());
   return array;
+}
+
+using Rows = std::vector<std::array<std::int32_t, 3>>;
+
+/// The rows of an m x 3 array, sorted: their order is each mode's own.
+Rows sorted_rows(const fs::path& path) {
+  const Array array = read_array(path);
+  Rows rows;
+  for (std::size_t i = 0; i + 3 <= array.values.size(); i += 3) {
+    rows.push_back({array.values[i], array.values[i + 1], array.values[i + 2]});
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
 }
 
 /// The environment of a child: this one's, with changes.
@@ -225,7 +239,7 @@ using CommandUsageTest = CommandTest;
 TEST_F(CommandUsageTest, VersionAndHelpSucceed) {
   EXPECT_EQ(run_well({"--version"}, kNoPlatform).out.rfind("flaunay ", 0), 0u);
   const std::string help = run_well({"--help"}, kNoPlatform).out;
-  for (const char* subcommand : {"triangulate", "generate", "verify", "devices"}) {
+  for (const char* subcommand : {"triangulate", "partition", "assemble", "generate", "verify", "devices"}) {
     EXPECT_NE(help.find(subcommand), std::string::npos) << subcommand;
   }
   EXPECT_NE(run_well({"triangulate", "--help"}, kNoPlatform).out.find("--neighbors"), std::string::npos);
@@ -240,7 +254,8 @@ TEST_F(CommandUsageTest, GenerateHelpListsTheDistributions) {
 
 TEST_F(CommandUsageTest, RequestsThatMakeNoSense) {
   const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
-  expect_error(kUsage, {"subcommand"}, {});
+  expect_error(kUsage,
+               {"subcommand", "triangulate", "partition", "assemble", "generate", "verify", "devices"}, {});
   expect_error(kUsage, {"frobnicate"}, {"frobnicate"});
   expect_error(kUsage, {"--frobnicate"}, {"triangulate", points, "--frobnicate"});
   expect_error(kUsage, {"input"}, {"triangulate"});
@@ -252,6 +267,29 @@ TEST_F(CommandUsageTest, RequestsThatMakeNoSense) {
   expect_error(kUsage, {"4000000000", "2147483647"},
                {"generate", "uniform", "4000000000", "-o", path("g.npy")});
   expect_error(kUsage, {"output"}, {"generate", "uniform", "10"});
+}
+
+TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
+  // The input is missing: that the option is what is complained of shows that it comes first.
+  const auto refused = [this](const std::string& option, const std::string& reason, Arguments arguments) {
+    arguments.insert(arguments.begin(), {"triangulate", path("missing.xy")});
+    expect_error(kUsage, {option, reason}, arguments);
+  };
+  for (const char* mode : {"recursive", "dwyer"}) {
+    refused("--device", mode, {"--mode", mode, "--device", "#0"});
+    refused("--profile", mode, {"--mode", mode, "--profile"});
+  }
+  for (const char* mode : {"flattened", "recursive-device", "partition", "dwyer"}) {
+    refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "monotone-chain"});
+  }
+  refused("--hull-variant", "dwyer", {"--mode", "dwyer", "--hull-variant", "prune"});
+  refused("--cut", "dwyer", {"--mode", "dwyer", "--cut", "iqr"});
+  for (const char* mode : {"flattened", "recursive-device", "recursive", "dwyer"}) {
+    refused("--partition-levels", "--mode partition", {"--mode", mode, "--partition-levels", "2"});
+    refused("--threads", "--mode partition", {"--mode", mode, "--threads", "2"});
+  }
+  refused("--threads", "0", {"--mode", "partition", "--threads", "0"});
+  refused("--partition-levels", "0", {"--mode", "partition", "--partition-levels", "0"});
 }
 
 TEST_F(CommandUsageTest, UnknownEndings) {
@@ -659,12 +697,7 @@ TEST_F(CommandTriangulateTest, ArraysOfASquareWithADuplicate) {
   EXPECT_EQ(hull.values, (std::vector<std::int32_t>{0, 1, 2, 3}));
   EXPECT_EQ(duplicates.values, (std::vector<std::int32_t>{0, 1, 2, 3, 1}));
   // The four points are on a circle: a fan from the smallest, whatever the order of the rows.
-  std::vector<std::vector<std::int32_t>> rows;
-  for (std::size_t i = 0; i + 3 <= triangles.values.size(); i += 3) {
-    rows.emplace_back(triangles.values.begin() + i, triangles.values.begin() + i + 3);
-  }
-  std::sort(rows.begin(), rows.end());
-  EXPECT_EQ(rows, (std::vector<std::vector<std::int32_t>>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(sorted_rows(path("t.npy")), (Rows{{0, 1, 2}, {0, 2, 3}}));
   for (const char* part :
        {"5 points", "1 duplicate", "2 triangles", "4 hull vertices", "points per second"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
@@ -781,17 +814,11 @@ TEST_F(CommandTriangulateTest, TheSameInputGivesTheSameBytes) {
 }
 
 TEST_F(CommandTriangulateTest, BothCutsGiveTheSameTriangles) {
-  std::vector<std::vector<std::vector<std::int32_t>>> results;
+  std::vector<Rows> results;
   for (const char* cut : {"iqr", "alternate"}) {
     run_well({"triangulate", data("issue44.xy"), "--cut", cut, "--mode", "flattened", "--triangles",
               path("t.npy")});
-    const Array triangles = read_array(path("t.npy"));
-    std::vector<std::vector<std::int32_t>> rows;
-    for (std::size_t i = 0; i + 3 <= triangles.values.size(); i += 3) {
-      rows.emplace_back(triangles.values.begin() + i, triangles.values.begin() + i + 3);
-    }
-    std::sort(rows.begin(), rows.end());
-    results.push_back(rows);
+    results.push_back(sorted_rows(path("t.npy")));
   }
   EXPECT_FALSE(results[0].empty());
   EXPECT_EQ(results[0], results[1]);
@@ -810,6 +837,367 @@ TEST_F(CommandTriangulateTest, AFailedWriteLeavesNoFileBehind) {
                {"triangulate", data("ukraine.xy"), "-o", path("mesh.ele"), "--triangles", path("t.npy"),
                 "--hull", path("hull.npy")},
                {});
+}
+
+TEST_F(CommandTriangulateTest, EveryModeGivesTheSameTriangles) {
+  const std::vector<Arguments> modes = {
+      {"--mode", "flattened", "--hull-variant", "quickhull"},
+      {"--mode", "flattened", "--hull-variant", "balanced"},
+      {"--mode", "recursive-device"},
+      {"--mode", "recursive"},
+      {"--mode", "recursive", "--hull-variant", "monotone-chain", "--cut", "alternate"},
+      {"--mode", "partition", "--partition-levels", "3", "--threads", "2"},
+      {"--mode", "partition"},
+      {"--mode", "dwyer"}};
+  for (const char* distribution : {"kuzmin", "grid", "half-duplicates", "collinear"}) {
+    SCOPED_TRACE(distribution);
+    run_well({"generate", distribution, "400", "-o", path("points.npy")}, kNoPlatform);
+    run_well({"triangulate", path("points.npy"), "--triangles", path("expected.npy")});
+    for (const Arguments& mode : modes) {
+      SCOPED_TRACE(mode[1] + " " + mode.back());
+      const bool host = mode[1] == "recursive" || mode[1] == "dwyer";
+      Arguments command = {"triangulate", path("points.npy"), "--triangles",
+                           path("t.npy"), "--neighbors",      path("n.npy")};
+      command.insert(command.end(), mode.begin(), mode.end());
+      run_well(command, host ? kNoPlatform : Environment{});
+      EXPECT_EQ(sorted_rows(path("t.npy")), sorted_rows(path("expected.npy")));
+      run_well({"verify", path("points.npy"), path("t.npy"), "--neighbors", path("n.npy")}, kNoPlatform);
+    }
+  }
+}
+
+TEST_F(CommandTriangulateTest, WhatAHostModeDoesNotHaveIsNull) {
+  const Outcome outcome = run_well(
+      {"triangulate", data("ukraine.xy"), "--mode", "dwyer", "--stats", path("stats.json")}, kNoPlatform);
+  EXPECT_NE(outcome.out.find("triangulated in"), std::string::npos) << outcome.out;
+  const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
+  ASSERT_TRUE(stats.is_object());
+  EXPECT_EQ(stats.value("device", ""), "host");
+  for (const char* key : {"cut", "hull_variant"}) {
+    ASSERT_TRUE(stats.contains(key)) << key;
+    EXPECT_TRUE(stats[key].is_null()) << key;
+  }
+  EXPECT_EQ(stats.value("mode", ""), "dwyer");
+  EXPECT_GT(stats.value("triangles", 0), 0);
+}
+
+TEST_F(CommandTriangulateTest, CountPrintsATableByComponent) {
+  for (const char* mode : {"flattened", "recursive", "dwyer"}) {
+    SCOPED_TRACE(mode);
+    const Outcome outcome = run_well(
+        {"triangulate", data("ukraine.xy"), "--mode", mode, "--count", "--stats", path("stats.json")});
+    for (const char* part :
+         {"operations a point", "arithmetic", "depths", "orientations", "circles", "critical path", "\ncut ",
+          "\nhull ", "\nmerge ", "\nsplit ", "\nend game ", "\ntotal "}) {
+      EXPECT_NE(outcome.out.find(part), std::string::npos) << part << " in " << outcome.out;
+    }
+    const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
+    ASSERT_TRUE(stats.contains("work"));
+    EXPECT_GT(stats["work"]["levels"][0]["merge"].value("operations", 0), 0);
+  }
+  // No points, no division by their number.
+  const std::string none = write("none.xy", "# none\n");
+  run_well({"triangulate", none, "--mode", "dwyer", "--count"}, kNoPlatform);
+}
+
+// ------------------------------------------------------------------------------------ partition and assemble
+
+class CommandPartitionTest : public CommandTest {
+ protected:
+  /// Points of a distribution in points.npy, and their partition in the folder p.
+  void make(const std::string& distribution, const std::string& count, const std::string& levels) const {
+    run_well({"generate", distribution, count, "-o", path("points.npy")}, kNoPlatform);
+    fs::remove_all(path("p"));
+    run_well({"partition", path("points.npy"), "--levels", levels, "-o", path("p")});
+  }
+
+  std::size_t regions() const {
+    const auto json = nlohmann::json::parse(contents(path("p/partition.json")), nullptr, false);
+    return json.is_object() ? json.value("number_of_regions", std::size_t{0}) : 0;
+  }
+
+  std::string stem(std::size_t r) const { return path("p/region-0000" + std::to_string(r)); }
+
+  /// Expects that assembling gives what triangulating gives.
+  void expect_whole(const Arguments& options = {}) const {
+    const std::string input = path("points.npy");
+    run_well({"triangulate", input, "--mode", "dwyer", "--triangles", path("expected.npy"), "--hull",
+              path("expected-hull.npy"), "--duplicates", path("expected-duplicates.npy")},
+             kNoPlatform);
+    Arguments command = {"assemble",    input,         path("p"),       "--triangles", path("t.npy"),
+                         "--neighbors", path("n.npy"), "--hull",        path("h.npy"), "--duplicates",
+                         path("d.npy"), "-o",          path("mesh.off")};
+    command.insert(command.end(), options.begin(), options.end());
+    run_well(command, kNoPlatform);
+    EXPECT_EQ(sorted_rows(path("t.npy")), sorted_rows(path("expected.npy")));
+    EXPECT_EQ(contents(path("h.npy")), contents(path("expected-hull.npy")));
+    EXPECT_EQ(contents(path("d.npy")), contents(path("expected-duplicates.npy")));
+    run_well({"verify", input, path("t.npy"), "--neighbors", path("n.npy")}, kNoPlatform);
+  }
+
+  void solve(std::size_t r, const std::string& ending) const {
+    run_well({"triangulate", stem(r) + ".node", "--mode", "dwyer", "-o", stem(r) + ending}, kNoPlatform);
+  }
+
+  /// A text file of the partition, changed; expects that assembling names the file. Puts it back.
+  void expect_broken(const std::string& name, const std::string& text,
+                     const std::vector<std::string>& parts) const {
+    const std::string before = contents(path(name));
+    write_file(path(name), text);
+    std::vector<std::string> all = parts;
+    all.push_back(name);
+    expect_error(kBadInput, all, {"assemble", path("points.npy"), path("p"), "--solve", "-o", path("m.off")});
+    write_file(path(name), before);
+  }
+
+  /// The names of what is in the partition's folder, sorted.
+  std::vector<std::string> folder() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(path("p")))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+};
+
+TEST_F(CommandPartitionTest, WritesWhatItSays) {
+  run_well({"generate", "uniform", "1000", "-o", path("points.npy")}, kNoPlatform);
+  const Outcome outcome = run_well(
+      {"partition", path("points.npy"), "--levels", "2", "-o", path("p"), "--picture", path("p/p.svg")});
+  for (const char* part : {"1000 points", "4 regions", "finished", "partitioned in", "points per second"}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
+  }
+  EXPECT_EQ(folder().size(), 2 * 4u + 2 + 1);
+  EXPECT_NE(contents(path("p/p.svg")).find("4 regions"), std::string::npos);
+  EXPECT_NE(contents(path("p/p.svg")).find("</svg>"), std::string::npos);
+  EXPECT_EQ(read_array(path("p/finished.npy")).shape, "(0, 3)");
+
+  const auto json = nlohmann::json::parse(contents(path("p/partition.json")), nullptr, false);
+  ASSERT_TRUE(json.is_object());
+  EXPECT_EQ(json.value("points", 0), 1000);
+  EXPECT_EQ(json.value("levels", 0), 2);
+  EXPECT_EQ(json.value("input", ""), path("points.npy"));
+  EXPECT_FALSE(json.value("device", "").empty());
+  EXPECT_FALSE(json.value("flaunay", "").empty());
+  ASSERT_EQ(json["regions"].size(), 4u);
+  std::size_t points = 0;
+  for (std::size_t r = 0; r < 4; ++r) {
+    points += json["regions"][r].value("points", std::size_t{0});
+    const std::string border = std::to_string(json["regions"][r].value("border_edges", 0));
+    EXPECT_EQ(contents(stem(r) + ".poly").rfind("0 2 1 1\n" + border + " 0\n", 0), 0u);
+  }
+  EXPECT_GT(points, 1000u) << "borders are shared";
+}
+
+TEST_F(CommandPartitionTest, ANodeHasIndicesAndMarkersAndReadsBackExactly) {
+  write_file(path("points.xy"), "0 0\n3 0.1\n3 3\n0 3\n1.0000000000000002 1e-1\n");
+  run_well({"partition", path("points.xy"), "--levels", "0", "-o", path("p")});
+  const std::string node = contents(path("p/region-00000.node"));
+  EXPECT_EQ(node.rfind("5 2 1 1\n", 0), 0u) << node;
+  EXPECT_NE(node.find(" 0 0 0 1\n"), std::string::npos) << node;
+  EXPECT_NE(node.find(" 3 0.1 1 1\n"), std::string::npos) << node;
+  EXPECT_NE(node.find(" 1.0000000000000002 0.1 4 0\n"), std::string::npos) << node;
+}
+
+TEST_F(CommandPartitionTest, SolvedHere) {
+  for (const char* distribution : {"uniform", "kuzmin", "grid", "hexagonal", "integer-circle",
+                                   "half-duplicates", "small-integers", "columns", "collinear"}) {
+    SCOPED_TRACE(distribution);
+    make(distribution, "600", "3");
+    // Without points inside there is nothing left to solve.
+    const std::string name = distribution;
+    EXPECT_EQ(regions() == 0, name == "collinear" || name == "integer-circle");
+    expect_whole({"--solve", "--threads", "2"});
+  }
+}
+
+TEST_F(CommandPartitionTest, TinyInput) {
+  for (const char* text : {"# none\n", "1 2\n", "1 2\n1 2\n", "0 0\n1 1\n2 2\n", "0 0\n1 0\n0 1\n",
+                           "0 0\n1 0\n0 1\n1 1\n", "0 0\n2 0\n0 2\n2 2\n1 1\n"}) {
+    SCOPED_TRACE(text);
+    for (const char* levels : {"0", "1", "5"}) {
+      fs::remove_all(path("p"));
+      const std::string input = write("points.xy", text);
+      run_well({"partition", input, "--levels", levels, "-o", path("p"), "--picture", path("p.svg")});
+      run_well({"triangulate", input, "--mode", "dwyer", "--triangles", path("expected.npy")}, kNoPlatform);
+      run_well({"assemble", input, path("p"), "--solve", "--triangles", path("t.npy")}, kNoPlatform);
+      EXPECT_EQ(sorted_rows(path("t.npy")), sorted_rows(path("expected.npy")));
+    }
+  }
+}
+
+TEST_F(CommandPartitionTest, SolvedByOtherProgramsInEveryFormat) {
+  for (const char* distribution : {"uniform", "grid", "half-duplicates"}) {
+    SCOPED_TRACE(distribution);
+    make(distribution, "500", "2");
+    ASSERT_EQ(regions(), 4u);
+    solve(0, ".npy");
+    // A mesh as .ele brings its .node, the numbers of the region's own points.
+    solve(1, ".1.ele");
+    run_well({"triangulate", stem(2) + ".node", "--mode", "dwyer", "-o", path("other.ele")}, kNoPlatform);
+    fs::copy_file(path("other.ele"), stem(2) + ".ele");
+    // Numbered from 1, turned over.
+    run_well({"triangulate", stem(3) + ".node", "--mode", "dwyer", "--triangles", path("other.npy")},
+             kNoPlatform);
+    const Rows rows = sorted_rows(path("other.npy"));
+    std::string ele = std::to_string(rows.size()) + " 3 0\n";
+    for (std::size_t t = 0; t < rows.size(); ++t) {
+      ele += std::to_string(t + 1);
+      for (const std::int32_t vertex : {rows[t][2], rows[t][1], rows[t][0]})
+        ele += " " + std::to_string(vertex + 1);
+      ele += "\n";
+    }
+    write_file(stem(3) + ".ele", ele);
+    expect_whole();
+  }
+}
+
+TEST_F(CommandPartitionTest, OnlyMissingRegionsAreSolved) {
+  make("uniform", "500", "2");
+  solve(1, ".npy");
+  const Arguments command = {"assemble", path("points.npy"), path("p")};
+  expect_error(kBadInput, {"region-00000.npy", "3 of 4", "--solve"}, command);
+  expect_whole({"--solve"});
+  // What is there is used, and checked.
+  write_file(stem(1) + ".npy", npy("<i4", "False", "(1, 3)", bytes_of<std::int32_t>({0, 1, 2})));
+  expect_error(kBadInput, {"region-00001.npy"}, {"assemble", path("points.npy"), path("p"), "--solve"});
+}
+
+TEST_F(CommandPartitionTest, WrongSolutionsAreNamed) {
+  make("uniform", "300", "2");
+  for (std::size_t r = 0; r < 4; ++r) solve(r, ".npy");
+  const std::string file = stem(2) + ".npy";
+  const Array right = read_array(file);
+  const Arguments command = {"assemble", path("points.npy"), path("p"), "-o", path("mesh.off")};
+  const auto wrong = [&](std::vector<std::int32_t> values) {
+    write_file(file, npy("<i4", "False", "(" + std::to_string(values.size() / 3) + ", 3)", bytes_of(values)));
+    expect_error(kBadInput, {"region-00002.npy"}, command);
+  };
+  wrong({});
+  wrong({right.values.begin() + 3, right.values.end()});
+  std::vector<std::int32_t> beyond = right.values;
+  beyond[4] = 100000;
+  wrong(beyond);
+  std::vector<std::int32_t> twice = right.values;
+  for (std::size_t k = 0; k < 3; ++k) twice[3 + k] = twice[k];
+  wrong(twice);
+  write_file(file, "no array");
+  expect_error(kBadInput, {"region-00002.npy"}, command);
+}
+
+TEST_F(CommandPartitionTest, TheInputMustBeThePartitionsOwn) {
+  make("uniform", "300", "2");
+  const auto other = [&](const std::string& count, const std::vector<std::string>& parts) {
+    run_well({"generate", "uniform", count, "--seed", "2", "-o", path("other.npy")}, kNoPlatform);
+    expect_error(kBadInput, parts,
+                 {"assemble", path("other.npy"), path("p"), "--solve", "-o", path("mesh.off")});
+  };
+  other("300", {"region-00000.node", "other.npy"});
+  other("301", {"other.npy", "301", "300"});
+}
+
+TEST_F(CommandPartitionTest, BrokenFilesAreNamed) {
+  make("uniform", "300", "1");
+  const auto description = nlohmann::json::parse(contents(path("p/partition.json")), nullptr, false);
+  ASSERT_TRUE(description.is_object());
+  expect_broken("p/partition.json", "{\"points\": 300,", {"JSON"});
+  expect_broken("p/partition.json", "[]", {"points"});
+  for (const char* key : {"points", "finished_triangles", "regions"}) {
+    auto broken = description;
+    broken[key] = -1;
+    expect_broken("p/partition.json", broken.dump(), {key});
+    broken.erase(key);
+    expect_broken("p/partition.json", broken.dump(), {key});
+  }
+  auto more = description;
+  more["regions"].push_back(more["regions"][0]);
+  write_file(path("p/partition.json"), more.dump());
+  expect_error(kBadInput, {"region-00002.node", "No such file"},
+               {"assemble", path("points.npy"), path("p"), "--solve"});
+  write_file(path("p/partition.json"), description.dump());
+
+  const std::string node = contents(path("p/region-00001.node"));
+  expect_broken("p/region-00001.node", node.substr(0, node.size() / 2), {"line"});
+  expect_broken("p/region-00001.node", "1 2 1 1\n0 0.5 0.5 3 1\n", {"1 vertices"});
+  expect_broken("p/region-00001.node", "1 2 0 0\n0 0.5 0.5\n", {"attribute"});
+  const std::string poly = contents(path("p/region-00001.poly"));
+  expect_broken("p/region-00001.poly", poly.substr(0, poly.size() / 2), {});
+  expect_broken("p/region-00001.poly", "0 2 1 1\n1 0\n0 0 9999\n0\n", {"line 3", "9999"});
+  expect_broken("p/region-00001.poly", "0 2 1 1\n0 0\n0\n", {"0 segments"});
+  expect_broken("p/finished.npy", "no array", {});
+  expect_broken("p/finished.npy", npy("<i4", "False", "(1, 3)", bytes_of<std::int32_t>({0, 1, 2})),
+                {"1 triangles"});
+  expect_whole({"--solve"});
+  expect_error(kBadInput, {"partition.json", "No such file"},
+               {"assemble", path("points.npy"), path("nowhere")});
+}
+
+TEST_F(CommandPartitionTest, NothingIsReplacedUnlessForced) {
+  make("uniform", "300", "2");
+  solve(0, ".npy");
+  const std::vector<std::string> before = folder();
+  // The input is missing and there is no device: that the folder is what is complained of shows the order.
+  expect_error(kUsage, {"in the way", "--force"},
+               {"partition", path("missing.npy"), "--levels", "1", "-o", path("p")});
+  expect_error(kBadInput, {"missing.npy"},
+               {"partition", path("missing.npy"), "--levels", "1", "-o", path("p"), "--force"});
+  EXPECT_EQ(folder(), before);
+  write_file(path("p/notes.txt"), "precious");
+  run_well({"partition", path("points.npy"), "--levels", "1", "-o", path("p"), "--force"});
+  EXPECT_EQ(folder(),
+            (std::vector<std::string>{"finished.npy", "notes.txt", "partition.json", "region-00000.node",
+                                      "region-00000.poly", "region-00001.node", "region-00001.poly"}));
+  expect_whole({"--solve"});
+  const std::string region = path("p/region-00000.node");
+  expect_error(kUsage, {"region-00000.node", "overwrite the input"},
+               {"partition", region, "--levels", "1", "-o", path("p"), "--force"});
+}
+
+TEST_F(CommandPartitionTest, AnErrorLeavesNoFolderBehind) {
+  const std::string points = write("points.xy", "0 0\n1 0\n0 1\n5 5\n");
+  expect_error(kBadInput, {"missing.npy"},
+               {"partition", path("missing.npy"), "--levels", "1", "-o", path("p")});
+  expect_error(kDevice, {"pocl-opencl-icd"}, {"partition", points, "--levels", "1", "-o", path("p")});
+  expect_error(kUsage, {"p.png", ".svg"},
+               {"partition", points, "--levels", "1", "-o", path("p"), "--picture", path("p.png")});
+  expect_error(kBadInput, {"no/such/folder"},
+               {"partition", points, "--levels", "1", "-o", path("no/such/folder")});
+  expect_error(kBadInput, {"points.xy"}, {"partition", points, "--levels", "1", "-o", points});
+  for (const char* levels : {"-1", "31", "few"}) {
+    expect_error(kUsage, {"--levels"}, {"partition", points, "--levels", levels, "-o", path("p")});
+  }
+  expect_error(kUsage, {"--levels"}, {"partition", points, "-o", path("p")});
+  expect_error(kUsage, {"--output"}, {"partition", points, "--levels", "1"});
+  expect_error(kUsage, {"--hull-variant"},
+               {"partition", points, "--levels", "1", "-o", path("p"), "--hull-variant", "monotone-chain"});
+  // A folder that was there stays, as it was.
+  fs::create_directory(path("p"));
+  expect_error(kBadInput, {"missing.npy"},
+               {"partition", path("missing.npy"), "--levels", "1", "-o", path("p")});
+  EXPECT_TRUE(folder().empty());
+}
+
+TEST_F(CommandPartitionTest, AssembleSaysWhatMakesNoSense) {
+  make("uniform", "300", "1");
+  const Arguments command = {"assemble", path("points.npy"), path("p")};
+  const auto with = [&](const Arguments& more) {
+    Arguments all = command;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_error(kUsage, {"--threads", "--solve"}, with({"--threads", "2"}));
+  expect_error(kUsage, {"region-00000.ele", "overwrite the partition"},
+               with({"--solve", "-o", path("p/region-00000.ele")}));
+  expect_error(kUsage, {"finished.npy", "overwrite the partition"}, with({"--hull", path("p/finished.npy")}));
+  expect_error(kUsage, {"overwrite the input"}, with({"--hull", path("points.npy")}));
+  expect_error(kUsage, {"partition"}, {"assemble", path("points.npy")});
+  EXPECT_EQ(run_well(with({"--solve", "--quiet"}), kNoPlatform).out, "");
+  const Outcome outcome = run_well(with({"--solve", "--stats", path("stats.json")}), kNoPlatform);
+  EXPECT_NE(outcome.out.find("assembled in"), std::string::npos) << outcome.out;
+  const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
+  ASSERT_TRUE(stats.is_object());
+  EXPECT_EQ(stats.value("mode", ""), "assemble");
+  EXPECT_EQ(stats.value("device", ""), "host");
 }
 
 }  // namespace

@@ -25,6 +25,8 @@
 #include "io/generate.hpp"
 #include "io/mesh.hpp"
 #include "io/points.hpp"
+#include "io/region.hpp"
+#include "io/svg.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -868,6 +870,55 @@ TEST_F(IoTest, SvgOfDegenerateInputs) {
     EXPECT_EQ(decode_paths(svg, "id=\"hull").segments.size(), segments);
     EXPECT_EQ(decode_paths(svg, "id=\"points").moves.size(), points.size());
     for (const char* bad : {"nan", "inf"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ regions
+
+/// A pinched region: two triangles that touch in point 2, with a point inside each.
+struct Pinched {
+  Points points{{0, 0, 4, 0, 2, 2, 4, 4, 0, 4, 2, 0.1, 1e-300, 1e300, 2, 3.9}};
+  Region region{{0, 1, 2, 3, 4, 5, 7}, {0, 1, 1, 2, 2, 0, 2, 3, 3, 4, 4, 2}};
+};
+
+TEST_F(IoTest, ARegionReadsBackExactly) {
+  const Pinched pinched;
+  write_region(path("r"), pinched.points, pinched.region);
+  EXPECT_EQ(names(), (std::set<std::string>{"r.node", "r.poly"}));
+  const StoredRegion stored = read_region(path("r"), 7, 6);
+  EXPECT_EQ(stored.region.points, pinched.region.points);
+  EXPECT_EQ(stored.region.border, pinched.region.border);
+  EXPECT_EQ(stored.points.coordinates, (Values{0, 0, 4, 0, 2, 2, 4, 4, 0, 4, 2, 0.1, 2, 3.9}));
+  // Any reader of points takes the .node.
+  EXPECT_EQ(read_points(path("r.node")).coordinates, stored.points.coordinates);
+}
+
+TEST_F(IoTest, ARegionMayBeNumberedFromOne) {
+  write("r.node", "# from elsewhere\n3 2 2 1\n1 0 0 7 0.5 1\n2 1 0 5 0.5 1\n3 0 1 6 0.5 1\n");
+  write("r.poly", "0 2 1 1\n3 1\n1 1 2 9\n2 2 3 9\n3 3 1 9\n0\n");
+  const StoredRegion stored = read_region(path("r"), 3, 3);
+  EXPECT_EQ(stored.region.points, (Indices{7, 5, 6}));
+  EXPECT_EQ(stored.region.border, (Indices{0, 1, 1, 2, 2, 0}));
+}
+
+TEST_F(IoTest, APartitionsPictureWindsAroundEachRegionOnce) {
+  const Pinched pinched;
+  Points points = pinched.points;
+  points.coordinates[13] = 1;  // no outlier
+  Partition partition;
+  partition.regions = {pinched.region};
+  partition.triangles = {1, 3, 2};
+  write_partition_svg(path("a.svg"), points, partition);
+  const std::string svg = read(path("a.svg"));
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_NE(svg.find("8 points · 1 region · 1 finished triangle (grey)"), std::string::npos) << svg;
+  const Decoded border = decode_paths(svg, "id=\"region-0\"");
+  EXPECT_EQ(border.closed, 2u);
+  EXPECT_EQ(border.segments.size(), 4u) << "the last of each walk closes it";
+
+  for (const Points& degenerate : {Points{}, Points{{1, 2}}, Points{{-1.7e308, 0, 0, 0, 1.7e308, 0}}}) {
+    write_partition_svg(path("b.svg"), degenerate, Partition{});
+    EXPECT_TRUE(is_well_formed(read(path("b.svg"))));
   }
 }
 

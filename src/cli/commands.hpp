@@ -12,6 +12,8 @@ using Action = std::function<int()>;
 enum ExitCode : int { kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDevice = 4 };
 
 void add_triangulate(CLI::App& app, Action& action);
+void add_partition(CLI::App& app, Action& action);
+void add_assemble(CLI::App& app, Action& action);
 void add_generate(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_devices(CLI::App& app, Action& action);

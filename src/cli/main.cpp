@@ -42,6 +42,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Action action;
   add_triangulate(app, action);
+  add_partition(app, action);
+  add_assemble(app, action);
   add_generate(app, action);
   add_verify(app, action);
   add_devices(app, action);
@@ -51,7 +53,10 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return fail(kUsage, fmt::format("{} (see flaunay --help)", error.what()));
   }
-  if (!action) return fail(kUsage, "a subcommand is required: triangulate, generate, verify or devices");
+  if (!action) {
+    return fail(kUsage,
+                "a subcommand is required: triangulate, partition, assemble, generate, verify or devices");
+  }
   return action();
 }
 

@@ -10,7 +10,7 @@ namespace flaunay::cli {
 
 namespace {
 
-// Below this, preparing the device is not worth mentioning.
+// Below this, preparing what comes before the work is not worth mentioning.
 constexpr double kNoticeableSeconds = 0.05;
 
 double points_per_second(const Statistics& statistics) {
@@ -21,24 +21,72 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-}  // namespace
-
-std::string summary(const Statistics& statistics, const RunFacts& facts) {
+std::string phase_times(const Statistics& statistics, const RunFacts& facts) {
   std::string times = fmt::format("reading {:.3f} s", facts.reading_seconds);
   auto out = std::back_inserter(times);
   if (statistics.build_seconds >= kNoticeableSeconds) {
     fmt::format_to(out, ", compiling kernels {:.3f} s", statistics.build_seconds);
   }
+  if (facts.solving_seconds >= kNoticeableSeconds) {
+    fmt::format_to(out, ", solving {:.3f} s", facts.solving_seconds);
+  }
   for (const PhaseStatistics& phase : statistics.phases) {
     fmt::format_to(out, ", {} {:.3f} s", phase.name, phase.seconds);
   }
   fmt::format_to(out, ", writing {:.3f} s", facts.writing_seconds);
-  return fmt::format("{}, {}, {}, {}; {}; triangulated in {:.3f} s, {:.0f} points per second\n",
-                     counted(statistics.points, "point", "points"),
+  return times;
+}
+
+// What every final line ends with.
+std::string times_and_speed(const Statistics& statistics, const RunFacts& facts) {
+  return fmt::format("{}; {} in {:.3f} s, {:.0f} points per second\n", phase_times(statistics, facts),
+                     facts.what_was_done, statistics.seconds, points_per_second(statistics));
+}
+
+// One after the other: critical paths add up too.
+void add(const OperationCounts& counts, OperationCounts& sum) {
+  sum.arithmetic += counts.arithmetic;
+  sum.depths += counts.depths;
+  sum.orientations += counts.orientations;
+  sum.circles += counts.circles;
+  sum.critical_path += counts.critical_path;
+}
+
+OperationCounts sum_over_levels(const Work& work, std::size_t component) {
+  OperationCounts sum = work.start[component];
+  for (const Work::Components& level : work.levels) add(level[component], sum);
+  return sum;
+}
+
+std::string work_row(const char* name, const OperationCounts& counts, std::size_t points) {
+  const auto a_point = [points](std::uint64_t count) {
+    return points == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(points);
+  };
+  return fmt::format("{:<9}  {:>10.1f}  {:>6.1f}  {:>12.1f}  {:>7.1f}  {:>10.1f}  {:>13}\n", name,
+                     a_point(counts.arithmetic), a_point(counts.depths), a_point(counts.orientations),
+                     a_point(counts.circles), a_point(counts.operations()), counts.critical_path);
+}
+
+}  // namespace
+
+std::string summary(const Statistics& statistics, const RunFacts& facts) {
+  return fmt::format("{}, {}, {}, {}; {}", counted(statistics.points, "point", "points"),
                      counted(statistics.duplicates, "duplicate", "duplicates"),
                      counted(statistics.triangles, "triangle", "triangles"),
-                     counted(statistics.hull_vertices, "hull vertex", "hull vertices"), times,
-                     statistics.seconds, points_per_second(statistics));
+                     counted(statistics.hull_vertices, "hull vertex", "hull vertices"),
+                     times_and_speed(statistics, facts));
+}
+
+std::string partition_summary(const Partition& partition, const RunFacts& facts) {
+  std::size_t largest = 0;
+  for (const Region& region : partition.regions) largest = std::max(largest, region.points.size());
+  return fmt::format("{}, {}, {}, the largest of {}, {} finished; {}",
+                     counted(partition.statistics.points, "point", "points"),
+                     counted(partition.statistics.duplicates, "duplicate", "duplicates"),
+                     counted(partition.regions.size(), "region", "regions"),
+                     counted(largest, "point", "points"),
+                     counted(partition.triangles.size() / 3, "triangle", "triangles"),
+                     times_and_speed(partition.statistics, facts));
 }
 
 std::string degenerate_note(const Statistics& statistics) {
@@ -70,13 +118,31 @@ std::string kernel_table(const Statistics& statistics) {
   return table;
 }
 
+std::string work_table(const Statistics& statistics) {
+  constexpr const char* kNames[kComponents] = {"cut", "hull", "merge", "split", "end game"};
+  std::string table = "operations a point by component; the critical path in operations\n";
+  fmt::format_to(std::back_inserter(table), "{:<9}  {:>10}  {:>6}  {:>12}  {:>7}  {:>10}  {:>13}\n",
+                 "component", "arithmetic", "depths", "orientations", "circles", "operations",
+                 "critical path");
+  OperationCounts total;
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    const OperationCounts counts = sum_over_levels(statistics.work, c);
+    table += work_row(kNames[c], counts, statistics.points);
+    add(counts, total);
+  }
+  return table + work_row("total", total, statistics.points);
+}
+
 std::string statistics_json(const Statistics& statistics, const RunFacts& facts) {
   using Json = nlohmann::ordered_json;
   Json json;
   json["flaunay"] = version();
+  // What a mode does not have is null: the keys are always the same.
+  const auto text_or_null = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
   json["device"] = statistics.device;
   json["mode"] = facts.mode;
-  json["cut"] = facts.cut;
+  json["cut"] = text_or_null(facts.cut);
+  json["hull_variant"] = text_or_null(facts.dividing_paths);
   json["input"] = facts.input;
   json["points"] = statistics.points;
   json["duplicates"] = statistics.duplicates;
@@ -85,6 +151,7 @@ std::string statistics_json(const Statistics& statistics, const RunFacts& facts)
   json["seconds"] = {{"reading", facts.reading_seconds},
                      {"opening_device", facts.opening_seconds},
                      {"building_programs", statistics.build_seconds},
+                     {"solving_regions", facts.solving_seconds},
                      {"triangulating", statistics.seconds},
                      {"writing", facts.writing_seconds}};
   json["points_per_second"] = points_per_second(statistics);
@@ -119,6 +186,26 @@ std::string statistics_json(const Statistics& statistics, const RunFacts& facts)
       json["kernels"].push_back(
           {{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});
     }
+  }
+  if (!statistics.work.levels.empty()) {
+    const auto components = [](const Work::Components& work) {
+      constexpr const char* kNames[kComponents] = {"cut", "hull", "merge", "split", "endgame"};
+      Json named;
+      for (std::size_t c = 0; c < kComponents; ++c) {
+        named[kNames[c]] = {{"operations", work[c].operations()},
+                            {"operations_with_bounds", work[c].operations_with_bounds()},
+                            {"arithmetic", work[c].arithmetic},
+                            {"depths", work[c].depths},
+                            {"orientations", work[c].orientations},
+                            {"circles", work[c].circles},
+                            {"critical_path", work[c].critical_path}};
+      }
+      return named;
+    };
+    json["work"]["start"] = components(statistics.work.start);
+    json["work"]["levels"] = Json::array();
+    for (const auto& level : statistics.work.levels) json["work"]["levels"].push_back(components(level));
+    json["work"]["endgame_sizes"] = statistics.work.endgame_sizes;
   }
   // Names of files need not be UTF-8, JSON must.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -4,11 +4,12 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
+#include "cli/results.hpp"
 #include "flaunay/flaunay.hpp"
-#include "io/mesh.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::cli {
@@ -17,25 +18,67 @@ namespace {
 
 struct TriangulateRequest {
   std::string input;
-  std::string mesh;
-  std::string triangles;
-  std::string neighbors;
-  std::string hull;
-  std::string duplicates;
-  std::string stats;
-  std::string mode = "flattened";
-  std::string cut = "iqr";
+  ResultPaths results;
+  Mode mode = Mode::flattened;
+  Cut cut = Cut::interquartile;
+  Hull dividing_paths = Hull::prune;
+  int partition_levels = 0;
+  int threads = 0;
+  bool count = false;
   std::string device;
   bool profile = false;
   bool quiet = false;
 };
 
-void write_outputs(const TriangulateRequest& request, const io::Points& points, const Triangulation& mesh) {
-  if (!request.mesh.empty()) io::write_mesh(request.mesh, points, mesh);
-  if (!request.triangles.empty()) io::write_npy_int32(request.triangles, mesh.triangles, 3);
-  if (!request.neighbors.empty()) io::write_npy_int32(request.neighbors, mesh.neighbors, 3);
-  if (!request.hull.empty()) io::write_npy_int32(request.hull, mesh.hull, 0);
-  if (!request.duplicates.empty()) io::write_npy_int32(request.duplicates, mesh.representatives, 0);
+bool on_host(Mode mode) { return mode == Mode::recursive || mode == Mode::dwyer; }
+
+// Options that the chosen mode would ignore, or cannot do, are a mistake.
+void check_combination(const CLI::App& command, const TriangulateRequest& request) {
+  const std::string mode = to_string(request.mode);
+  if (on_host(request.mode)) {
+    for (const char* option : {"--device", "--profile"}) {
+      refuse(command, option, fmt::format("mode {} runs on the host, without a device", mode));
+    }
+  } else if (request.dividing_paths == Hull::monotone_chain) {
+    refuse(command, "--hull-variant", fmt::format("monotone-chain needs --mode recursive, not {}", mode));
+  }
+  if (request.mode == Mode::dwyer) {
+    for (const char* option : {"--cut", "--hull-variant"}) {
+      refuse(command, option, "mode dwyer has no such choice");
+    }
+  }
+  if (request.mode != Mode::partition) {
+    for (const char* option : {"--partition-levels", "--threads"}) {
+      refuse(command, option, fmt::format("needs --mode partition, not {}", mode));
+    }
+  }
+}
+
+RunFacts facts_of(const TriangulateRequest& request) {
+  RunFacts facts;
+  facts.input = request.input;
+  facts.mode = to_string(request.mode);
+  if (request.mode != Mode::dwyer) {
+    facts.cut = to_string(request.cut);
+    facts.dividing_paths = to_string(request.dividing_paths);
+  }
+  return facts;
+}
+
+Options options_of(const TriangulateRequest& request, Progress& progress) {
+  Options options;
+  options.mode = request.mode;
+  options.cut = request.cut;
+  options.hull = request.dividing_paths;
+  options.neighbors = !request.results.neighbors.empty();
+  options.profile = request.profile;
+  options.count = request.count;
+  options.partition_levels = request.partition_levels;
+  options.threads = request.threads;
+  options.progress = [&progress](const std::string& stage, int level, double done) {
+    progress.update(stage, level, done);
+  };
+  return options;
 }
 
 int triangulate(const TriangulateRequest& request) {
@@ -43,17 +86,9 @@ int triangulate(const TriangulateRequest& request) {
   // opened.
   io::check_points_ending(request.input);
   OutputFiles outputs(request.input);
-  outputs.add_mesh(request.mesh);
-  outputs.add(request.triangles, ".npy");
-  outputs.add(request.neighbors, ".npy");
-  outputs.add(request.hull, ".npy");
-  outputs.add(request.duplicates, ".npy");
-  outputs.add(request.stats, ".json");
+  announce(outputs, request.results);
 
-  RunFacts facts;
-  facts.input = request.input;
-  facts.mode = request.mode;
-  facts.cut = request.cut;
+  RunFacts facts = facts_of(request);
   Progress progress(!request.quiet);
   Stopwatch stopwatch;
 
@@ -61,29 +96,30 @@ int triangulate(const TriangulateRequest& request) {
   const io::Points points = io::read_points(request.input);
   facts.reading_seconds = stopwatch.restart();
 
-  progress.update_slow("preparing the device", "compiling kernels, cached for next time");
-  Triangulator triangulator(request.device);
-  facts.opening_seconds = stopwatch.restart();
-
-  Options options;
-  options.cut = request.cut == "alternate" ? Cut::alternate : Cut::interquartile;
-  options.neighbors = !request.neighbors.empty();
-  options.profile = request.profile;
-  options.progress = [&progress](const std::string& stage, int level, double done) {
-    progress.update(stage, level, done);
-  };
-  const Triangulation mesh = triangulator.triangulate(points.coordinates.data(), points.size(), options);
+  const Options options = options_of(request, progress);
+  Triangulation mesh;
+  if (on_host(request.mode)) {
+    mesh = triangulate_on_host(points.coordinates.data(), {0, points.size()}, options);
+  } else {
+    progress.update_slow("preparing the device", "compiling kernels, cached for next time");
+    Triangulator triangulator(request.device);
+    facts.opening_seconds = stopwatch.restart();
+    mesh = triangulator.triangulate(points.coordinates.data(), points.size(), options);
+  }
 
   stopwatch.restart();
   progress.update("writing");
-  write_outputs(request, points, mesh);
+  write_results(request.results, points, mesh);
   facts.writing_seconds = stopwatch.seconds();
-  if (!request.stats.empty()) write_text(request.stats, statistics_json(mesh.statistics, facts));
+  if (!request.results.stats.empty()) {
+    write_text(request.results.stats, statistics_json(mesh.statistics, facts));
+  }
   outputs.keep();
   progress.finish();
 
   if (!request.quiet) {
-    print((request.profile ? kernel_table(mesh.statistics) : "") + degenerate_note(mesh.statistics) +
+    print((request.profile ? kernel_table(mesh.statistics) : "") +
+          (request.count ? work_table(mesh.statistics) : "") + degenerate_note(mesh.statistics) +
           summary(mesh.statistics, facts));
   }
   return kSuccess;
@@ -94,38 +130,29 @@ int triangulate(const TriangulateRequest& request) {
 void add_triangulate(CLI::App& app, Action& action) {
   auto request = std::make_shared<TriangulateRequest>();
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
+  add_input(command, request->input);
+  add_results(command, request->results);
+  add_choice<Mode>(
+      command, "--mode", request->mode,
+      "How to divide and conquer; the triangles are the same. recursive and dwyer need no device",
+      {Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
+  add_cut(command, request->cut);
+  add_hull_variant(
+      command, request->dividing_paths, {Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain},
+      "How the dividing paths are computed; the triangles are the same. monotone-chain: mode recursive only");
   command
-      ->add_option("input", request->input,
-                   "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text from standard input")
-      ->required();
-  // An empty path, as from an unset shell variable, is a mistake and not "no output".
-  const CLI::Validator not_empty(
-      [](std::string& path) { return path.empty() ? std::string("the path is empty") : std::string(); },
-      "PATH");
-  const auto add_output = [&](const std::string& option, std::string& path, const std::string& description) {
-    command->add_option(option, path, description)->check(not_empty);
-  };
-  add_output("-o,--output", request->mesh,
-             "Mesh: .ele (with .node beside it), .off, .ply, .vtu, .obj, .npy or .svg");
-  add_output("--triangles", request->triangles, "Triangles: .npy, int32, 3 point indices a row");
-  add_output("--neighbors", request->neighbors,
-             "Neighbours: .npy, int32, the triangle opposite to each vertex, -1 on the hull");
-  add_output("--hull", request->hull, "Hull: .npy, int32, counter-clockwise");
-  add_output("--duplicates", request->duplicates,
-             "Duplicates: .npy, int32, for each point the one that represents it");
-  add_output("--stats", request->stats, "Statistics: .json");
-  command->add_option("--mode", request->mode, "How to divide and conquer")
-      ->check(CLI::IsMember({"flattened"}))
-      ->capture_default_str();
-  command
-      ->add_option("--cut", request->cut, "Cut across the longer interquartile range, or alternate x and y")
-      ->check(CLI::IsMember({"iqr", "alternate"}))
-      ->capture_default_str();
-  command->add_option("--device", request->device,
-                      "OpenCL device: part of its name, or #k; see flaunay devices");
+      ->add_option("--partition-levels", request->partition_levels,
+                   "Mode partition: levels on the device; enough for the threads if not given")
+      ->check(CLI::Range(1, kMostLevels));
+  add_threads(command, request->threads, "Mode partition: threads on the host; one per core if not given");
+  add_device(command, request->device);
   command->add_flag("--profile", request->profile, "Time every kernel");
-  command->add_flag("--quiet", request->quiet, "No progress and no final line");
-  command->callback([request, &action] { action = [request] { return triangulate(*request); }; });
+  command->add_flag("--count", request->count, "Count operations, for a table and for the statistics; slow");
+  add_quiet(command, request->quiet);
+  command->callback([request, command, &action] {
+    check_combination(*command, *request);
+    action = [request] { return triangulate(*request); };
+  });
 }
 
 }  // namespace flaunay::cli

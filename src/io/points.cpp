@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 
 #include "io/file.hpp"
@@ -64,7 +65,15 @@ Points read_text(const std::string& path) {
   return points;
 }
 
-Points read_node(const std::string& path) {
+/// The index that a vertex's first attribute is, and past it.
+std::int32_t read_index_attribute(Lines& lines) {
+  constexpr long long kMostIndices = std::numeric_limits<std::int32_t>::max();
+  return checked_index(lines, "index", lines.integer("the index of a point"), 0, kMostIndices);
+}
+
+}  // namespace
+
+NodeFile read_node(const std::string& path, bool with_indices) {
   const std::string text = read_file(path, "Triangle's .node format");
   Lines lines(path, text, Lines::Separator::blanks);
   if (!lines.next()) fail(path, "has no header line; expected \"vertices 2 attributes markers\"");
@@ -83,10 +92,12 @@ Points read_node(const std::string& path) {
   if (dimensions != 2) lines.fail_line("{} dimensions; expected 2", dimensions);
   if (attributes < 0) lines.fail_line("{} attributes; expected 0 or more", attributes);
   if (markers != 0 && markers != 1) lines.fail_line("{} boundary markers; expected 0 or 1", markers);
+  if (with_indices && attributes == 0) lines.fail_line("no attributes; expected one, an index");
 
-  Points points;
+  NodeFile file;
+  Points& points = file.points;
   points.coordinates.reserve(2 * std::min(static_cast<std::size_t>(vertices), lines.lines_left()));
-  long long base = 0, read = 0;
+  long long read = 0;
   for (; lines.next(); ++read) {
     if (read == vertices) {
       lines.fail_line("more vertices than the {} of the header (line {})", vertices, header_line);
@@ -95,11 +106,14 @@ Points read_node(const std::string& path) {
     if (read == 0) {
       if (number != 0 && number != 1)
         lines.fail_line("expected vertex number 0 or 1 first, found {}", number);
-      base = number;
+      file.base = number;
     }
-    if (number != base + read) lines.fail_line("expected vertex number {}, found {}", base + read, number);
+    if (number != file.base + read) {
+      lines.fail_line("expected vertex number {}, found {}", file.base + read, number);
+    }
     std::string_view x, y, extra;
     const bool complete = lines.field(x) && lines.field(y);
+    if (complete && with_indices) file.indices.push_back(read_index_attribute(lines));
     while (complete && lines.field(extra)) {
     }
     const auto expected_fields = static_cast<std::size_t>(3 + attributes + markers);
@@ -115,8 +129,10 @@ Points read_node(const std::string& path) {
     fail(path, "line {}: the header says {} vertices, but the file ends after {}", header_line, vertices,
          read);
   }
-  return points;
+  return file;
 }
+
+namespace {
 
 Points read_binary(const std::string& path) {
   const std::string bytes = read_file(path, "pairs of little-endian float64");
@@ -174,7 +190,7 @@ void check_points_ending(const std::string& path) { format_of(path); }
 Points read_points(const std::string& path) {
   switch (format_of(path)) {
     case Format::node:
-      return read_node(path);
+      return read_node(path, false).points;
     case Format::text:
       return read_text(path);
     case Format::npy: {

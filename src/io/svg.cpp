@@ -9,80 +9,14 @@
 #include <string_view>
 #include <vector>
 
+#include "io/drawing.hpp"
 #include "io/file.hpp"
 
 namespace flaunay::io {
 namespace {
 
-constexpr double kCanvas = 1000;    // pixels of the picture's longer side
-constexpr double kLeastSide = 560;  // room for the caption
-constexpr double kMargin = 24;
-constexpr double kCaption = 40;
 constexpr int kShades = 24;
 constexpr std::size_t kDotsUpTo = 1000;  // points of a larger set are where the edges meet
-
-struct Position {
-  double x, y;
-};
-
-/// The value below which `share` of the values lie. Reorders them.
-double quantile(std::vector<double>& values, double share) {
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
-
-/// The part of the plane that is shown, in the points' coordinates. Long double, because the extent of
-/// doubles may be beyond the largest double.
-struct View {
-  long double left = 0, right = 1, bottom = 0, top = 1;
-  bool central = false;      // only the central part of the points
-  double magnification = 1;  // how much larger the whole extent is
-  std::size_t shown = 0;     // points inside
-
-  bool contains(double x, double y) const { return left <= x && x <= right && bottom <= y && y <= top; }
-};
-
-/// The whole extent, unless a few far points would shrink the rest to a speck: then the square around the
-/// medians that holds most of the points.
-View choose_view(const Points& points) {
-  constexpr double kShare = 0.8, kRoom = 1.1, kOutliersFrom = 3.5;
-  View view;
-  const std::size_t n = points.size();
-  view.shown = n;
-  if (n == 0) return view;
-  std::vector<double> x(n), y(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] = points.coordinates[2 * i];
-    y[i] = points.coordinates[2 * i + 1];
-  }
-  const auto [left, right] = std::minmax_element(x.begin(), x.end());
-  const auto [bottom, top] = std::minmax_element(y.begin(), y.end());
-  view.left = *left, view.right = *right, view.bottom = *bottom, view.top = *top;
-
-  const double middle_x = quantile(x, 0.5), middle_y = quantile(y, 0.5);
-  std::vector<double> distance(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    distance[i] = std::max(std::fabs(points.coordinates[2 * i] - middle_x),
-                           std::fabs(points.coordinates[2 * i + 1] - middle_y));
-  }
-  const long double reach = static_cast<long double>(kRoom) * quantile(distance, kShare);
-  const long double extent = std::max(view.right - view.left, view.top - view.bottom);
-  if (n >= 10 && reach > 0 && extent > kOutliersFrom * 2 * reach) {
-    view.left = std::max(view.left, middle_x - reach);
-    view.right = std::min(view.right, middle_x + reach);
-    view.bottom = std::max(view.bottom, middle_y - reach);
-    view.top = std::min(view.top, middle_y + reach);
-    view.central = true;
-    view.magnification =
-        static_cast<double>(extent / std::max(view.right - view.left, view.top - view.bottom));
-    view.shown = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      view.shown += view.contains(points.coordinates[2 * i], points.coordinates[2 * i + 1]);
-    }
-  }
-  return view;
-}
 
 /// Soft blue by way of sand to coral, shade 0 to kShades - 1.
 std::string shade_color(int shade) {
@@ -103,72 +37,20 @@ std::string shade_color(int shade) {
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 
-std::string with_thousands(std::size_t number) {
-  std::string digits = std::to_string(number);
-  for (auto i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3) {
-    digits.insert(static_cast<std::size_t>(i), 1, ',');
-  }
-  return digits;
-}
-
-/// "1 point", "2,000 points".
-std::string counted(std::size_t number, const std::string& what) {
-  return with_thousands(number) + " " + what + (number == 1 ? "" : "s");
-}
-
-/// Path data of whole numbers, each relative to where the pen is.
-class PathData {
- public:
-  explicit PathData(OutputFile& file) : file_(file) {}
-
-  void move_to(std::int64_t x, std::int64_t y) {
-    file_.print("m");
-    first_ = true;
-    step(x, y);
-    start_x_ = x, start_y_ = y;
-  }
-  /// Follows a move_to or another line_to: SVG needs no letter then.
-  void line_to(std::int64_t x, std::int64_t y) { step(x, y); }
-  void close() {
-    file_.print("z");
-    x_ = start_x_, y_ = start_y_;
-  }
-  /// The next path element starts from (0, 0) again.
-  void restart() { x_ = y_ = 0; }
-
- private:
-  void step(std::int64_t x, std::int64_t y) {
-    number(x - x_);
-    number(y - y_);
-    x_ = x, y_ = y;
-  }
-  void number(std::int64_t value) {
-    file_.print("{}{}", value < 0 || first_ ? "" : " ", value);
-    first_ = false;
-  }
-
-  OutputFile& file_;
-  std::int64_t x_ = 0, y_ = 0, start_x_ = 0, start_y_ = 0;
-  bool first_ = true;
-};
-
 class Picture {
  public:
   Picture(const std::string& path, const Points& points, const Triangulation& mesh)
-      : file_(path), path_(file_), points_(points), mesh_(mesh), view_(choose_view(points)) {
-    place();
+      : file_(path), path_(file_), points_(points), mesh_(mesh), page_(points) {
     choose_units();
   }
 
   void write() {
-    write_head();
+    page_.open(file_, "Delaunay triangulation of " + counted(point_count(), "point"), units_);
     write_triangles();
     write_edges();
     write_hull();
     write_dots();
-    file_.print("</g>\n");
-    write_caption();
-    file_.print("</svg>\n");
+    page_.close(file_, caption());
     file_.commit();
   }
 
@@ -176,22 +58,7 @@ class Picture {
   std::size_t triangle_count() const { return mesh_.triangles.size() / 3; }
   std::size_t point_count() const { return points_.size(); }
 
-  /// Where the points lie, in pixels from the view's upper left corner; y down.
-  void place() {
-    const long double width = view_.right - view_.left, height = view_.top - view_.bottom;
-    const long double extent = std::max(width, height);
-    const long double scale = extent > 0 ? kCanvas / extent : 1;
-    width_ = static_cast<double>(width * scale);
-    height_ = static_cast<double>(height * scale);
-    positions_.resize(point_count());
-    for (std::size_t i = 0; i < point_count(); ++i) {
-      positions_[i] = {static_cast<double>((points_.coordinates[2 * i] - view_.left) * scale),
-                       static_cast<double>((view_.top - points_.coordinates[2 * i + 1]) * scale)};
-    }
-  }
-
-  bool inside(const Position& p) const { return p.x >= 0 && p.x <= width_ && p.y >= 0 && p.y <= height_; }
-  bool inside(std::int32_t v) const { return inside(positions_[static_cast<std::size_t>(v)]); }
+  bool inside(std::int32_t v) const { return page_.contains(position(v)); }
   const Position& position(std::int32_t v) const { return positions_[static_cast<std::size_t>(v)]; }
 
   /// The typical visible edge decides line widths and how fine the whole-number coordinates are.
@@ -211,25 +78,6 @@ class Picture {
   }
 
   std::int64_t unit(double pixels) const { return std::llround(pixels * units_); }
-
-  void write_head() {
-    const double page_width = std::max(width_, kLeastSide) + 2 * kMargin;
-    const double page_height = std::max(height_, 40.0) + 2 * kMargin + kCaption;
-    const double shift_x = (page_width - width_) / 2;
-    const double shift_y = (page_height - kCaption - height_) / 2;
-    caption_y_ = page_height - kMargin;
-    file_.print(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 "
-        "{0:.0f} "
-        "{1:.0f}\">\n<title>Delaunay triangulation of {2}</title>\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"#fdfcf9\"/>\n",
-        page_width, page_height, counted(point_count(), "point"));
-    file_.print(
-        "<g transform=\"translate({:.2f} {:.2f}) scale({:.6g})\" fill=\"none\" stroke-linejoin=\"round\" "
-        "stroke-linecap=\"round\">\n",
-        shift_x, shift_y, 1 / units_);
-  }
 
   /// One path element for each shade of the triangles' colours.
   void write_triangles() {
@@ -317,14 +165,9 @@ class Picture {
     bool clipped = false;
     for (std::size_t k = 0; k < 3; ++k) {
       polygon.push_back(position(mesh_.triangles[3 * t + k]));
-      clipped = clipped || !inside(polygon.back());
+      clipped = clipped || !page_.contains(polygon.back());
     }
-    if (clipped) {
-      clip_polygon([](const Position& p) { return p.x; });
-      clip_polygon([this](const Position& p) { return width_ - p.x; });
-      clip_polygon([](const Position& p) { return p.y; });
-      clip_polygon([this](const Position& p) { return height_ - p.y; });
-    }
+    if (clipped) clip_polygon(polygon, 0, width_, height_);
     std::int64_t doubled_area = 0;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
       const Position &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
@@ -334,22 +177,6 @@ class Picture {
     path_.move_to(unit(polygon[0].x), unit(polygon[0].y));
     for (std::size_t k = 1; k < polygon.size(); ++k) path_.line_to(unit(polygon[k].x), unit(polygon[k].y));
     path_.close();
-  }
-
-  /// Cuts polygon_ off where `distance` is negative (Sutherland and Hodgman).
-  template <typename Distance>
-  void clip_polygon(Distance distance) {
-    clipped_.clear();
-    for (std::size_t k = 0; k < polygon_.size(); ++k) {
-      const Position &p = polygon_[k], &q = polygon_[(k + 1) % polygon_.size()];
-      const double from = distance(p), to = distance(q);
-      if (from >= 0) clipped_.push_back(p);
-      if ((from < 0) != (to < 0)) {
-        const double share = from / (from - to);
-        clipped_.push_back({p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)});
-      }
-    }
-    polygon_.swap(clipped_);
   }
 
   /// The part of an edge inside the view (Liang and Barsky); false if there is none.
@@ -473,14 +300,14 @@ class Picture {
     // A line of no length with round ends is a dot.
     open_stroke("points", "#24405f", std::clamp(0.14 * typical_edge_, 2.0, 7.0));
     for (std::size_t i = 0; i < point_count(); ++i) {
-      if (!inside(positions_[i])) continue;
+      if (!page_.contains(positions_[i])) continue;
       path_.move_to(unit(positions_[i].x), unit(positions_[i].y));
       file_.print("h0");
     }
     file_.print("\"/>\n");
   }
 
-  void write_caption() {
+  std::string caption() const {
     std::string text = counted(point_count(), "point") + " · " + counted(triangle_count(), "triangle") +
                        " · " + with_thousands(mesh_.hull.size()) + " on the hull";
     std::size_t duplicates = 0;
@@ -488,23 +315,7 @@ class Picture {
       duplicates += mesh_.representatives[i] != static_cast<std::int32_t>(i);
     }
     if (duplicates > 0) text += " · " + counted(duplicates, "duplicate");
-    file_.print(
-        "<g font-family=\"Helvetica, Arial, sans-serif\" font-size=\"15\" fill=\"#3a4654\">\n"
-        "<text x=\"{:.0f}\" y=\"{:.0f}\">{}</text>\n",
-        kMargin, caption_y_ - (view_.central ? 9 : 0), text);
-    if (view_.central) {
-      const std::string magnification = view_.magnification < 1e15
-                                            ? with_thousands(static_cast<std::size_t>(view_.magnification))
-                                            : fmt::format("{:.0e}", view_.magnification);
-      // Rounded down: "100 %" would deny the points that are missing.
-      const auto percent =
-          static_cast<int>(100 * static_cast<double>(view_.shown) / static_cast<double>(point_count()));
-      file_.print(
-          "<text x=\"{:.0f}\" y=\"{:.0f}\" font-size=\"12\" fill=\"#6b7683\">only the centre is shown, with "
-          "{} % of the points; the whole is {} times as wide</text>\n",
-          kMargin, caption_y_ + 9, percent, magnification);
-    }
-    file_.print("</g>\n");
+    return text;
   }
 
   /// Viewers stroke several shorter paths faster than one endless one.
@@ -514,15 +325,14 @@ class Picture {
   PathData path_;
   const Points& points_;
   const Triangulation& mesh_;
-  View view_;
-  double width_ = 0, height_ = 0;  // of the view, in pixels
-  std::vector<Position> positions_;
+  const Page page_;
+  const std::vector<Position>& positions_ = page_.positions();
+  const double width_ = page_.width(), height_ = page_.height();
   double typical_edge_ = 0;  // pixels
   double units_ = 1;         // whole-number coordinates per pixel
   double line_width_ = 1;    // pixels
-  double caption_y_ = 0;
   std::size_t trails_ = 0;
-  std::vector<Position> polygon_, clipped_;  // of write_triangle, kept for their memory
+  std::vector<Position> polygon_;  // of write_triangle, kept for its memory
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A picture of a triangulation.
+// Pictures of triangulations and partitions.
 #pragma once
 
 #include <string>
@@ -9,5 +9,8 @@
 namespace flaunay::io {
 
 void write_svg(const std::string& path, const Points& points, const Triangulation& mesh);
+
+/// The regions, one colour each, with their points and borders.
+void write_partition_svg(const std::string& path, const Points& points, const Partition& partition);
 
 }  // namespace flaunay::io

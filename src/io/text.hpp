@@ -10,6 +10,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "io/file.hpp"
 #include "io/points.hpp"
@@ -223,6 +224,14 @@ inline std::int32_t checked_index(const Lines& lines, std::string_view what, lon
   }
   return static_cast<std::int32_t>(number - base);
 }
+
+/// Triangle's .node format as read. In points.cpp.
+struct NodeFile {
+  Points points;
+  long long base = 0;                 // the number of the first vertex, 0 or 1
+  std::vector<std::int32_t> indices;  // with_indices: each vertex's first attribute
+};
+NodeFile read_node(const std::string& path, bool with_indices);
 
 /// A whole .node file, numbered from 0, without attributes and markers. In points.cpp.
 void print_node(OutputFile& file, const Points& points);

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "cli/partition_folder.hpp"
+#include "cli/progress.hpp"
+#include "cli/report.hpp"
+#include "cli/results.hpp"
+#include "flaunay/flaunay.hpp"
+#include "io/mesh.hpp"
+#include "io/points.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+using Solutions = std::vector<std::vector<std::int32_t>>;
+
+struct AssembleRequest {
+  std::string input;
+  std::string folder;
+  ResultPaths results;
+  bool solve = false;
+  int threads = 0;
+  bool quiet = false;
+};
+
+// The file with each region's solution; empty: to be solved here.
+std::vector<std::string> find_solutions(const PartitionReader& reader, bool solve) {
+  std::vector<std::string> paths;
+  for (std::size_t r = 0; r < reader.regions(); ++r) paths.push_back(reader.solution_path(r));
+  const auto missing = static_cast<std::size_t>(std::count(paths.begin(), paths.end(), ""));
+  if (missing > 0 && !solve) {
+    const auto first = static_cast<std::size_t>(std::find(paths.begin(), paths.end(), "") - paths.begin());
+    throw Error(ErrorKind::input,
+                fmt::format("{}.npy: is missing, and so are .ele and .1.ele; {} of {} regions have no "
+                            "solution (--solve computes what is missing)",
+                            reader.stem(first), missing, paths.size()));
+  }
+  return paths;
+}
+
+std::vector<std::int32_t> solve_region(const io::Points& points, const Region& region) {
+  std::vector<double> own;
+  for (const std::int32_t index : region.points) {
+    const double* point = &points.coordinates[2 * static_cast<std::size_t>(index)];
+    own.insert(own.end(), point, point + 2);
+  }
+  Options options;
+  options.mode = Mode::dwyer;
+  options.neighbors = false;
+  return triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
+}
+
+// Calls task(k) for all k below count, several at a time. Throws one of its exceptions, if any.
+template <typename Task>
+void run_in_parallel(std::size_t count, int threads, const Task& task) {
+  std::atomic<std::size_t> next{0};
+  std::mutex failure_mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < count; k = next++) {
+      try {
+        task(k);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(failure_mutex);
+        failure = std::current_exception();
+      }
+    }
+  };
+  const std::size_t wanted =
+      threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+  // The calling thread works too.
+  std::vector<std::thread> others;
+  try {
+    while (others.size() + 1 < std::min(wanted, count)) others.emplace_back(work);
+  } catch (const std::system_error&) {
+    // Fewer threads than wanted do it too.
+  }
+  work();
+  for (std::thread& thread : others) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+Solutions read_solutions(const std::vector<std::string>& paths) {
+  Solutions solutions;
+  for (const std::string& path : paths) {
+    solutions.push_back(path.empty() ? std::vector<std::int32_t>() : io::read_triangles(path));
+  }
+  return solutions;
+}
+
+void solve_missing(const io::Points& points, const Partition& partition,
+                   const std::vector<std::string>& paths, int threads, Solutions& solutions) {
+  std::vector<std::size_t> unsolved;
+  for (std::size_t r = 0; r < paths.size(); ++r) {
+    if (paths[r].empty()) unsolved.push_back(r);
+  }
+  run_in_parallel(unsolved.size(), threads, [&](std::size_t k) {
+    solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
+  });
+}
+
+// The library says "region 3: ..." or speaks of the parts; people look for a file.
+[[noreturn]] void fail_with_file(const Error& error, const PartitionReader& reader,
+                                 const std::vector<std::string>& paths) {
+  const std::string message = error.what();
+  for (std::size_t r = 0; r < paths.size(); ++r) {
+    if (message.rfind(fmt::format("region {}: ", r), 0) != 0) continue;
+    const std::string file = paths[r].empty() ? reader.stem(r) + ".node" : paths[r];
+    throw Error(error.kind(), fmt::format("{}: {}", file, message));
+  }
+  const bool of_parts = message.rfind("the parts ", 0) == 0;
+  throw Error(error.kind(), of_parts ? fmt::format("{}: {}", reader.description_path(), message) : message);
+}
+
+Triangulation put_together(const io::Points& points, const Partition& partition, const Solutions& solutions,
+                           const PartitionReader& reader, const std::vector<std::string>& paths,
+                           const Options& options) {
+  try {
+    return flaunay::assemble(points.coordinates.data(), points.size(), partition, solutions, options);
+  } catch (const Error& error) {
+    fail_with_file(error, reader, paths);
+  }
+}
+
+int assemble(const AssembleRequest& request) {
+  io::check_points_ending(request.input);
+  for (const std::string& path : request.results.all()) check_no_partition_file(request.folder, path);
+  OutputFiles outputs(request.input);
+  announce(outputs, request.results);
+  const PartitionReader reader(request.folder);
+  const std::vector<std::string> paths = find_solutions(reader, request.solve);
+
+  RunFacts facts;
+  facts.input = request.input;
+  facts.mode = "assemble";
+  facts.what_was_done = "assembled";
+  Progress progress(!request.quiet);
+  Stopwatch stopwatch;
+  progress.update("reading");
+  const io::Points points = io::read_points(request.input);
+  const Partition partition = reader.read(request.input, points);
+  Solutions solutions = read_solutions(paths);
+  facts.reading_seconds = stopwatch.restart();
+
+  progress.update("solving");
+  solve_missing(points, partition, paths, request.threads, solutions);
+  facts.solving_seconds = stopwatch.seconds();
+
+  Options options;
+  options.neighbors = !request.results.neighbors.empty();
+  options.progress = [&progress](const std::string& stage, int level, double done) {
+    progress.update(stage, level, done);
+  };
+  const Triangulation mesh = put_together(points, partition, solutions, reader, paths, options);
+
+  stopwatch.restart();
+  progress.update("writing");
+  write_results(request.results, points, mesh);
+  facts.writing_seconds = stopwatch.seconds();
+  if (!request.results.stats.empty()) {
+    write_text(request.results.stats, statistics_json(mesh.statistics, facts));
+  }
+  outputs.keep();
+  progress.finish();
+
+  if (!request.quiet) print(degenerate_note(mesh.statistics) + summary(mesh.statistics, facts));
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_assemble(CLI::App& app, Action& action) {
+  auto request = std::make_shared<AssembleRequest>();
+  CLI::App* command = app.add_subcommand(
+      "assemble", "Put the solved regions of a partition together to the triangulation of all points");
+  add_input(command, request->input);
+  command->add_option("partition", request->folder, "The folder that flaunay partition wrote")->required();
+  add_results(command, request->results);
+  CLI::Option* solve =
+      command->add_flag("--solve", request->solve, "Solve the regions that have no solution");
+  add_threads(command, request->threads, "Threads for --solve; one per core if not given")->needs(solve);
+  add_quiet(command, request->quiet);
+  command->footer(
+      "A region's solution is any Delaunay triangulation of the points of region-00000.node, up to their "
+      "convex hull, beside it: region-00000.npy (int32, 3 positions a row), region-00000.ele or "
+      "region-00000.1.ele (Triangle's).");
+  command->callback([request, &action] { action = [request] { return assemble(*request); }; });
+}
+
+}  // namespace flaunay::cli

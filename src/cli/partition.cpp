@@ -1,0 +1,98 @@
+#include <memory>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "cli/partition_folder.hpp"
+#include "cli/progress.hpp"
+#include "cli/report.hpp"
+#include "flaunay/flaunay.hpp"
+#include "io/points.hpp"
+#include "io/svg.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+struct PartitionRequest {
+  std::string input;
+  std::string folder;
+  std::string picture;
+  int levels = 0;
+  Cut cut = Cut::interquartile;
+  Hull dividing_paths = Hull::prune;
+  std::string device;
+  bool force = false;
+  bool quiet = false;
+};
+
+Partition compute(const PartitionRequest& request, const io::Points& points, Progress& progress) {
+  Options options;
+  options.cut = request.cut;
+  options.hull = request.dividing_paths;
+  options.progress = [&progress](const std::string& stage, int level, double done) {
+    progress.update(stage, level, done);
+  };
+  progress.update_slow("preparing the device", "compiling kernels, cached for next time");
+  Triangulator triangulator(request.device);
+  return triangulator.partition(points.coordinates.data(), points.size(), request.levels, options);
+}
+
+int partition(const PartitionRequest& request) {
+  io::check_points_ending(request.input);
+  // The folder first: the picture may be in it.
+  PartitionWriter writer(request.folder, request.input, request.force);
+  check_no_partition_file(request.folder, request.picture);
+  OutputFiles outputs(request.input);
+  outputs.add(request.picture, ".svg");
+
+  RunFacts facts;
+  facts.what_was_done = "partitioned";
+  Progress progress(!request.quiet);
+  Stopwatch stopwatch;
+  progress.update("reading");
+  const io::Points points = io::read_points(request.input);
+  facts.reading_seconds = stopwatch.seconds();
+
+  const Partition result = compute(request, points, progress);
+
+  stopwatch.restart();
+  progress.update("writing");
+  writer.write(points, result, {request.input, request.levels, request.cut, request.dividing_paths});
+  if (!request.picture.empty()) io::write_partition_svg(request.picture, points, result);
+  writer.keep();
+  outputs.keep();
+  facts.writing_seconds = stopwatch.seconds();
+  progress.finish();
+
+  if (!request.quiet) print(partition_summary(result, facts));
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_partition(CLI::App& app, Action& action) {
+  auto request = std::make_shared<PartitionRequest>();
+  CLI::App* command = app.add_subcommand(
+      "partition", "Cut the triangulation of a file's points into regions for other programs to solve");
+  add_input(command, request->input);
+  command->add_option("--levels", request->levels, "How often to cut: up to 2^levels regions")
+      ->check(CLI::Range(0, kMostLevels))
+      ->required();
+  add_path(command, "-o,--output", request->folder,
+           "A folder for the regions (.node and .poly), finished triangles (.npy) and partition.json")
+      ->required();
+  command->add_flag("--force", request->force,
+                    "Replace the partition in the folder, and the solutions of its regions");
+  add_path(command, "--picture", request->picture, "A picture of the regions: .svg");
+  add_cut(command, request->cut);
+  add_hull_variant(command, request->dividing_paths, {Hull::prune, Hull::quickhull, Hull::balanced},
+                   "How the dividing paths are computed; the regions are the same");
+  add_device(command, request->device);
+  add_quiet(command, request->quiet);
+  command->footer("flaunay assemble puts the solved regions together again.");
+  command->callback([request, &action] { action = [request] { return partition(*request); }; });
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,240 @@
+#include "cli/partition_folder.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+
+#include "cli/options.hpp"
+#include "cli/output.hpp"
+#include "io/file.hpp"
+#include "io/mesh.hpp"
+#include "io/npy.hpp"
+#include "io/region.hpp"
+
+namespace flaunay::cli {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kDescription = "partition.json";
+constexpr const char* kFinished = "finished.npy";
+constexpr std::string_view kRegionPrefix = "region-";
+
+std::string inside(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
+std::string region_stem(const std::string& folder, std::size_t r) {
+  return inside(folder, fmt::format("{}{:05}", kRegionPrefix, r));
+}
+
+bool is_partition_name(const std::string& name) {
+  return name == kDescription || name == kFinished || name.rfind(kRegionPrefix, 0) == 0;
+}
+
+std::vector<fs::path> partition_files(const std::string& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_partition_name(entry->path().filename().string())) files.push_back(entry->path());
+  }
+  if (error) io::fail(folder, "cannot be listed: {}", error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// What would be replaced must be fit to be removed, and meant to be.
+void check_in_the_way(const fs::path& file, const std::string& input, bool force) {
+  std::error_code error;
+  if (input != "-" && fs::equivalent(file, input, error)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: the partition would overwrite the input; choose another folder", input));
+  }
+  if (!force) {
+    throw Error(ErrorKind::usage, fmt::format("{}: is in the way: the folder holds a partition; choose "
+                                              "another, or replace it with --force",
+                                              file.string()));
+  }
+  if (fs::is_directory(file, error)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: is a folder, and in the way", file.string()));
+  }
+}
+
+std::string make_aside(const std::string& folder) {
+  std::string path = inside(folder, ".flaunay-XXXXXX");
+  if (::mkdtemp(path.data()) == nullptr) {
+    io::fail(folder, "cannot be written: {}", io::system_reason(errno));
+  }
+  return path;
+}
+
+std::string description(const Partition& partition, const PartitionFacts& facts) {
+  Json json;
+  json["flaunay"] = version();
+  json["device"] = partition.statistics.device;
+  json["input"] = facts.input;
+  json["points"] = partition.statistics.points;
+  json["duplicates"] = partition.statistics.duplicates;
+  json["levels"] = facts.levels;
+  json["cut"] = to_string(facts.cut);
+  json["hull_variant"] = to_string(facts.dividing_paths);
+  json["finished_triangles"] = partition.triangles.size() / 3;
+  json["number_of_regions"] = partition.regions.size();
+  json["regions"] = Json::array();
+  for (const Region& region : partition.regions) {
+    json["regions"].push_back({{"points", region.points.size()}, {"border_edges", region.border.size() / 2}});
+  }
+  // Names of files need not be UTF-8, JSON must.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json parse(const std::string& path) {
+  const std::string text = io::read_file(path, "the description of a partition, as flaunay partition writes");
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    io::fail(path, "is no valid JSON (at byte {})", error.byte);
+  }
+}
+
+// The value of a key that counts something.
+std::size_t count_of(const std::string& path, const Json& object, const char* key) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  if (found == object.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() > kMost) {
+    io::fail(path, "expected '{}' to be a number from 0 to {}", key, kMost);
+  }
+  return found->get<std::size_t>();
+}
+
+// The region's points must be those of the input: an index alone does not show that the file is another.
+void check_points(const std::string& path, const io::StoredRegion& stored, const std::string& input,
+                  const io::Points& points) {
+  for (std::size_t k = 0; k < stored.points.size(); ++k) {
+    const auto index = static_cast<std::size_t>(stored.region.points[k]);
+    if (index >= points.size()) {
+      io::fail(path, "vertex {} is point {}, but {} has {}", k, index, input, points.size());
+    }
+    const double* here = &stored.points.coordinates[2 * k];
+    const double* there = &points.coordinates[2 * index];
+    if (here[0] != there[0] || here[1] != there[1]) {
+      io::fail(path,
+               "vertex {} is ({}, {}), but point {} of {} is ({}, {}): is the partition of other input?", k,
+               here[0], here[1], index, input, there[0], there[1]);
+    }
+  }
+}
+
+}  // namespace
+
+PartitionWriter::PartitionWriter(const std::string& folder, const std::string& input, bool force)
+    : folder_(folder) {
+  std::error_code error;
+  made_folder_ = fs::create_directory(folder, error);
+  if (error) io::fail(folder, "cannot be made: {}", error.message());
+  for (const fs::path& file : partition_files(folder)) check_in_the_way(file, input, force);
+  try {
+    aside_ = make_aside(folder);
+  } catch (...) {
+    // No destructor follows a constructor that fails.
+    if (made_folder_) fs::remove(folder_, error);
+    throw;
+  }
+}
+
+PartitionWriter::~PartitionWriter() {
+  std::error_code ignored;
+  for (const std::string& file : placed_) fs::remove(file, ignored);
+  fs::remove_all(aside_, ignored);
+  if (made_folder_) fs::remove(folder_, ignored);
+}
+
+void PartitionWriter::write(const io::Points& points, const Partition& partition,
+                            const PartitionFacts& facts) {
+  for (std::size_t r = 0; r < partition.regions.size(); ++r) {
+    io::write_region(region_stem(aside_, r), points, partition.regions[r]);
+  }
+  io::write_npy_int32(inside(aside_, kFinished), partition.triangles, 3);
+  write_text(inside(aside_, kDescription), description(partition, facts));
+}
+
+void PartitionWriter::keep() {
+  std::error_code error;
+  for (const fs::path& file : partition_files(folder_)) {
+    if (!fs::remove(file, error) && error) io::fail(file.string(), "cannot be removed: {}", error.message());
+  }
+  for (const fs::path& file : partition_files(aside_)) {
+    const std::string target = inside(folder_, file.filename().string());
+    fs::rename(file, target, error);
+    if (error) io::fail(target, "cannot be written: {}", error.message());
+    placed_.push_back(target);
+  }
+  placed_.clear();
+  made_folder_ = false;
+}
+
+PartitionReader::PartitionReader(const std::string& folder) : folder_(folder) {
+  const std::string path = description_path();
+  const Json json = parse(path);
+  input_points_ = count_of(path, json, "points");
+  finished_triangles_ = count_of(path, json, "finished_triangles");
+  const auto regions = json.find("regions");
+  if (regions == json.end() || !regions->is_array()) io::fail(path, "expected 'regions' to be an array");
+  for (const Json& region : *regions) {
+    sizes_.push_back({count_of(path, region, "points"), count_of(path, region, "border_edges")});
+  }
+}
+
+std::string PartitionReader::description_path() const { return inside(folder_, kDescription); }
+
+std::string PartitionReader::stem(std::size_t r) const { return region_stem(folder_, r); }
+
+std::string PartitionReader::solution_path(std::size_t r) const {
+  for (const char* ending : {".npy", ".ele", ".1.ele"}) {
+    std::error_code error;
+    const std::string path = stem(r) + ending;
+    if (fs::exists(path, error)) return path;
+  }
+  return "";
+}
+
+Partition PartitionReader::read(const std::string& input, const io::Points& points) const {
+  if (points.size() != input_points_) {
+    io::fail(input, "has {} points, but the partition in {} is of {}", points.size(), folder_, input_points_);
+  }
+  Partition partition;
+  const std::string finished = inside(folder_, kFinished);
+  partition.triangles = io::read_npy_triangles(finished);
+  const std::size_t triangles = partition.triangles.size() / 3;
+  if (triangles != finished_triangles_) {
+    io::fail(finished, "has {} triangles; expected {}", triangles, finished_triangles_);
+  }
+  for (std::size_t r = 0; r < regions(); ++r) partition.regions.push_back(read_region(r, input, points));
+  return partition;
+}
+
+Region PartitionReader::read_region(std::size_t r, const std::string& input, const io::Points& points) const {
+  const io::StoredRegion stored = io::read_region(stem(r), sizes_[r].points, sizes_[r].border_edges);
+  check_points(stem(r) + ".node", stored, input, points);
+  return stored.region;
+}
+
+void check_no_partition_file(const std::string& folder, const std::string& path) {
+  const fs::path file(path);
+  std::error_code error;
+  if (is_partition_name(file.filename().string()) &&
+      fs::equivalent(file.has_parent_path() ? file.parent_path() : fs::path("."), folder, error)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the partition", path));
+  }
+}
+
+}  // namespace flaunay::cli

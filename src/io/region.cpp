@@ -1,0 +1,83 @@
+#include "io/region.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "io/file.hpp"
+#include "io/text.hpp"
+
+namespace flaunay::io {
+namespace {
+
+void write_node(const std::string& path, const Points& points, const Region& region) {
+  std::vector<char> on_border(region.points.size(), 0);
+  for (const std::int32_t position : region.border) on_border[static_cast<std::size_t>(position)] = 1;
+  OutputFile file(path);
+  file.print("{} 2 1 1\n", region.points.size());
+  for (std::size_t k = 0; k < region.points.size(); ++k) {
+    const auto index = static_cast<std::size_t>(region.points[k]);
+    file.print("{} {} {} {} {}\n", k, points.coordinates[2 * index], points.coordinates[2 * index + 1], index,
+               static_cast<int>(on_border[k]));
+  }
+  file.commit();
+}
+
+void write_poly(const std::string& path, const Region& region) {
+  OutputFile file(path);
+  // No vertices here: they are in the .node.
+  file.print("0 2 1 1\n{} 0\n", region.border.size() / 2);
+  for (std::size_t k = 0; k + 1 < region.border.size(); k += 2) {
+    file.print("{} {} {}\n", k / 2, region.border[k], region.border[k + 1]);
+  }
+  file.print("0\n");
+  file.commit();
+}
+
+/// The segments of a .poly without vertices of its own: two positions each.
+std::vector<std::int32_t> read_segments(const std::string& path, const NodeFile& nodes) {
+  const std::string text = read_file(path, "Triangle's .poly format");
+  Lines lines(path, text, Lines::Separator::blanks);
+  if (!lines.next()) fail(path, "has no header line; expected \"0 2 1 1\"");
+  if (lines.integer("the number of vertices") != 0) lines.fail_line("expected no vertices");
+  if (!lines.next()) fail(path, "has no line with the number of segments");
+  const long long count = lines.integer("the number of segments");
+  if (count < 0) lines.fail_line("{} segments; expected 0 or more", count);
+  std::vector<std::int32_t> segments;
+  const auto vertices = static_cast<long long>(nodes.points.size());
+  for (long long k = 0; k < count; ++k) {
+    if (!lines.next()) fail(path, "expected {} segments, but the file ends after {}", count, k);
+    const long long number = lines.integer("a segment number");
+    if (number != nodes.base + k) {
+      lines.fail_line("expected segment number {}, found {}", nodes.base + k, number);
+    }
+    for (int end = 0; end < 2; ++end) {
+      segments.push_back(
+          checked_index(lines, "vertex", lines.integer("a vertex number"), nodes.base, vertices));
+    }
+  }
+  return segments;
+}
+
+void check_count(const std::string& path, const char* what, std::size_t found, std::size_t expected) {
+  if (found != expected) fail(path, "has {} {}; expected {}", found, what, expected);
+}
+
+}  // namespace
+
+void write_region(const std::string& stem, const Points& points, const Region& region) {
+  write_node(stem + ".node", points, region);
+  write_poly(stem + ".poly", region);
+}
+
+StoredRegion read_region(const std::string& stem, std::size_t points, std::size_t border_edges) {
+  NodeFile nodes = read_node(stem + ".node", true);
+  check_count(stem + ".node", "vertices", nodes.points.size(), points);
+  StoredRegion stored;
+  stored.region.border = read_segments(stem + ".poly", nodes);
+  check_count(stem + ".poly", "segments", stored.region.border.size() / 2, border_edges);
+  stored.region.points = std::move(nodes.indices);
+  stored.points = std::move(nodes.points);
+  return stored;
+}
+
+}  // namespace flaunay::io
