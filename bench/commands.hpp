@@ -15,5 +15,6 @@ enum ExitCode : int { kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDe
 void add_peers(CLI::App& app, Action& action);
 void add_primitives(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
+void add_paper(CLI::App& app, Action& action);
 
 }  // namespace flaunay::bench

@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   add_peers(app, action);
   add_modes(app, action);
   add_primitives(app, action);
+  add_paper(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

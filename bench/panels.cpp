@@ -10,8 +10,8 @@ namespace {
 
 // Okabe and Ito's palette, which people with any colour vision can tell apart; its yellow is left out, being
 // invisible on white.
-constexpr std::array<const char*, 8> kPalette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                 "#e69f00", "#56b4e9", "#4d4d4d", "#8c6d46"};
+constexpr std::array<const char*, 9> kPalette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
+                                                 "#56b4e9", "#4d4d4d", "#8c6d46", kInk};
 
 constexpr const char* kGrid = "#e4e4e4";
 constexpr const char* kFrame = "#8c8c8c";
@@ -409,7 +409,7 @@ void draw_bar(Canvas& canvas, const Bars& panel, const Bar& bar, double center, 
   for (std::size_t p = 0; p < bar.parts.size(); ++p) {
     height += bar.parts[p];
     if (!showable(panel.y.scale, height) || bar.parts[p] <= 0) continue;
-    const std::string color = looks.of(stacked ? panel.parts[p] : bar.name).color;
+    const std::string color = (stacked ? looks.of(panel.parts[p]) : looks.of(bar.name, bar.color)).color;
     // The white edge tells neighbours of similar brightness apart.
     canvas.rectangle({center - width / 2, map.y(height)}, width, map.y(base) - map.y(height),
                      {color, "#ffffff", stacked ? 0.6 : 0.0, "", 1});
@@ -519,7 +519,7 @@ void draw_panel(Canvas& canvas, const Scatter& panel, const Area& whole, double 
   }
   const double radius =
       std::max(0.5, std::min(2.2, 0.16 * side / std::sqrt(static_cast<double>(dots.size()) + 1)));
-  canvas.dots(dots, radius, kPalette[0], 0.75);
+  canvas.dots(dots, radius, kPalette[static_cast<std::size_t>(panel.color) % kPalette.size()], 0.75);
   for (const Series& series : panel.lines)
     draw_series(canvas, series, map, looks.of(series.name, series.color));
   canvas.end_clip();

@@ -83,7 +83,7 @@ class Legend {
       for (const std::string& part : panel.parts) add({Entry::Kind::bar, part, looks_.of(part)});
     } else {
       for (const BarGroup& group : panel.groups) {
-        for (const Bar& bar : group.bars) add({Entry::Kind::bar, bar.name, looks_.of(bar.name)});
+        for (const Bar& bar : group.bars) add({Entry::Kind::bar, bar.name, looks_.of(bar.name, bar.color)});
       }
     }
     add({Entry::Kind::comparison, panel.comparison_name, {kInk, 0}});

@@ -40,6 +40,9 @@ struct Axis {
 
 enum class Stroke { solid, dashed, none };
 
+/// For what all colours are held against.
+constexpr int kInkColor = 8;
+
 /// How low..high is drawn.
 enum class Spread { band, bars };
 
@@ -51,7 +54,8 @@ struct Series {
   Spread spread = Spread::band;
   Stroke stroke = Stroke::solid;
   bool markers = true;
-  /// Index into the palette; series of one colour differ by stroke or marker. Unset: by order of names.
+  /// Index into the palette, whose entry kInkColor is nearly black; series of one colour differ by stroke or
+  /// marker. Unset: by order of names.
   std::optional<int> color = {};
 };
 
@@ -75,6 +79,7 @@ struct Bar {
   std::vector<double> parts;
   std::optional<double> low = {}, high = {};  ///< spread of the whole bar
   std::optional<double> comparison = {};      ///< drawn as a diamond, such as a published value
+  std::optional<int> color = {};              ///< of a bar with one part, as Series::color
 };
 
 struct BarGroup {
@@ -100,6 +105,7 @@ struct Scatter {
   std::vector<double> x, y;
   /// The share of points that must be visible: the view is the square around the medians that holds so many.
   double visible = 1;
+  int color = 0;  ///< index into the palette
   /// Drawn as lines without markers, unless a series asks for markers; may be closed or turn back in x.
   std::vector<Series> lines;
 };

@@ -170,7 +170,10 @@ std::vector<Tick> ticks(const Axis& axis, Range range, int wanted) {
 
 std::string value_label(Unit unit, double value) {
   const Prefix prefix = prefix_for(unit, value, false);
-  return fmt::format("{:.3g}{}", value / prefix.factor, prefix.text);
+  const double scaled = value / prefix.factor;
+  // Three digits would make an exponent of what has four before the point.
+  if (std::abs(scaled) >= 999.5) return fmt::format("{:.0f}{}", scaled, prefix.text);
+  return fmt::format("{:.3g}{}", scaled, prefix.text);
 }
 
 }  // namespace flaunay::bench::plot

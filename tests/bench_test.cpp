@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -117,6 +120,8 @@ TEST_F(BenchTest, Usage) {
   EXPECT_EQ(run("modes --modes nothing"), 2);
   EXPECT_EQ(run("peers --distributions nothing"), 2);
   EXPECT_EQ(run("primitives --sizes 0"), 2);
+  EXPECT_EQ(run("paper --smallest 9 --largest 8"), 2);
+  EXPECT_EQ(run("paper --output " + path("err") + "/folder --smallest 6 --largest 6"), 3);
   EXPECT_EQ(run("modes --sizes 100 --json " + path("no/such/folder.json")), 3);
   EXPECT_EQ(run("primitives --sizes 100 --device no-such-device"), 4);
 }
@@ -192,6 +197,137 @@ TEST_F(BenchTest, PrimitivesAreRecorded) {
   }
 }
 
+/// Rows of a CSV file by the names of its columns.
+using Rows = std::vector<std::map<std::string, std::string>>;
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> result;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) result.push_back(cell);
+  return result;
+}
+
+Rows read_csv(const std::string& path, const std::string& expected_header) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, expected_header) << path;
+  const std::vector<std::string> names = cells(line);
+  Rows rows;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> values = cells(line);
+    EXPECT_EQ(values.size(), names.size()) << path << ": " << line;
+    rows.emplace_back();
+    for (std::size_t c = 0; c < std::min(names.size(), values.size()); ++c) rows.back()[names[c]] = values[c];
+  }
+  return rows;
+}
+
+std::uint64_t number(const std::map<std::string, std::string>& row, const std::string& column) {
+  const auto found = row.find(column);
+  return found == row.end() ? 0 : std::strtoull(found->second.c_str(), nullptr, 10);
+}
+
+std::string joined(const std::map<std::string, std::string>& row, const std::vector<std::string>& columns) {
+  std::string result;
+  for (const std::string& column : columns) result += row.at(column) + " ";
+  return result;
+}
+
+class PaperTest : public BenchTest {
+ protected:
+  void SetUp() override {
+    BenchTest::SetUp();
+    ASSERT_EQ(run("paper --smallest 8 --largest 9 --instances 2 --threads 3 --output " + path("paper")), 0)
+        << contents(path("err"));
+  }
+};
+
+constexpr std::size_t kInputsOfASize = 4 * 2;  // distributions, instances
+
+void expect_counts(const Rows& rows) {
+  const std::vector<std::string> kinds = {"arithmetic", "depths", "orientations", "circles"};
+  for (const auto& row : rows) {
+    std::uint64_t counted = 0;
+    for (const std::string& kind : kinds) counted += number(row, kind);
+    EXPECT_GE(number(row, "operations"), counted) << joined(row, {"algorithm", "component", "level"});
+    EXPECT_GE(number(row, "operations_with_bounds"), number(row, "operations"));
+    EXPECT_GT(number(row, "operations") + number(row, "critical_path"), 0u);
+  }
+}
+
+/// What precedes the first cut and all levels make the sum, for runs that are there level by level.
+void expect_levels_add_up(const Rows& rows) {
+  const std::vector<std::string> key = {"distribution", "n", "instance", "algorithm", "cut", "component"};
+  std::map<std::string, std::uint64_t> all, of_levels;
+  for (const auto& row : rows) {
+    (row.at("level") == "all" ? all : of_levels)[joined(row, key)] += number(row, "operations");
+  }
+  EXPECT_EQ(of_levels.size(), kInputsOfASize * 2 * 5);  // cuts, components
+  for (const auto& [name, operations] : of_levels) EXPECT_EQ(operations, all[name]) << name;
+}
+
+TEST_F(PaperTest, RunsAreWritten) {
+  const Rows rows = read_csv(path("paper/paper-runs.csv"),
+                             "distribution,n,instance,algorithm,cut,component,level,arithmetic,depths,"
+                             "orientations,circles,operations,operations_with_bounds,critical_path");
+  const auto totals =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.at("level") == "all"; });
+  // Seven variants of the algorithm with five components, and Dwyer's with cuts and merges.
+  EXPECT_EQ(static_cast<std::size_t>(totals), 2 * kInputsOfASize * (7 * 5 + 2));
+  expect_counts(rows);
+  expect_levels_add_up(rows);
+}
+
+TEST_F(PaperTest, LevelsAndEndGamesAreWritten) {
+  const Rows levels = read_csv(path("paper/paper-levels.csv"),
+                               "distribution,n,instance,algorithm,cut,level,regions,internal_points,corners,"
+                               "largest_region,path_vertices,operations,operations_so_far,critical_path");
+  EXPECT_EQ(
+      std::count_if(levels.begin(), levels.end(), [](const auto& row) { return row.at("level") == "0"; }),
+      static_cast<std::ptrdiff_t>(kInputsOfASize * 2));
+  for (const auto& row : levels) {
+    for (const char* column : {"regions", "internal_points", "corners", "largest_region", "path_vertices"}) {
+      EXPECT_GT(number(row, column), 0u) << column;
+    }
+    EXPECT_LE(number(row, "internal_points"), 512u);
+    EXPECT_GT(number(row, "operations_so_far"), number(row, "operations"));
+  }
+  const Rows endgames = read_csv(path("paper/paper-endgame.csv"), "distribution,n,cut,corners,regions");
+  EXPECT_GE(endgames.size(), kInputsOfASize);
+  for (const auto& row : endgames) {
+    EXPECT_GE(number(row, "corners"), 3u);
+    EXPECT_GT(number(row, "regions"), 0u);
+  }
+}
+
+TEST_F(PaperTest, ReportHasClaimsAndFigures) {
+  const std::string report = contents(path("paper/paper.md"));
+  for (const char* part :
+       {"within a factor of about 2 of Dwyer's", "work efficiency", "75 % dearer than uniform with quickhull",
+        "25 % dearer than uniform with the balanced hull", "work / depth about 10^4", "fewer than 10 corners",
+        "falls geometrically", "nearly free", "at most 1.0 times Dwyer's operations",
+        "10 % above uniform in the hull", "## How this differs from the paper", "docs/counting.md",
+        "`flaunay-bench paper --smallest 8 --largest 9"}) {
+    EXPECT_NE(report.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(report.find("nan"), std::string::npos);
+  std::size_t verdicts = 0;
+  for (const std::string verdict : {"**agree**", "**partly**", "**disagree**"}) {
+    for (std::size_t at = report.find(verdict); at != std::string::npos; at = report.find(verdict, at + 1)) {
+      ++verdicts;
+    }
+  }
+  EXPECT_EQ(verdicts, 10u);
+  for (int figure = 6; figure <= 14; ++figure) {
+    const std::string start = "](paper-figure-" + std::to_string(figure) + "-";
+    const std::size_t at = report.find(start);
+    ASSERT_NE(at, std::string::npos) << start;
+    const std::string name = report.substr(at + 2, report.find(')', at) - at - 2);
+    EXPECT_EQ(xml_fault(contents(path("paper/" + name))), "") << name;
+  }
+}
+
 plot::Lines some_lines() {
   plot::Lines lines;
   lines.title = "a < b & c";
@@ -229,12 +365,13 @@ TEST(Plot, BarsHaveTheirHeights) {
   bars.parts = {"hull", "merge"};
   bars.comparison_name = "published";
   bars.groups = {{"uniform", {{"a", {30, 10}, {}, {}, 50}, {"b", {15, 5}}}}};
+  bars.groups[0].bars.push_back({"c", {1234, 0}});
   bars.values = true;
   plot::Figure figure;
   figure.panels = {bars};
   const std::string svg = plot::render(figure);
   EXPECT_EQ(xml_fault(svg), "");
-  for (const char* label : {">hull<", ">merge<", ">published<", ">40<", ">20<", ">uniform<"}) {
+  for (const char* label : {">hull<", ">merge<", ">published<", ">40<", ">20<", ">1234<", ">uniform<"}) {
     EXPECT_NE(svg.find(label), std::string::npos) << label;
   }
 }
