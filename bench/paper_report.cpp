@@ -293,11 +293,7 @@ constexpr const char* kDifferences =
     "of our own "
     "for each stage: [docs/counting.md](../../docs/counting.md). Dwyer's algorithm is counted by the same "
     "rules; "
-    "both sort their input, and both counts include that. The depth of a point below a chord is evaluated "
-    "from the "
-    "coordinates, so that it can be decided exactly; that takes more operations than an orientation of "
-    "points "
-    "projected beforehand, and quickhull does little else.\n"
+    "both sort their input, and both counts include that.\n"
     "- **Generators.** The same four distributions, from generators of our own.\n";
 
 }  // namespace
