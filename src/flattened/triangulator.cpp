@@ -32,7 +32,7 @@ constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // twice: of the level at work and of the next
 constexpr std::size_t kScratchBytesPerPoint = 118;
 // The most that any input measured has needed, those made to be bad among them.
-constexpr std::size_t kBytesPerPoint = 300;
+constexpr std::size_t kBytesPerPoint = 320;
 
 // Every failure of OpenCL as an Error.
 template <typename Work>
