@@ -64,12 +64,15 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
       cl_int code = CL_SUCCESS;
       cl_mem memory =
           clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
+      // The pages go with the buffer, which lives on while work that uses it is enqueued.
       if (code == CL_SUCCESS) {
-        ++block_allocations_;
-        return std::shared_ptr<_cl_mem>(memory, [pages](cl_mem m) {
-          clReleaseMemObject(m);
-          std::free(pages);
-        });
+        code = clSetMemObjectDestructorCallback(
+            memory, [](cl_mem, void* freed) { std::free(freed); }, pages);
+        if (code == CL_SUCCESS) {
+          ++block_allocations_;
+          return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
+        }
+        clReleaseMemObject(memory);
       }
       std::free(pages);
     }

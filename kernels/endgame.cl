@@ -8,7 +8,7 @@
 #define EXACT 0
 #include "shared/region_triangles.h"
 
-// status: 0 done, 2 undecided, 3 too large. broken[0] gets bit 2 if a border is not what it should be.
+// status: 0 done, 2 undecided, 3 too large. broken[0] gets 2 if a border is not what it should be.
 kernel void small_regions(int n, double orient_bound, double circle_bound, global const int* restrict offsets,
                           global const double2* restrict points, global int* corners, global uint* restrict counts,
                           global uchar* restrict status, global volatile int* restrict broken COUNTERS) {

@@ -15,9 +15,9 @@
 #define SIDE_RIGHT 1
 #define SIDE_BORDER 2
 
-// A corner's code: the child it goes to (0, 1), if its vertex is off the path; CODE_UNDECIDED; else CODE_ON_PATH and how the path's two edges
-// at the vertex lie in the corner's wedge. Angles are counter-clockwise from the edge to `after`: those of the path's
-// next edge, of its previous one, and of the edge to `before`, which ends the wedge.
+// A corner's code: the child it goes to (0, 1), if its vertex is off the path; CODE_UNDECIDED; else CODE_ON_PATH and how
+// the path's two edges at the vertex lie in the corner's wedge. Angles are counter-clockwise from the edge to `after`:
+// those of the path's next edge, of its previous one, and of the edge to `before`, which ends the wedge.
 #define CODE_NEXT_IS_AFTER 1      // the next edge's angle is 0
 #define CODE_PREVIOUS_IS_AFTER 2  // the previous edge's angle is 0
 #define CODE_NEXT_IN 4            // the next edge's angle is below the wedge's
@@ -158,7 +158,8 @@ kernel void corner_codes_exact(global const uint* restrict count, global const i
                                global const int* restrict corners, global const int* restrict regions,
                                global const int* restrict axis, global const double* restrict cut,
                                global const double2* restrict points, global const int* restrict path_offsets,
-                               global const int* restrict path, global const int* restrict places, global uchar* restrict codes COUNTERS) {
+                               global const int* restrict path, global const int* restrict places,
+                               global uchar* restrict codes COUNTERS) {
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int i = list[k];

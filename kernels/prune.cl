@@ -1,14 +1,14 @@
 // Prune: from all points of every region of a level, those that can be on its hull.
 //
-// extreme_* find the ends of each region's hull among its border vertices (passes of a segmented arg-reduce).
+// extreme_vertices finds the ends of each region's hull among its border vertices (passes of a segmented arg-reduce).
 // project_points projects the internal points; candidate_flags takes from each bucket of consecutive ones, sorted along
-// the cut line, the one nearest to the line: one pass each, the latter a work-item a bucket. Quickhull makes those into a chord path; thin_regions and
-// thin_offsets let many candidates be pruned as a level of their own first. chord_bands bounds
-// for each chord how high above the line a point can be and matter; prune_points and prune_corners then hold every internal
-// point and corner against that bound and the chord over it: one pass, a binary search for each bucket or corner at most. What floating point cannot
-// decide gets flag 2 and goes to hull_depth_exact (quickhull.cl). Quickhull goes on from that path: chord_keys, a sort,
-// gather_below and chord_begins bring what is kept together by its chord. Or it begins with the ends alone: begin_paths and
-// gather_points bring flagged elements together by region.
+// the cut line, the one nearest to the line: one pass each, the latter a work-item a bucket. Quickhull makes those into a
+// chord path; thin_regions and thin_offsets let many candidates be pruned as a level of their own first. chord_bands bounds
+// for each chord how high above the line a point can be and matter; prune_points and prune_corners then hold every
+// internal point and corner against that bound and the chord over it: one pass, a binary search for each bucket or corner
+// at most. What floating point cannot decide gets flag 2 and goes to hull_depth_exact (quickhull.cl). Quickhull goes on
+// from that path: chord_keys, a sort, gather_below and chord_begins bring what is kept together by its chord. Or it begins
+// with the ends alone: begin_paths and gather_points bring flagged elements together by region.
 
 #include "shared/counting.h"
 #include "shared/hull_height.h"
@@ -77,7 +77,7 @@ kernel void candidate_flags(int n, int elements, global const int* restrict regi
 // last vertex with u no greater than p's; becomes the vertex whose chord p is below. depth: the rounded one, of what may
 // be kept; infinite for what is lower than the path's vertex of its u, so that the first round takes it: a mirror image
 // of that vertex in the cut line is not strictly below any later chord from there.
-static inline int held_against(int id, double2 p, int* low, int first, int last, int axis, double q, int keep_on,
+static inline int held_against(int id, double2 p, int* low, int last, int axis, double q, int keep_on,
                                double bound, global const double2* restrict points, global const int* restrict path,
                                global const double2* restrict path_projections, double* depth COUNTERS) {
   const int planar = is_planar(axis);
@@ -163,7 +163,7 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
         const int id = a == AXIS_Y ? x_list[i] : y_list[i];
         int above = low;
         double below = 0.0;
-        const int keep = held_against(id, p, &above, first, last, a, cut[r], keep_on, bound, points, path,
+        const int keep = held_against(id, p, &above, last, a, cut[r], keep_on, bound, points, path,
                                       path_projections, &below WITH_COUNTERS);
         flags[i] = keep;
         if (keep == 1 || keep == 2) {
@@ -197,7 +197,7 @@ kernel void prune_corners(int n, int points_count, double bound, global const in
     double below = 0.0;
     COUNT(COMPONENT_HULL, KIND_ARITHMETIC, 2 + search_comparisons(last - first + 1) + 1);
     const int keep = p.x > band[low] ? 0
-                                     : held_against(id, p, &low, first, last, a, cut[r], 0, bound, points, path,
+                                     : held_against(id, p, &low, last, a, cut[r], 0, bound, points, path,
                                                     path_projections, &below WITH_COUNTERS);
     flags[points_count + i] = keep;
     if (keep == 1 || keep == 2) {
@@ -235,8 +235,9 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
                         global const int* restrict point_offsets, global const int* restrict corner_offsets,
                         global const int* restrict first_end, global const int* restrict last_end,
                         global const int* restrict axis, global const double* restrict cut,
-                        global const double2* restrict points, global int* restrict path, global double2* restrict path_projections,
-                        global int* restrict path_region, global int* restrict first, global int2* restrict before COUNTERS) {
+                        global const double2* restrict points, global int* restrict path,
+                        global double2* restrict path_projections, global int* restrict path_region,
+                        global int* restrict first, global int2* restrict before COUNTERS) {
   const int r = get_global_id(0);
   if (r <= n) {
     const int point_count = positions_below(point_offsets[r], kept, positions);

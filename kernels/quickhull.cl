@@ -1,18 +1,21 @@
 // Segmented quickhull: the strict lower hull of every region's points at once, as a path in the order of u.
 //
-// Paths grow from each region's two ends. Points lie in segments, segment v being what is left below the chord from path
-// vertex v to the next one; path vertices are in the order of (region, u), and the last of a region has no points. A
+// Paths grow from each region's two ends, or from prune's paths, below which depths are known already. Points lie in
+// segments, segment v being what is left below the chord from path vertex v to the next one; path vertices are in the order of (region, u), and the last of a region has no points. A
 // round: hull_depths holds each point against its chord; hull_depth_exact decides what floating point could not (a packed
 // list); deepest_points takes each segment's deepest point (passes of a segmented arg-reduce), which becomes a vertex; the
-// segment's points go to either side of it, stably: split_flags and side_flags make counts for scans (scan.cl),
+// segment's points go to either side of it, stably: split_counts and side_flags make counts for scans (scan.cl),
 // advance_paths and advance_points move. The deepest point is chosen by rounded depths and may be no vertex of the
 // hull: when no points are left, path_flags (and hull_depth_exact) find vertices on or above the segment of their
 // neighbours, compact_path drops them, until there are none.
 //
-// Quickhull's splits can be lopsided. A balanced round (Chan, Snoeyink and Yap 1997; with a random pair's slope in place of the
-// median one, Bhattacharya and Sen 1997) pairs neighbouring points of a segment: random_pairs takes one pair of each
-// segment, tilted_depths the points' depths above a line of that pair's slope, of which deepest_points takes the greatest; drop_pairs
-// then finds in each pair on one side of it a point that is above a chord, and drops that.
+// Quickhull's splits can be lopsided. A balanced round (Chan, Snoeyink and Yap 1997; with a random pair's slope in place
+// of the median one, Bhattacharya and Sen 1997) pairs neighbouring points of a segment: random_pairs takes one pair of each
+// segment, tilted_depths the points' depths above a line of that pair's slope, of which deepest_points takes the greatest;
+// drop_pairs then finds in each pair on one side of it a point that is above a chord, and drops that.
+//
+// Dropping may lay bare one vertex at a time. restart_paths and restart_segments make a path's vertices the points of a
+// quickhull that begins with its ends, which sorts them out in fewer rounds.
 
 #include "shared/counting.h"
 #include "shared/hull_height.h"
@@ -90,7 +93,8 @@ SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, global const uchar* restrict 
                      global const int* restrict axis, global const double* restrict cut,
                      global const double2* restrict points)
 
-// Whether points i and i + 1 are a pair: places 2k and 2k + 1 of one segment, both below its chord. Pairs of equal u have no slope.
+// Whether points i and i + 1 are a pair: places 2k and 2k + 1 of one segment, both below its chord. Pairs of equal u have
+// no slope.
 static inline int is_pair(int i, int n, global const int* restrict segment, global const int* restrict first,
                           global const uchar* restrict flags) {
   return i + 1 < n && ((i - first[segment[i]]) & 1) == 0 && segment[i + 1] == segment[i] && flags[i] == 1 &&
@@ -143,7 +147,7 @@ kernel void drop_pairs(int n, double bound, global const int* restrict segment, 
   }
 }
 
-kernel void split_flags(int n, global const int* restrict deepest, global uint* restrict splits) {
+kernel void split_counts(int n, global const int* restrict deepest, global uint* restrict splits) {
   const int s = get_global_id(0);
   if (s < n) splits[s] = deepest[s] >= 0;
 }

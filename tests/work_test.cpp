@@ -193,5 +193,32 @@ TEST(Work, CriticalPathOfTheFirstLevel) {
   }
 }
 
+// The regions that are left are solved by Dwyer's algorithm, whose work is the end game's; what the device
+// did before is what it does in flattened mode. Less than Dwyer's on all points, whose outermost merges are
+// spared.
+TEST(Work, OfAPartition) {
+  constexpr auto kEndgame = static_cast<std::size_t>(Component::endgame);
+  const Coordinates points = make_fixture("uniform", kPoints, 3);
+  Options options;
+  options.mode = Mode::partition;
+  options.partition_levels = 3;
+  options.count = true;
+  const Work work = triangulator().triangulate(points.data(), kPoints, options).statistics.work;
+  const Work flattened = run(points, Mode::flattened, Hull::prune, Cut::interquartile).statistics.work;
+  const Work dwyer = run(points, Mode::dwyer, Hull::prune, Cut::interquartile).statistics.work;
+  ASSERT_EQ(work.levels.size(), 3u);
+  std::uint64_t merges = 0;
+  for (const Work::Components& level : dwyer.levels) {
+    for (const OperationCounts& counts : level) merges += counts.operations();
+  }
+  for (std::size_t l = 0; l < 3; ++l) {
+    for (std::size_t c = 0; c < kEndgame; ++c) {
+      EXPECT_EQ(work.levels[l][c].operations(), flattened.levels[l][c].operations()) << kComponentNames[c];
+    }
+  }
+  EXPECT_GT(work.levels[2][kEndgame].operations(), merges / 2);
+  EXPECT_LT(work.levels[2][kEndgame].operations(), merges * 5 / 4);
+}
+
 }  // namespace
 }  // namespace flaunay::testing

@@ -37,8 +37,8 @@ static inline double2 hull_depth(double2 a, double2 b, double2 p, int planar) {
   return PAIR(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
 }
 
-// The exact sign of depth, a, b, p in the frame (s, u): -(bu * ds(c) - cu * ds(b)) with everything relative to a, where for the cut at q
-// ds(p) = p_s (p_s + t) + p_u^2, t = 2 (a_s - q), and for a planar hull ds(p) = p_s.
+// The exact sign of depth, a, b, p in the frame (s, u): -(bu * ds(c) - cu * ds(b)) with everything relative to a, where
+// for the cut at q ds(p) = p_s (p_s + t) + p_u^2, t = 2 (a_s - q), and for a planar hull ds(p) = p_s.
 static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int planar) {
   const double2 bu = two_sum(b.y, -a.y);
   const double2 pu = two_sum(p.y, -a.y);

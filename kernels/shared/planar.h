@@ -85,9 +85,10 @@ static inline int angle_side(angle seen, double bound) {
   return seen.cross > error ? 1 : seen.cross < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
 
-// 1 if a point left of the edge sees it under a wider angle than another, which is to lie inside the circle through the edge and
-// that one; -1, 0 if on it, UNDECIDED. The error of a cross or dot product is below 4.02 e times its magnitude, that of
-// the products below 9.1 e times theirs, that of the difference below 10.2 e of the sum: see docs/exactness.md.
+// 1 if a point left of the edge sees it under a wider angle than another, which is to lie inside the circle through the
+// edge and that one; -1 if narrower, 0 if it lies on the circle, UNDECIDED. The error of a cross or dot product is below
+// 4.02 e times its magnitude, that of the products below 9.1 e times theirs, that of the difference below 10.2 e of the
+// sum: see docs/exactness.md.
 #define ANGLE_BOUND (11.0 * 0x1p-53)
 static inline int angle_compared(angle seen, angle other, double bound) {
   const double det = other.dot * seen.cross - seen.dot * other.cross;

@@ -90,7 +90,7 @@ static inline int apex_of(region_cycle* g, int i, int j) {
     const int left = angle_side(seen, g->orient_bound);
     const int turn = DECIDE(left, orient_exact(a, b, p));
     if (turn == UNDECIDED) return REGION_UNDECIDED;
-    if (turn < 0 || turn == 0) continue;
+    if (turn <= 0) continue;
     int wider = 1;
     if (apex >= 0) {
       COUNTED(g->arithmetic += ANGLE_OPERATIONS;)

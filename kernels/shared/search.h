@@ -19,8 +19,8 @@ static inline int segment_of(int i, int count, global const int* restrict offset
   return low;
 }
 
-// The last path vertex of first..last with u no greater than the given one; first if there is none. Places are (s, u),
-// ascending in u.
+// The last path vertex of first..last with u no greater than the given one; first if there is none. Projections are
+// (h, u), ascending in u.
 static inline int search_path(double u, int first, int last, global const double2* restrict path_projections) {
   int low = first, high = last + 1;
   while (high - low > 1) {

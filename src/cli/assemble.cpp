@@ -64,19 +64,21 @@ std::vector<std::int32_t> solve_region(const io::Points& points, const Region& r
   return triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
 }
 
-// Calls task(k) for all k below count, several at a time. Throws one of its exceptions, if any.
+// Calls task(k) for all k below count, several at a time. Throws the exception of the smallest k, if any.
 template <typename Task>
 void run_in_parallel(std::size_t count, int threads, const Task& task) {
   std::atomic<std::size_t> next{0};
   std::mutex failure_mutex;
   std::exception_ptr failure;
+  std::size_t failed = count;
   const auto work = [&] {
     for (std::size_t k = next++; k < count; k = next++) {
       try {
         task(k);
       } catch (...) {
         const std::lock_guard<std::mutex> lock(failure_mutex);
-        failure = std::current_exception();
+        if (k < failed) failure = std::current_exception();
+        failed = std::min(failed, k);
       }
     }
   };

@@ -39,7 +39,7 @@ CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& des
 }
 
 void add_quiet(CLI::App* command, bool& quiet) {
-  command->add_flag("--quiet", quiet, "No progress and no final line");
+  command->add_flag("--quiet", quiet, "No progress, no tables and no final line");
 }
 
 const char* to_string(Cut cut) { return cut == Cut::alternate ? "alternate" : "iqr"; }

@@ -11,7 +11,7 @@
 namespace flaunay::cli {
 
 /// Beyond these levels there are more regions than indices.
-constexpr int kMostLevels = 30;
+constexpr int kMostPartitionLevels = 30;
 
 /// The points, as the first argument.
 void add_input(CLI::App* command, std::string& path);

@@ -78,7 +78,7 @@ void add_partition(CLI::App& app, Action& action) {
       "partition", "Cut the triangulation of a file's points into regions for other programs to solve");
   add_input(command, request->input);
   command->add_option("--levels", request->levels, "How often to cut: up to 2^levels regions")
-      ->check(CLI::Range(0, kMostLevels))
+      ->check(CLI::Range(0, kMostPartitionLevels))
       ->required();
   add_path(command, "-o,--output", request->folder,
            "A folder for the regions (.node and .poly), finished triangles (.npy) and partition.json")

@@ -187,7 +187,7 @@ std::string statistics_json(const Statistics& statistics, const RunFacts& facts)
           {{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});
     }
   }
-  if (!statistics.work.levels.empty()) {
+  if (facts.counted) {
     const auto components = [](const Work::Components& work) {
       constexpr const char* kNames[kComponents] = {"cut", "hull", "merge", "split", "endgame"};
       Json named;

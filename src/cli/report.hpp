@@ -13,6 +13,7 @@ struct RunFacts {
   std::string mode;
   std::string cut;             // empty: there is none
   std::string dividing_paths;  // likewise
+  bool counted = false;        ///< Statistics::work is filled
   std::string what_was_done = "triangulated";
   double reading_seconds = 0;
   double opening_seconds = 0;  ///< choosing the device and preparing it; programs may be built then

@@ -58,6 +58,7 @@ RunFacts facts_of(const TriangulateRequest& request) {
   RunFacts facts;
   facts.input = request.input;
   facts.mode = to_string(request.mode);
+  facts.counted = request.count;
   if (request.mode != Mode::dwyer) {
     facts.cut = to_string(request.cut);
     facts.dividing_paths = to_string(request.dividing_paths);
@@ -143,7 +144,7 @@ void add_triangulate(CLI::App& app, Action& action) {
   command
       ->add_option("--partition-levels", request->partition_levels,
                    "Mode partition: levels on the device; enough for the threads if not given")
-      ->check(CLI::Range(1, kMostLevels));
+      ->check(CLI::Range(1, kMostPartitionLevels));
   add_threads(command, request->threads, "Mode partition: threads on the host; one per core if not given");
   add_device(command, request->device);
   command->add_flag("--profile", request->profile, "Time every kernel");

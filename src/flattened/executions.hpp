@@ -16,7 +16,7 @@ namespace flaunay::flattened {
 /// The recursion of one call: what its steps share, and where they put triangles.
 class Recursion {
  public:
-  /// arenas: level d lives in arenas[d % 2]. triangles: room for all of the result.
+  /// arenas: level d lives in arenas[d % 2]; of recursive(), all levels in the first.
   Recursion(Workspace& work, PointTable& table, const Options& options, std::array<Arena*, 2> arenas);
 
   /// The first borders and regions; makes room for the triangles.

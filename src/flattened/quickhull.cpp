@@ -86,7 +86,7 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
     if (rounds >= balanced_from) {
       work.add_depth(Component::hull, 6 + log2_ceiling(points) + 2 + kDepthOperations);
     }
-    runtime.map("quickhull", "split_flags", vertices, deepest, splits);
+    runtime.map("quickhull", "split_counts", vertices, deepest, splits);
     host::exclusive_scan(runtime, splits, vertices, splits);
     runtime.map("quickhull", "side_flags", points, now.segments, now.projections, flags, deepest, sides);
     host::exclusive_scan(runtime, sides, points, sides);

@@ -1,5 +1,5 @@
 // The stages of the flattened triangulator and what they hand to each other. Each stage is one function, in
-// the file named as its kernel file; the level loop is in triangulator.cpp.
+// the file named as its kernel file; the level loop is in executions.cpp.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,8 @@ struct Workspace {
   host::Runtime& runtime;
   Arena& persistent;  ///< lives as long as the call
   Statistics& statistics;
-  Arena* children = nullptr;  ///< of the regions that a step makes
+  /// Of the regions that a step makes; before, of what waits for quickhull.
+  Arena* children = nullptr;
   Hull hull = Hull::prune;
   Bounds bounds{};
   /// Bits set by kernels on a broken invariant; see check_invariants.

@@ -10,6 +10,7 @@
 #include "flattened/self_test.hpp"
 #include "flattened/stages.hpp"
 #include "host/device.hpp"
+#include "recursive/counter.hpp"
 #include "recursive/mesh.hpp"
 #include "recursive/regions.hpp"
 
@@ -300,10 +301,14 @@ void Triangulator::Implementation::finish_partition(Call& call, flattened::Recur
   const recursive::RegionArrays regions = recursion.read_regions();
   call.end_phase("partition");
   call.report("regions", 0.4);
-  const std::vector<std::int32_t> solved =
-      recursive::solve_regions(sets.predicates, sets.points.data(), regions, options.threads);
+  OperationCounts counts;
+  const std::vector<std::int32_t> solved = recursive::solve_regions(
+      sets.predicates, sets.points.data(), regions, options.threads, options.count ? &counts : nullptr);
   triangles.insert(triangles.end(), solved.begin(), solved.end());
   call.end_levels(triangles.size() / 3, borders.triangles);
+  Work& work = result.statistics.work;
+  Work::Components& last = work.levels.empty() ? work.start : work.levels.back();
+  recursive::add_beside(last[static_cast<std::size_t>(Component::endgame)], counts);
   call.end_phase("regions");
   call.report("canonical form", 0.9);
   Triangulation finished = recursive::finish(sets, std::move(triangles), {}, options);
@@ -321,8 +326,10 @@ Partition Triangulator::Implementation::partition(const double* coordinates, std
   result.statistics.device = runtime.device().name();
   if (n == 0) return result;
   std::vector<std::int32_t> representatives;
-  Call call(*this, coordinates, {0, n}, options, result.statistics, representatives);
-  Recursion recursion(call.work, call.table, options, {&even, &odd});
+  Options uncounted = options;
+  uncounted.count = false;
+  Call call(*this, coordinates, {0, n}, uncounted, result.statistics, representatives);
+  Recursion recursion(call.work, call.table, uncounted, {&even, &odd});
   const Borders borders = recursion.begin();
   call.end_phase("borders");
   recursion.flattened(std::min<int>(levels, kMostLevels));

@@ -58,6 +58,17 @@ class Counter {
   OperationCounts counts_;
 };
 
+/// All of a work's components and levels, one after the other.
+inline OperationCounts sum_of(const Work& work) {
+  Counter sum;
+  const auto add = [&sum](const Work::Components& components) {
+    for (const OperationCounts& counts : components) sum.add(counts);
+  };
+  add(work.start);
+  for (const Work::Components& level : work.levels) add(level);
+  return sum.counts();
+}
+
 /// Adds the work of a region to that of its level, whose regions are worked on side by side.
 inline void add_beside(OperationCounts& level, const OperationCounts& region) {
   level.arithmetic += region.arithmetic;

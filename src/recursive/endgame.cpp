@@ -142,15 +142,6 @@ class Polygon {
   Counter& counter_;
 };
 
-// All that dwyer() does, one after the other where it is so there.
-void add_dwyer(const Work& work, Counter& counter) {
-  const auto add = [&counter](const Work::Components& components) {
-    for (const OperationCounts& counts : components) counter.add(counts);
-  };
-  add(work.start);
-  for (const Work::Components& level : work.levels) add(level);
-}
-
 void large_region(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
                   std::vector<std::int32_t>& triangles, Counter& counter) {
   RegionArrays region;
@@ -166,7 +157,7 @@ void large_region(const Predicates& predicates, const std::vector<Point>& points
   } catch (const Error& error) {
     throw Error(ErrorKind::internal, std::string("a region: ") + error.what() + "; please report the input");
   }
-  add_dwyer(work, counter);
+  counter.add(sum_of(work));
 }
 
 }  // namespace

@@ -147,13 +147,6 @@ Ids match_edges(const Ids& triangles) {
   return twins;
 }
 
-void canonicalize(const PointSets& sets, Ids& triangles, Ids& twins) {
-  Mesh mesh{std::move(triangles), std::move(twins)};
-  canonicalize(sets, mesh);
-  triangles = std::move(mesh.triangles);
-  twins = std::move(mesh.twins);
-}
-
 Triangulation finish(const PointSets& sets, Ids triangles, Ids twins, const Options& options) {
   if (twins.size() != triangles.size()) twins = match_edges(triangles);
   Mesh mesh{std::move(triangles), std::move(twins)};

@@ -23,12 +23,6 @@ bool find_twins(const std::vector<std::int32_t>& triangles, std::vector<std::int
 /// The same; throws Error(internal) where find_twins returns false.
 std::vector<std::int32_t> match_edges(const std::vector<std::int32_t>& triangles);
 
-/// Replaces the triangles of every cell, a polygon of several triangles on one empty circle, by the fan from
-/// its lexicographically smallest vertex, and mends the twins. Throws Error(internal) if an edge is not
-/// Delaunay. O(n).
-void canonicalize(const PointSets& sets, std::vector<std::int32_t>& triangles,
-                  std::vector<std::int32_t>& twins);
-
 /// Everything that a caller gets, but statistics of how it came about: triangles ordered by set, rows from
 /// their smallest index, neighbours if asked for, hulls, representatives, and the counts in
 /// Triangulation::statistics. triangles: of ids, counter-clockwise, any order and any choice among cocircular

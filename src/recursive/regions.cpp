@@ -12,6 +12,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "recursive/cells.hpp"
+#include "recursive/counter.hpp"
 #include "recursive/dwyer.hpp"
 #include "recursive/halfedges.hpp"
 
@@ -232,8 +233,9 @@ Ids solve_region(const Predicates& predicates, const Point* points, const Region
   return triangles;
 }
 
-Ids solve_regions(const Predicates& predicates, const Point* points, const RegionArrays& regions,
-                  int threads) {
+Ids solve_regions(const Predicates& predicates, const Point* points, const RegionArrays& regions, int threads,
+                  OperationCounts* counts) {
+  std::vector<Work> works(counts != nullptr ? regions.size() : 0);
   const Ids order = largest_first(regions);
   std::vector<Ids> solutions(regions.size());
   std::atomic<std::size_t> next{0};
@@ -242,7 +244,7 @@ Ids solve_regions(const Predicates& predicates, const Point* points, const Regio
     for (std::size_t k = next++; k < order.size(); k = next++) {
       const auto r = static_cast<std::size_t>(order[k]);
       try {
-        solutions[r] = solve_region(predicates, points, regions, r);
+        solutions[r] = solve_region(predicates, points, regions, r, counts != nullptr ? &works[r] : nullptr);
       } catch (...) {
         failure.note(r, std::current_exception());
       }
@@ -258,6 +260,7 @@ Ids solve_regions(const Predicates& predicates, const Point* points, const Regio
   work();
   for (std::thread& thread : others) thread.join();
   failure.rethrow();
+  for (const Work& done : works) add_beside(*counts, sum_of(done));
 
   std::size_t total = 0;
   for (const Ids& solution : solutions) total += solution.size();

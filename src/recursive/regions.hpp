@@ -49,7 +49,9 @@ std::vector<std::int32_t> solve_region(const Predicates& predicates, const Point
 ///
 /// points: of all ids. threads: host threads, at least 1; 0 takes one per core. Throws Error(internal) that
 /// names the first region whose corners are no border. O(n log n) work.
+/// counts: if not null, gets the work of all regions, and the critical path of the dearest.
 std::vector<std::int32_t> solve_regions(const Predicates& predicates, const Point* points,
-                                        const RegionArrays& regions, int threads);
+                                        const RegionArrays& regions, int threads,
+                                        OperationCounts* counts = nullptr);
 
 }  // namespace flaunay::recursive

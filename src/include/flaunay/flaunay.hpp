@@ -104,8 +104,8 @@ struct Work {
   using Components = std::array<OperationCounts, kComponents>;
   Components start{};
   std::vector<Components> levels;
-  /// Corners of each region that the end game triangulated: histogram[k] regions of k corners. Regions of more
-  /// than 1023 corners count as such of 1023; there are no zeros at the end.
+  /// Corners of each region that the end game triangulated: histogram[k] regions of k corners. Regions of
+  /// more than 1023 corners count as such of 1023; there are no zeros at the end.
   std::vector<std::uint64_t> endgame_sizes;
 };
 
@@ -115,7 +115,7 @@ struct LevelStatistics {
   std::size_t internal_points = 0;  ///< their internal points, all together
   std::size_t corners = 0;          ///< their border corners, all together
   std::size_t largest_region = 0;   ///< internal points of the largest of them
-  std::size_t candidates = 0;       ///< points that prune's chord is made of
+  std::size_t candidates = 0;       ///< for prune's paths, candidates of candidates included
   std::size_t survivors = 0;        ///< points that prune leaves to quickhull
   std::size_t path_vertices = 0;    ///< vertices of the dividing paths, all together
   int candidate_rounds = 0;         ///< quickhull rounds on the candidates
@@ -251,7 +251,8 @@ class Triangulator {
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
 
-  /// The regions after `levels` levels, up to 2^levels of them; O(levels n) work after sorting.
+  /// The regions after `levels` levels, up to 2^levels of them; O(levels n) work after sorting. Options::mode
+  /// and count mean nothing here.
   Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options = {});
 
  private:
