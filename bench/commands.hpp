@@ -5,12 +5,16 @@
 #include <functional>
 #include <string>
 
+#include "cli/exit_codes.hpp"
+
 namespace flaunay::bench {
 
 /// The chosen subcommand's work, given the command line as the record shows it; returns the exit code.
 using Action = std::function<int(const std::string& command)>;
 
-enum ExitCode : int { kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDevice = 4 };
+using cli::kFailure;
+using cli::kSuccess;
+using cli::kUsage;
 
 void add_peers(CLI::App& app, Action& action);
 void add_primitives(CLI::App& app, Action& action);

@@ -16,20 +16,6 @@ int fail(int code, const std::string& message) {
   return code;
 }
 
-int exit_code(flaunay::ErrorKind kind) {
-  switch (kind) {
-    case flaunay::ErrorKind::usage:
-      return kUsage;
-    case flaunay::ErrorKind::input:
-      return kBadInput;
-    case flaunay::ErrorKind::device:
-      return kDevice;
-    case flaunay::ErrorKind::internal:
-      break;
-  }
-  return kFailure;
-}
-
 std::string command_line(int argc, char** argv) {
   std::string command = "flaunay-bench";
   for (int i = 1; i < argc; ++i) command += fmt::format(" {}", argv[i]);
@@ -62,7 +48,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const flaunay::Error& error) {
-    return fail(exit_code(error.kind()), error.what());
+    return fail(flaunay::cli::exit_code(error.kind()), error.what());
   } catch (const std::exception& error) {
     return fail(kFailure, error.what());
   }

@@ -19,8 +19,8 @@ struct CrossCheck {
   std::array<double, kComponents> by_component;
 };
 
-/// The kernels and the twin agree if their operations differ by no more than this share: prune's buckets begin at other
-/// points where all regions of a level are in one list.
+/// The kernels and the twin agree if their operations differ by no more than this share: prune's buckets
+/// begin at other points where all regions of a level are in one list.
 constexpr double kAgreeingRatio = 0.03;
 
 /// checks may be empty; then unchecked says why.

@@ -3,50 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
-#include <thread>
 
 #include "inputs.hpp"
 #include "io/generate.hpp"
+#include "recursive/threads.hpp"
 
 namespace flaunay::bench::paper {
 namespace {
 
 bool same(const Method& a, const Method& b) { return a.algorithm == b.algorithm && a.cut == b.cut; }
-
-/// Calls work with each of 0 to count - 1 on several threads; rethrows the first failure.
-void for_each_index(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto worker = [&] {
-    for (std::size_t index = next++; index < count; index = next++) {
-      try {
-        work(index);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-      }
-    }
-  };
-  std::vector<std::thread> others;
-  for (unsigned t = 1; t < threads; ++t) others.emplace_back(worker);
-  worker();
-  for (std::thread& other : others) other.join();
-  if (failure) std::rethrow_exception(failure);
-}
-
-void add(OperationCounts& sum, const OperationCounts& counts) {
-  sum.arithmetic += counts.arithmetic;
-  sum.depths += counts.depths;
-  sum.orientations += counts.orientations;
-  sum.circles += counts.circles;
-  sum.critical_path += counts.critical_path;
-}
 
 double operations(const Work::Components& components) {
   return static_cast<double>(total(components).operations());
@@ -100,7 +67,7 @@ Experiment::Experiment(const Plan& plan) : plan_(plan) {
   runs_.resize(inputs * methods().size());
   Progress progress(inputs);
   std::mutex progress_mutex;
-  for_each_index(inputs, plan.threads, [&](std::size_t index) {
+  recursive::for_each_index(inputs, static_cast<int>(plan.threads), [&](std::size_t index) {
     // Largest first, so that no thread begins a long one when the others have ended.
     const std::size_t n = all_sizes[all_sizes.size() - 1 - index / inputs_of_a_size];
     const std::size_t distribution = index % inputs_of_a_size / instances;
@@ -176,14 +143,14 @@ const char* component_name(std::size_t component) {
 Work::Components totals(const Work& work) {
   Work::Components sums = work.start;
   for (const Work::Components& level : work.levels) {
-    for (std::size_t c = 0; c < kComponents; ++c) add(sums[c], level[c]);
+    for (std::size_t c = 0; c < kComponents; ++c) sums[c] += level[c];
   }
   return sums;
 }
 
 OperationCounts total(const Work::Components& components) {
   OperationCounts sum;
-  for (const OperationCounts& counts : components) add(sum, counts);
+  for (const OperationCounts& counts : components) sum += counts;
   return sum;
 }
 

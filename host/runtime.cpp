@@ -2,21 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <set>
 #include <sstream>
 
+#include "host/clock.hpp"
 #include "host/device.hpp"
 #include "kernels/embedded.hpp"
 
 namespace flaunay::host {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string read_kernel_file(const std::string& name) {
   if (const char* directory = std::getenv("FLAUNAY_KERNEL_PATH");

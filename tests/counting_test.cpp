@@ -132,10 +132,10 @@ TEST(Counting, Circle) {
 }
 
 TEST(Counting, StepsOfTheScanModel) {
-  EXPECT_EQ(recursive::reduce_depth(0), 0U);
-  EXPECT_EQ(recursive::reduce_depth(1), 0U);
-  EXPECT_EQ(recursive::reduce_depth(2), 1U);
-  EXPECT_EQ(recursive::reduce_depth(9), 4U);
+  EXPECT_EQ(recursive::log2_ceiling(0), 0U);
+  EXPECT_EQ(recursive::log2_ceiling(1), 0U);
+  EXPECT_EQ(recursive::log2_ceiling(2), 1U);
+  EXPECT_EQ(recursive::log2_ceiling(9), 4U);
   EXPECT_EQ(recursive::scan_depth(1024), 20U);
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "counting/costs.hpp"
 #include "flaunay/flaunay.hpp"
 #include "recursive/mesh.hpp"
 #include "recursive/points.hpp"
@@ -306,7 +307,7 @@ TEST(Sort, KeysAreInTheOrderOfDoubles) {
 TEST(Sort, ComparisonsOfBinaryInsertion) {
   std::uint64_t sum = 0;
   for (std::size_t n = 0; n < 100; ++n) {
-    if (n > 0) sum += recursive::log2_up(n);
+    if (n > 0) sum += counting::log2_ceiling(n);
     EXPECT_EQ(recursive::comparisons_to_sort(n), sum) << n;
   }
   EXPECT_EQ(recursive::depth_of_sort(8), 1U + 2 + 3);
@@ -364,7 +365,7 @@ TEST(Work, RepeatsAndAddsUp) {
     const std::size_t distinct = n - triangulate(points).statistics.duplicates;
     const Work work = work_of(points), again = work_of(points);
     ASSERT_EQ(work.levels.size(), again.levels.size());
-    EXPECT_LE(work.levels.size(), recursive::log2_up(n));
+    EXPECT_LE(work.levels.size(), counting::log2_ceiling(n));
     EXPECT_EQ(work.start[kCut].arithmetic,
               recursive::comparisons_to_sort(n) + recursive::comparisons_to_sort(distinct));
     std::uint64_t operations = 0;

@@ -13,27 +13,10 @@
 #include "flaunay/flaunay.hpp"
 #include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {
 namespace {
-
-/// One per process; destroyed before the OpenCL implementation leaves.
-class SharedTriangulator : public ::testing::Environment {
- public:
-  static Triangulator& get() {
-    if (!instance()) instance() = std::make_unique<Triangulator>();
-    return *instance();
-  }
-  void TearDown() override { instance().reset(); }
-
- private:
-  static std::unique_ptr<Triangulator>& instance() {
-    static std::unique_ptr<Triangulator> triangulator;
-    return triangulator;
-  }
-};
-[[maybe_unused]] const ::testing::Environment* const kShared =
-    ::testing::AddGlobalTestEnvironment(new SharedTriangulator);
 
 using Row = std::array<std::int32_t, 3>;
 /// A triangle with those across from its vertices; {-1, -1, -1} beyond the hull.
@@ -68,7 +51,7 @@ void expect_same(const Triangulation& found, const Triangulation& expected) {
 }
 
 Triangulation triangulate(const Coordinates& points, const Options& options) {
-  return SharedTriangulator::get().triangulate(points.data(), points.size() / 2, options);
+  return triangulator().triangulate(points.data(), points.size() / 2, options);
 }
 
 struct Execution {
@@ -164,7 +147,7 @@ TEST(Modes, ManySets) {
     }
   }
   const auto run = [&](const Options& options) {
-    return SharedTriangulator::get().triangulate(points.data(), offsets, options);
+    return triangulator().triangulate(points.data(), offsets, options);
   };
   const Triangulation expected = run({});
   for (const Execution& execution : executions(false)) {
@@ -234,7 +217,7 @@ TEST(Modes, RequestsWithoutSense) {
     EXPECT_THROW(triangulate(points, options), Error) << to_string(mode);
   }
   EXPECT_THROW(triangulate_on_host(points.data(), {0, 50}, {}), Error);
-  EXPECT_THROW(SharedTriangulator::get().partition(points.data(), 50, -1), Error);
+  EXPECT_THROW(triangulator().partition(points.data(), 50, -1), Error);
 }
 
 // -----------------------------------------------------------------------------------------------------------
@@ -242,7 +225,7 @@ TEST(Modes, RequestsWithoutSense) {
 
 /// Each region's points triangulated on their own, put together again.
 Triangulation solved(const Coordinates& points, int levels) {
-  const Partition partition = SharedTriangulator::get().partition(points.data(), points.size() / 2, levels);
+  const Partition partition = triangulator().partition(points.data(), points.size() / 2, levels);
   std::vector<std::vector<std::int32_t>> solutions;
   for (const Region& region : partition.regions) {
     Coordinates own;
@@ -272,7 +255,7 @@ TEST(Partition, PutTogetherAgainIsTheSame) {
 TEST(Partition, HasAsManyRegionsAsLevelsAllow) {
   const Coordinates points = make_fixture("uniform", 5000, 1);
   for (const int levels : {0, 1, 2, 4}) {
-    const Partition partition = SharedTriangulator::get().partition(points.data(), 5000, levels);
+    const Partition partition = triangulator().partition(points.data(), 5000, levels);
     EXPECT_EQ(partition.regions.size(), std::size_t{1} << levels);
     EXPECT_TRUE(partition.triangles.empty());
     std::size_t total = 0;
@@ -284,7 +267,7 @@ TEST(Partition, HasAsManyRegionsAsLevelsAllow) {
     EXPECT_LT(total, 5000u + 400u * partition.regions.size());
   }
   // All the way down nothing is left but triangles.
-  const Partition whole = SharedTriangulator::get().partition(points.data(), 5000, 30);
+  const Partition whole = triangulator().partition(points.data(), 5000, 30);
   EXPECT_TRUE(whole.regions.empty());
   EXPECT_EQ(whole.triangles.size(), 3 * whole.statistics.triangles);
 }

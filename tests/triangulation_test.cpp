@@ -19,6 +19,7 @@
 #include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/shared_triangulator.hpp"
 #include "verify/exact.hpp"
 #include "verify/verify.hpp"
 
@@ -28,25 +29,6 @@ namespace {
 using ::testing::AssertionFailure;
 using ::testing::AssertionResult;
 using ::testing::AssertionSuccess;
-
-/// One per process: building its programs takes longer than most tests. It ends with the tests and not among
-/// the process's statics, since some OpenCL implementations (oclgrind) have destroyed theirs by then.
-class SharedTriangulator : public ::testing::Environment {
- public:
-  static Triangulator& get() {
-    if (!instance_) instance_ = std::make_unique<Triangulator>();
-    return *instance_;
-  }
-  void TearDown() override { instance_.reset(); }
-
- private:
-  static std::unique_ptr<Triangulator> instance_;
-};
-std::unique_ptr<Triangulator> SharedTriangulator::instance_;
-[[maybe_unused]] const ::testing::Environment* const kShared =
-    ::testing::AddGlobalTestEnvironment(new SharedTriangulator);
-
-Triangulator& triangulator() { return SharedTriangulator::get(); }
 
 Triangulation triangulate(const Coordinates& points, const Options& options = {}) {
   return triangulator().triangulate(points.data(), points.size() / 2, options);

@@ -8,6 +8,7 @@
 #include "flaunay/flaunay.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -20,11 +21,6 @@ constexpr Hull kVariants[] = {Hull::prune, Hull::quickhull, Hull::balanced};
 constexpr Cut kCuts[] = {Cut::interquartile, Cut::alternate};
 const char* const kInputs[] = {"uniform", "kuzmin", "line", "grid"};
 const char* const kComponentNames[] = {"cut", "hull", "merge", "split", "endgame"};
-
-Triangulator& triangulator() {
-  static Triangulator instance;
-  return instance;
-}
 
 Triangulation run(const Coordinates& points, Mode mode, Hull hull, Cut cut) {
   Options options;

@@ -1,14 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -21,6 +16,7 @@
 #include "flaunay/flaunay.hpp"
 #include "io/mesh.hpp"
 #include "io/points.hpp"
+#include "recursive/threads.hpp"
 
 namespace flaunay::cli {
 
@@ -64,38 +60,6 @@ std::vector<std::int32_t> solve_region(const io::Points& points, const Region& r
   return triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
 }
 
-// Calls task(k) for all k below count, several at a time. Throws the exception of the smallest k, if any.
-template <typename Task>
-void run_in_parallel(std::size_t count, int threads, const Task& task) {
-  std::atomic<std::size_t> next{0};
-  std::mutex failure_mutex;
-  std::exception_ptr failure;
-  std::size_t failed = count;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < count; k = next++) {
-      try {
-        task(k);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(failure_mutex);
-        if (k < failed) failure = std::current_exception();
-        failed = std::min(failed, k);
-      }
-    }
-  };
-  const std::size_t wanted =
-      threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
-  // The calling thread works too.
-  std::vector<std::thread> others;
-  try {
-    while (others.size() + 1 < std::min(wanted, count)) others.emplace_back(work);
-  } catch (const std::system_error&) {
-    // Fewer threads than wanted do it too.
-  }
-  work();
-  for (std::thread& thread : others) thread.join();
-  if (failure) std::rethrow_exception(failure);
-}
-
 Solutions read_solutions(const std::vector<std::string>& paths) {
   Solutions solutions;
   for (const std::string& path : paths) {
@@ -110,7 +74,7 @@ void solve_missing(const io::Points& points, const Partition& partition,
   for (std::size_t r = 0; r < paths.size(); ++r) {
     if (paths[r].empty()) unsolved.push_back(r);
   }
-  run_in_parallel(unsolved.size(), threads, [&](std::size_t k) {
+  recursive::for_each_index(unsolved.size(), threads, [&](std::size_t k) {
     solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
   });
 }
@@ -169,15 +133,7 @@ int assemble(const AssembleRequest& request) {
   };
   const Triangulation mesh = put_together(points, partition, solutions, reader, paths, options);
 
-  stopwatch.restart();
-  progress.update("writing");
-  write_results(request.results, points, mesh);
-  facts.writing_seconds = stopwatch.seconds();
-  if (!request.results.stats.empty()) {
-    write_text(request.results.stats, statistics_json(mesh.statistics, facts));
-  }
-  outputs.keep();
-  progress.finish();
+  write_results(request.results, points, mesh, facts, progress, outputs);
 
   if (!request.quiet) print(degenerate_note(mesh.statistics) + summary(mesh.statistics, facts));
   return kSuccess;

@@ -4,12 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "cli/exit_codes.hpp"
+
 namespace flaunay::cli {
 
 /// The chosen subcommand's work; returns the exit code, throws Error.
 using Action = std::function<int()>;
-
-enum ExitCode : int { kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDevice = 4 };
 
 void add_triangulate(CLI::App& app, Action& action);
 void add_partition(CLI::App& app, Action& action);

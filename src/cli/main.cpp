@@ -20,20 +20,6 @@ int fail(int code, const std::string& message) {
   return code;
 }
 
-int exit_code(flaunay::ErrorKind kind) {
-  switch (kind) {
-    case flaunay::ErrorKind::usage:
-      return kUsage;
-    case flaunay::ErrorKind::input:
-      return kBadInput;
-    case flaunay::ErrorKind::device:
-      return kDevice;
-    case flaunay::ErrorKind::internal:
-      break;
-  }
-  return kFailure;
-}
-
 int run(int argc, char** argv) {
   CLI::App app("Exact two-dimensional Delaunay triangulation on any OpenCL device.", "flaunay");
   app.set_version_flag("--version", std::string("flaunay ") + flaunay::version());

@@ -43,18 +43,9 @@ std::string times_and_speed(const Statistics& statistics, const RunFacts& facts)
                      facts.what_was_done, statistics.seconds, points_per_second(statistics));
 }
 
-// One after the other: critical paths add up too.
-void add(const OperationCounts& counts, OperationCounts& sum) {
-  sum.arithmetic += counts.arithmetic;
-  sum.depths += counts.depths;
-  sum.orientations += counts.orientations;
-  sum.circles += counts.circles;
-  sum.critical_path += counts.critical_path;
-}
-
 OperationCounts sum_over_levels(const Work& work, std::size_t component) {
   OperationCounts sum = work.start[component];
-  for (const Work::Components& level : work.levels) add(level[component], sum);
+  for (const Work::Components& level : work.levels) sum += level[component];
   return sum;
 }
 
@@ -128,7 +119,7 @@ std::string work_table(const Statistics& statistics) {
   for (std::size_t c = 0; c < kComponents; ++c) {
     const OperationCounts counts = sum_over_levels(statistics.work, c);
     table += work_row(kNames[c], counts, statistics.points);
-    add(counts, total);
+    total += counts;
   }
   return table + work_row("total", total, statistics.points);
 }

@@ -25,12 +25,27 @@ void announce(OutputFiles& outputs, const ResultPaths& paths) {
   outputs.add(paths.stats, ".json");
 }
 
-void write_results(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh) {
+namespace {
+
+void write_mesh_files(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh) {
   if (!paths.mesh.empty()) io::write_mesh(paths.mesh, points, mesh);
   if (!paths.triangles.empty()) io::write_npy_int32(paths.triangles, mesh.triangles, 3);
   if (!paths.neighbors.empty()) io::write_npy_int32(paths.neighbors, mesh.neighbors, 3);
   if (!paths.hull.empty()) io::write_npy_int32(paths.hull, mesh.hull, 0);
   if (!paths.duplicates.empty()) io::write_npy_int32(paths.duplicates, mesh.representatives, 0);
+}
+
+}  // namespace
+
+void write_results(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh,
+                   RunFacts& facts, Progress& progress, OutputFiles& outputs) {
+  Stopwatch stopwatch;
+  progress.update("writing");
+  write_mesh_files(paths, points, mesh);
+  facts.writing_seconds = stopwatch.seconds();
+  if (!paths.stats.empty()) write_text(paths.stats, statistics_json(mesh.statistics, facts));
+  outputs.keep();
+  progress.finish();
 }
 
 }  // namespace flaunay::cli

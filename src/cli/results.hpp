@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "cli/output.hpp"
+#include "cli/progress.hpp"
+#include "cli/report.hpp"
 #include "flaunay/flaunay.hpp"
 #include "io/points.hpp"
 
@@ -28,7 +30,9 @@ void add_results(CLI::App* command, ResultPaths& paths);
 /// Announces all of them, the statistics too.
 void announce(OutputFiles& outputs, const ResultPaths& paths);
 
-/// Writes all but the statistics, which say how long this took.
-void write_results(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh);
+/// Writes all of them and keeps them; the statistics last, which say how long the others took. Ends the
+/// progress.
+void write_results(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh,
+                   RunFacts& facts, Progress& progress, OutputFiles& outputs);
 
 }  // namespace flaunay::cli

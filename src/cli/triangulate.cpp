@@ -108,15 +108,7 @@ int triangulate(const TriangulateRequest& request) {
     mesh = triangulator.triangulate(points.coordinates.data(), points.size(), options);
   }
 
-  stopwatch.restart();
-  progress.update("writing");
-  write_results(request.results, points, mesh);
-  facts.writing_seconds = stopwatch.seconds();
-  if (!request.results.stats.empty()) {
-    write_text(request.results.stats, statistics_json(mesh.statistics, facts));
-  }
-  outputs.keep();
-  progress.finish();
+  write_results(request.results, points, mesh, facts, progress, outputs);
 
   if (!request.quiet) {
     print((request.profile ? kernel_table(mesh.statistics) : "") +

@@ -20,12 +20,6 @@ std::uint64_t whole(const cl_uint* halves) {
 
 }  // namespace
 
-std::uint64_t log2_ceiling(std::size_t m) {
-  std::uint64_t log = 0;
-  while ((std::size_t{1} << log) < m) ++log;
-  return log;
-}
-
 Counting::Counting(host::Runtime& runtime, host::Arena& arena, Work& work)
     : runtime_(runtime), work_(work), counters_(arena.allocate<cl_uint>(kCounters)) {
   runtime_.fill(counters_, kCounters, cl_uint{0});

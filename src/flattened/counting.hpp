@@ -5,20 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "counting/costs.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 
 namespace flaunay::flattened {
 
-/// Operations of one evaluation; as in kernels/shared/counting.h.
-constexpr std::uint64_t kProjectOperations = 2;
-constexpr std::uint64_t kDepthOperations = 12;
-constexpr std::uint64_t kOrientOperations = 8;
-
-/// The ceiling of log2 m: the depth of a reduction of m elements.
-std::uint64_t log2_ceiling(std::size_t m);
-/// Of a scan, a pack or a stable split of m elements.
-inline std::uint64_t scan_depth(std::size_t m) { return 2 * log2_ceiling(m); }
+using namespace counting;
 
 /// While it lives, the runtime's kernels count. See docs/counting.md.
 class Counting {

@@ -1,15 +1,14 @@
 #include "flattened/executions.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
-namespace flaunay::flattened {
-namespace {
+#include "host/clock.hpp"
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+namespace flaunay::flattened {
+
+using host::now;
+namespace {
 
 // Both are of one depth: of several regions cut one by one, or of all of them at once.
 void accumulate(LevelStatistics& sum, const LevelStatistics& part) {

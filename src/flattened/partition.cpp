@@ -1,9 +1,9 @@
 #include "flattened/partition.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include "flattened/counting.hpp"
+#include "recursive/threads.hpp"
 
 namespace flaunay::flattened {
 namespace {
@@ -12,16 +12,12 @@ namespace {
 constexpr std::size_t kRegionsPerThread = 4;
 constexpr std::size_t kLeastPointsPerRegion = 1024;
 
-std::size_t thread_count(int wanted) {
-  return wanted > 0 ? wanted : std::max(1u, std::thread::hardware_concurrency());
-}
-
 }  // namespace
 
 int partition_levels(std::size_t n, const Options& options) {
   if (options.partition_levels > 0) return std::min<int>(options.partition_levels, kMostLevels);
   const std::size_t regions =
-      std::min(kRegionsPerThread * thread_count(options.threads), n / kLeastPointsPerRegion);
+      std::min(kRegionsPerThread * recursive::host_threads(options.threads), n / kLeastPointsPerRegion);
   return static_cast<int>(log2_ceiling(std::max<std::size_t>(1, regions)));
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "flattened/device_info.hpp"
@@ -9,6 +8,7 @@
 #include "flattened/partition.hpp"
 #include "flattened/self_test.hpp"
 #include "flattened/stages.hpp"
+#include "host/clock.hpp"
 #include "host/device.hpp"
 #include "recursive/counter.hpp"
 #include "recursive/mesh.hpp"
@@ -18,12 +18,9 @@ namespace flaunay {
 
 using host::Arena;
 using host::Buffer;
+using host::now;
 
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Kernels index with 32-bit integers: at most 6 corners a point, of 3 ids each.
 constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 
+#include "recursive/counter.hpp"
 #include "recursive/sort.hpp"
 
 namespace flaunay::recursive {
@@ -36,11 +37,9 @@ OperationCounts& of(Work::Components& components, Component component) {
 }
 
 // Nodes of a level work at the same time: their counts add up, the longest path is the level's.
-void add(OperationCounts& level, const OperationCounts& node, std::uint64_t critical_path) {
-  level.arithmetic += node.arithmetic;
-  level.orientations += node.orientations;
-  level.circles += node.circles;
-  level.critical_path = std::max(level.critical_path, critical_path);
+void add(OperationCounts& level, OperationCounts node, std::uint64_t critical_path) {
+  node.critical_path = critical_path;
+  add_beside(level, node);
 }
 
 // Directed edges out of each vertex in a ring; edge e and its reverse e ^ 1 (quad-edges without the dual).
@@ -153,7 +152,7 @@ class Builder {
     if constexpr (kCounting) {
       OperationCounts counts;
       counts.arithmetic = end - begin;
-      record(depth, Component::cut, counts, 1 + 2 * log2_up(end - begin));
+      record(depth, Component::cut, counts, 1 + 2 * log2_ceiling(end - begin));
     }
   }
 

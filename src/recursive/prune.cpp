@@ -25,7 +25,7 @@ std::vector<HullPoint> candidates_of(const std::vector<HullPoint>& points, Count
     }
   }
   counter.arithmetic(points.size());
-  counter.critical_path(reduce_depth(kBucket) + scan_depth(points.size()));
+  counter.critical_path(log2_ceiling(kBucket) + scan_depth(points.size()));
   return candidates;
 }
 
@@ -180,7 +180,7 @@ PrunedHull pruned_hull(const Predicates& predicates, const HullPoints& points, C
   // Corners that are kept are projected once more.
   counter.arithmetic(kProjectOperations * static_cast<std::uint64_t>(std::count(
                                               hull.corners.begin(), hull.corners.end(), Kept::yes)));
-  counter.critical_path(reduce_depth(chords.size()) * scan_depth(hull.survivors));
+  counter.critical_path(log2_ceiling(chords.size()) * scan_depth(hull.survivors));
 
   Quickhull quickhull(predicates, points.line, kMostQuickhullRounds, counter);
   hull.path = quickhull.go_on(chords, std::move(below), hull.rounds);

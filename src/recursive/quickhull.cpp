@@ -62,8 +62,8 @@ Path Quickhull::take_path(bool first_is_known, int& rounds) {
   for (std::size_t round = 0; round < round_sizes_.size(); ++round) {
     const std::size_t m = round_sizes_[round];
     const bool is_known = first_is_known && round == 0;
-    counter_.critical_path((is_known ? 0 : kDepthOperations) + reduce_depth(m) + 2 + scan_depth(m));
-    if (round >= balanced_from_) counter_.critical_path(6 + reduce_depth(m) + 2 + kDepthOperations);
+    counter_.critical_path((is_known ? 0 : kDepthOperations) + log2_ceiling(m) + 2 + scan_depth(m));
+    if (round >= balanced_from_) counter_.critical_path(6 + log2_ceiling(m) + 2 + kDepthOperations);
   }
   rounds = static_cast<int>(round_sizes_.size());
   round_sizes_.clear();

@@ -147,7 +147,7 @@ LowerHull Recursion::dividing_path(const Region& region, const Line& line, int l
     if (p.u() != points.last.u() ? p.u() > points.last.u() : line.is_lower(p, points.last)) points.last = p;
   }
   counter.arithmetic(2 * (points.corners.size() - 1));
-  counter.critical_path(reduce_depth(points.corners.size()));
+  counter.critical_path(log2_ceiling(points.corners.size()));
   LowerHull hull = lower_hull(predicates_, points, options_.hull, counter, level_statistics(level));
   level_statistics(level).path_vertices += hull.path.size();
   note_work(Component::hull, level, counter);

@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
 #include <mutex>
 #include <numeric>
-#include <system_error>
-#include <thread>
 
 #include "flaunay/flaunay.hpp"
 #include "recursive/cells.hpp"
 #include "recursive/counter.hpp"
 #include "recursive/dwyer.hpp"
 #include "recursive/halfedges.hpp"
+#include "recursive/threads.hpp"
 
 namespace flaunay::recursive {
 namespace {
@@ -191,12 +189,6 @@ Ids largest_first(const RegionArrays& regions) {
   return order;
 }
 
-std::size_t thread_count(int threads, std::size_t regions) {
-  const std::size_t wanted =
-      threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
-  return std::min(wanted, std::max<std::size_t>(regions, 1));
-}
-
 }  // namespace
 
 Ids region_triangles(const Predicates& predicates, const Point* points, std::size_t n,
@@ -238,27 +230,15 @@ Ids solve_regions(const Predicates& predicates, const Point* points, const Regio
   std::vector<Work> works(counts != nullptr ? regions.size() : 0);
   const Ids order = largest_first(regions);
   std::vector<Ids> solutions(regions.size());
-  std::atomic<std::size_t> next{0};
   Failure failure;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < order.size(); k = next++) {
-      const auto r = static_cast<std::size_t>(order[k]);
-      try {
-        solutions[r] = solve_region(predicates, points, regions, r, counts != nullptr ? &works[r] : nullptr);
-      } catch (...) {
-        failure.note(r, std::current_exception());
-      }
+  for_each_index(order.size(), threads, [&](std::size_t k) {
+    const auto r = static_cast<std::size_t>(order[k]);
+    try {
+      solutions[r] = solve_region(predicates, points, regions, r, counts != nullptr ? &works[r] : nullptr);
+    } catch (...) {
+      failure.note(r, std::current_exception());
     }
-  };
-  // The calling thread works too.
-  std::vector<std::thread> others;
-  try {
-    while (others.size() + 1 < thread_count(threads, regions.size())) others.emplace_back(work);
-  } catch (const std::system_error&) {
-    // Fewer threads than wanted do it too.
-  }
-  work();
-  for (std::thread& thread : others) thread.join();
+  });
   failure.rethrow();
   for (const Work& done : works) add_beside(*counts, sum_of(done));
 

@@ -5,7 +5,11 @@
 #include <cstring>
 #include <memory>
 
+#include "counting/costs.hpp"
+
 namespace flaunay::recursive {
+
+using counting::log2_ceiling;
 namespace {
 
 constexpr int kDigitBits = 8;
@@ -56,20 +60,14 @@ void sort_by_key(std::vector<Keyed>& elements) {
   if (from != elements.data()) std::copy(from, from + n, elements.data());
 }
 
-std::uint64_t log2_up(std::uint64_t n) {
-  std::uint64_t log = 0;
-  while ((std::uint64_t{1} << log) < n) ++log;
-  return log;
-}
-
 std::uint64_t comparisons_to_sort(std::size_t n) {
   if (n < 2) return 0;
-  const std::uint64_t log = log2_up(n);
+  const std::uint64_t log = log2_ceiling(n);
   return n * log - (std::uint64_t{1} << log) + 1;
 }
 
 std::uint64_t depth_of_sort(std::size_t n) {
-  const std::uint64_t rounds = log2_up(n);
+  const std::uint64_t rounds = log2_ceiling(n);
   return rounds * (rounds + 1) / 2;
 }
 

@@ -26,7 +26,4 @@ std::uint64_t comparisons_to_sort(std::size_t n);
 /// bisection.
 std::uint64_t depth_of_sort(std::size_t n);
 
-/// ceil(log2 n); 0 for n < 2.
-std::uint64_t log2_up(std::uint64_t n);
-
 }  // namespace flaunay::recursive

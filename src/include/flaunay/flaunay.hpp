@@ -91,6 +91,8 @@ struct OperationCounts {
   std::uint64_t circles = 0;       ///< evaluations of the in-circle test
   std::uint64_t critical_path = 0;
 
+  /// What is done one after the other: critical paths add up too.
+  OperationCounts& operator+=(const OperationCounts& other) noexcept;
   /// All as floating-point operations, arithmetic and comparisons: a predicate counts for the operations of
   /// its plain evaluation, without the error bound's.
   std::uint64_t operations() const noexcept;
