@@ -15,7 +15,6 @@
 #include "flaunay/flaunay.hpp"
 #include "recursive/mesh.hpp"
 #include "recursive/points.hpp"
-#include "recursive/predicates.hpp"
 #include "recursive/sort.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
@@ -242,38 +241,6 @@ TEST(Canonicalize, RefusesWhatIsNotDelaunay) {
   EXPECT_NO_THROW(recursive::finish(sets, {0, 2, 1, 2, 3, 1}, {}, {}));
   EXPECT_THROW(recursive::finish(sets, {0, 2, 3, 3, 1, 0}, {}, {}), Error);
   EXPECT_THROW(recursive::finish(sets, {0, 2, 1, 2, 3, 1, 2, 3, 1}, {}, {}), Error);
-}
-
-// ---------------------------------------------------------------------------------------------------------
-// Exact predicates, without their filters.
-
-TEST(ExactPredicates, TiesAndNearlyTies) {
-  FixtureRandom random(10);
-  int ties = 0;
-  for (int round = 0; round < 20000; ++round) {
-    // Corners of a rectangle, or three points on a line and one beside; of any number of bits, some of them
-    // moved by next to nothing.
-    const auto bits = static_cast<int>(random.integer(1, 70));
-    const auto number = [&] { return std::floor((random.unit() - 0.5) * std::ldexp(1, bits)); };
-    const double x = number(), y = number(), dx = number(), dy = number();
-    Coordinates p = {x, y, x + dx, y + dy, x + dx - dy, y + dy + dx, x - dy, y + dx};
-    if (random.integer(0, 1)) p = {x, y, x + dx, y + dy, x + 2 * dx, y + 2 * dy, x - dy, y + dx};
-    for (double& c : p) {
-      if (random.integer(0, 19) == 0)
-        c += std::ldexp(random.unit(), static_cast<int>(random.integer(-90, 3)));
-    }
-    const int exponent = static_cast<int>(random.integer(-80, 80));
-    for (double& c : p) c = std::ldexp(c, exponent);
-    const auto point = [&p](int k) { return recursive::Point{p[2 * k], p[2 * k + 1]}; };
-    const int orient = reference_orient2d(&p[0], &p[2], &p[4]);
-    ASSERT_EQ(recursive::exact_orient(point(0), point(1), point(2)), orient) << text_of(p);
-    if (orient == 0) ++ties;
-    if (orient < 0) continue;
-    const int circle = reference_incircle(&p[0], &p[2], &p[4], &p[6]);
-    ASSERT_EQ(recursive::exact_circle(point(0), point(1), point(2), point(3)), circle) << text_of(p);
-    if (circle == 0) ++ties;
-  }
-  EXPECT_GT(ties, 5000);
 }
 
 // ---------------------------------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 // The device's predicates against GMP: what a filter decides is right, what the exact versions say is always
 // right, and the depth below a chord is monotone as quickhull needs it. Each class of input prints how much
 // its filter leaves.
+#include "recursive/predicates.hpp"
+
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -945,6 +947,53 @@ TEST_P(InCircle, OfCoarsePointsIsDecidedByTheFilter) {
   // Some bits more, and the last class needs the bound: its cases are hard enough.
   check(predicate_, {"not coarse, the same of 15 bits", 1, 0.5, 1, 0.1, by_determinant()}, 12000, random_,
         [&](Random& random, double* c) { fill_integer_circle(random, 500, 0, c); });
+}
+
+// Against the host's reading of the same text, whose definition planar_test.cpp proves.
+TEST(CircleCanonical, IsTheHostsOnTheDevice) {
+  Runtime& runtime = PredicateRuntime::get();
+  Random random(500);
+  std::vector<cl_double> cases;
+  while (cases.size() < 8 * kBatch) {
+    double c[8];
+    switch (random.below(3)) {
+      case 0:
+        for (double& x : c) x = random.below(5);
+        break;
+      case 1:
+        fill_integer_circle(random, 500, random.between(-100, 100), c);
+        break;
+      default:
+        const double x[] = {random.unit(), random.unit()}, y[] = {random.unit(), random.unit()};
+        fill_rectangle(x, y, c);
+        permute_points(random, c, 4);
+    }
+    bool different = true;
+    for (int k = 0; k < 3; ++k) different &= c[6] != c[2 * k] || c[7] != c[2 * k + 1];
+    const int turn = reference_orient2d(c, c + 2, c + 4);
+    if (turn == 0 || !different) continue;
+    if (turn < 0) std::swap_ranges(c, c + 2, c + 2);
+    cases.insert(cases.end(), c, c + 8);
+  }
+  const Arena::Scope scope(runtime.arena());
+  const auto device_cases = upload(runtime, cases);
+  const auto device_signs = guarded<cl_char>(runtime, kBatch);
+  runtime.map("predicates", "circle_canonical_cases", kBatch, device_cases, device_signs);
+  const auto signs = download(runtime, device_signs, kBatch);
+  std::size_t ties = 0;
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    const double* const c = &cases[8 * i];
+    const int expected = recursive::kernel::circle_canonical({c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]},
+                                                             {c[6], c[7]}, CIRCLE_BOUND);
+    ASSERT_EQ(signs[i], expected) << text_of(c, 8);
+    const int sign = reference_incircle(c, c + 2, c + 4, c + 6);
+    ties += sign == 0;
+    if (sign != 0) {
+      ASSERT_EQ(expected, sign) << text_of(c, 8);
+    }
+  }
+  EXPECT_GT(ties, kBatch / 4);
+  total_cases += kBatch;
 }
 
 // ---------------------------------------------------------------------------------------------------------

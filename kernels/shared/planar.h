@@ -132,4 +132,38 @@ static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
   return expansion_sign(&sum);
 }
 
+// The filter first, the exact test where it cannot decide.
+static inline int orient_sign(double2 a, double2 b, double2 c, double bound) {
+  const int sign = orient_filtered(a, b, c, bound);
+  return sign != UNDECIDED ? sign : orient_exact(a, b, c);
+}
+
+static inline int circle_sign(double2 a, double2 b, double2 c, double2 d, double bound) {
+  const int sign = circle_filtered(a, b, c, d, bound);
+  return sign != UNDECIDED ? sign : circle_exact(a, b, c, d);
+}
+
+// The order of the canonical form: by x, then by y.
+static inline int comes_before(double2 p, double2 q) { return p.x != q.x ? p.x < q.x : p.y < q.y; }
+
+// circle_sign that is never 0, of four different points: on a tie it is as if the first of the four (comes_before) were
+// lowered a little below the paraboloid that all are lifted to. The Delaunay triangulation so defined is unique, and makes
+// of each polygon of cocircular points a fan from its first vertex: the canonical form.
+//
+// With a the first of the triangle's vertices: if d comes before it, d is what is lowered, and lies below the plane through
+// the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now above it, unless b
+// and c separate it from a (it cannot lie on their line). See docs/exactness.md.
+static inline int circle_canonical(double2 a, double2 b, double2 c, double2 d, double bound) {
+  const int sign = circle_sign(a, b, c, d, bound);
+  if (sign != 0) return sign;
+  while (comes_before(b, a) || comes_before(c, a)) {
+    const double2 first = a;
+    a = b;
+    b = c;
+    c = first;
+  }
+  if (comes_before(d, a)) return 1;
+  return orient_sign(b, c, d, bound == 0.0 ? 0.0 : ORIENT_BOUND) < 0 ? 1 : -1;
+}
+
 #endif

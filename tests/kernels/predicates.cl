@@ -93,3 +93,12 @@ kernel void circle_exact_cases(int n, global const double* restrict cases, globa
                             (double2)(c[6], c[7]));
   }
 }
+
+kernel void circle_canonical_cases(int n, global const double* restrict cases, global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 8 * i;
+    signs[i] = circle_canonical((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
+                                (double2)(c[6], c[7]), CIRCLE_BOUND);
+  }
+}
