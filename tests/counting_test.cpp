@@ -51,16 +51,29 @@ struct double2 {
 double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
 double2 operator-(double2 a) { return {-a.x, -a.y}; }
 
+// For the exact tests, which are read but not counted.
+using recursive::kernel::as_long;
+using recursive::kernel::as_ulong;
+using recursive::kernel::mul_hi;
+using recursive::kernel::ulong;
+inline ulong as_ulong(Counted x) { return as_ulong(x.value); }
+inline Counted as_double(ulong bits) { return recursive::kernel::as_double(bits); }
+inline long convert_long(Counted x) { return recursive::kernel::convert_long(x.value); }
+inline Counted convert_double(long x) { return recursive::kernel::convert_double(x); }
+
 #undef FLAUNAY_EXACT_ARITHMETIC_H
 #undef FLAUNAY_FRAME_H
 #undef FLAUNAY_HULL_HEIGHT_H
+#undef FLAUNAY_INTEGER_ARITHMETIC_H
 #undef FLAUNAY_PLANAR_H
+#define OUT_OF_LINE
 #define PAIR(x, y) (double2{(x), (y)})
 #define double Counted
 #include "shared/hull_height.h"
 #include "shared/planar.h"
 #undef double
 #undef PAIR
+#undef OUT_OF_LINE
 
 // The filter of a depth, as the kernels have it where they call hull_depth.
 int depth_filtered(double2 a, double2 b, double2 p, Counted bound) {

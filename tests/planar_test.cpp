@@ -1,7 +1,9 @@
 // The exact predicates of kernels/shared/planar.h as the host reads them, against GMP. On the device:
 // predicates_test.cpp.
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -54,14 +56,117 @@ TEST(ExactPredicates, TiesAndNearlyTies) {
     for (double& c : p) c = std::ldexp(c, exponent);
     const auto point = [&p](std::size_t k) { return point_of(p, k); };
     const int orient = reference_orient(p, 0, 1, 2);
-    ASSERT_EQ(recursive::exact_orient(point(0), point(1), point(2)), orient) << text_of(p);
+    ASSERT_EQ(recursive::kernel::orient_exact(point(0), point(1), point(2)), orient) << text_of(p);
     if (orient == 0) ++ties;
     if (orient < 0) continue;
     const int circle = reference_incircle(&p[0], &p[2], &p[4], &p[6]);
-    ASSERT_EQ(recursive::exact_circle(point(0), point(1), point(2), point(3)), circle) << text_of(p);
+    ASSERT_EQ(recursive::kernel::circle_exact(point(0), point(1), point(2), point(3)), circle) << text_of(p);
     if (circle == 0) ++ties;
   }
   EXPECT_GT(ties, 5000);
+}
+
+// All coordinates as large as they can be, or next to it, or 0: sums and products at the limits of integers.
+TEST(ExactPredicates, OfTheLargestIntegers) {
+  FixtureRandom random(14);
+  int ties = 0;
+  for (int round = 0; round < 40000; ++round) {
+    const auto bits = static_cast<int>(random.integer(28, 64));
+    Coordinates p;
+    for (int k = 0; k < 8; ++k) {
+      const double largest =
+          std::ldexp(1, bits) - std::ldexp(static_cast<double>(random.integer(0, 2)), std::max(0, bits - 53));
+      p.push_back(static_cast<double>(random.integer(-1, 1)) * largest);
+    }
+    const auto point = [&p](std::size_t k) { return point_of(p, k); };
+    ASSERT_EQ(recursive::kernel::orient_exact(point(0), point(1), point(2)), reference_orient(p, 0, 1, 2))
+        << text_of(p);
+    const int circle = reference_incircle(&p[0], &p[2], &p[4], &p[6]);
+    ASSERT_EQ(recursive::kernel::circle_exact(point(0), point(1), point(2), point(3)), circle) << text_of(p);
+    if (circle == 0) ++ties;
+    // Below a chord, as the in-circle test of its ends, their mirror images in the line, and the point.
+    const double q = 0;
+    if (p[1] > p[3]) std::swap(p[1], p[3]);
+    if (p[5] < p[1] || p[5] > p[3] || p[0] == 0 || p[1] == p[3]) continue;
+    const double left[] = {-std::fabs(p[0]), p[1]}, right[] = {std::fabs(p[0]), p[1]};
+    ASSERT_EQ(recursive::kernel::hull_depth_sign(point(0), point(1), point(2), q, 0),
+              reference_incircle(left, right, &p[2], &p[4]))
+        << text_of(p);
+  }
+  EXPECT_GT(ties, 5000);
+}
+
+// ---------------------------------------------------------------------------------------------------------
+// Integers of 128 and 256 bits
+
+mpz_class value_of(recursive::kernel::integer128 x) {
+  return (mpz_class(recursive::kernel::as_long(x.high)) << 64) + mpz_class(x.low);
+}
+
+mpz_class value_of(recursive::kernel::integer256 x) {
+  return (value_of(x.high) << 128) + (mpz_class(x.low.high) << 64) + mpz_class(x.low.low);
+}
+
+/// Modulo 2^bits, between -2^(bits - 1) and 2^(bits - 1).
+mpz_class wrapped(const mpz_class& x, unsigned bits) {
+  const mpz_class modulus = mpz_class(1) << bits;
+  mpz_class rest;
+  mpz_fdiv_r(rest.get_mpz_t(), x.get_mpz_t(), modulus.get_mpz_t());
+  return rest >= modulus / 2 ? mpz_class(rest - modulus) : rest;
+}
+
+TEST(WideIntegers, AreThoseOfGmp) {
+  FixtureRandom random(15);
+  const auto limb = [&random]() -> unsigned long {
+    const auto any = static_cast<unsigned long>(random.integer(0, INT64_MAX - 1)) * 2 + 1;
+    const unsigned long limbs[] = {0, 1, ~0UL, ~0UL >> 1, 1UL << 63, 1UL << 32, (1UL << 32) - 1, any};
+    return limbs[random.integer(0, 7)];
+  };
+  for (int round = 0; round < 100000; ++round) {
+    namespace kernel = recursive::kernel;
+    const kernel::integer128 a{limb(), limb()}, b{limb(), limb()}, c{limb(), limb()};
+    ASSERT_EQ(value_of(kernel::sum_128(a, b)), wrapped(value_of(a) + value_of(b), 128));
+    ASSERT_EQ(value_of(kernel::difference_128(a, b)), wrapped(value_of(a) - value_of(b), 128));
+    ASSERT_EQ(kernel::sign_of_128(a), sgn(value_of(a)));
+    const long x = kernel::as_long(a.low), y = kernel::as_long(b.low);
+    ASSERT_EQ(value_of(kernel::widened(x)), x);
+    ASSERT_EQ(value_of(kernel::product_128(x, y)), mpz_class(x) * y);
+    const kernel::integer256 product = kernel::product_256(a, b), other = kernel::product_256(b, c);
+    ASSERT_EQ(value_of(product), value_of(a) * value_of(b));
+    ASSERT_EQ(kernel::sign_of_256(product), sgn(value_of(product)));
+    ASSERT_EQ(value_of(kernel::sum_256(product, other)), wrapped(value_of(product) + value_of(other), 256));
+  }
+}
+
+TEST(WideIntegers, DifferencesAreOnesOrNot) {
+  namespace kernel = recursive::kernel;
+  FixtureRandom random(16);
+  int integers = 0;
+  for (int round = 0; round < 100000; ++round) {
+    const auto exponent = static_cast<int>(random.integer(-190, 180));
+    const auto number = [&] {
+      const auto bits = static_cast<int>(random.integer(1, 53));
+      const auto size = static_cast<double>(random.integer(-(1LL << bits) + 1, (1LL << bits) - 1));
+      return std::ldexp(size, exponent + static_cast<int>(random.integer(0, 64 - bits)));
+    };
+    const double a = number(), b = number();
+    const kernel::double2 difference = kernel::two_sum(a, -b);
+    if (difference.x == 0) continue;
+    for (const int bits : {NARROW_BITS, WIDE_BITS}) {
+      const double factor = kernel::unit_factor(std::fabs(difference.x), bits);
+      const double scaled = std::fabs(difference.x * factor);
+      ASSERT_TRUE(std::ldexp(1, bits - 1) <= scaled && scaled < std::ldexp(1, bits));
+      mpq_class exact(a);
+      exact = (exact - mpq_class(b)) * mpq_class(factor);
+      long integer = 0;
+      const bool is_one = exact.get_den() == 1;
+      ASSERT_EQ(kernel::is_integer(difference, factor, &integer) != 0, is_one) << text_of({a, b});
+      if (!is_one) continue;
+      ++integers;
+      ASSERT_EQ(exact.get_num(), integer) << text_of({a, b});
+    }
+  }
+  EXPECT_GT(integers, 50000);
 }
 
 // ---------------------------------------------------------------------------------------------------------

@@ -110,6 +110,23 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+/// An integer of up to so many bits, of which it has 53 at most: at either end.
+double spanning(Random& random, int bits) {
+  const int held = std::min(bits, 53);
+  return std::ldexp(random.integer(held), random.coin() ? bits - held : 0);
+}
+
+/// Integers next to the limits of what kernels/shared/integer_arithmetic.h takes: coordinates or differences
+/// as large as they can be, a unit off, or 0.
+void fill_largest(Random& random, int count, double* c) {
+  const int all_bits[] = {29, 30, 31, 32, 33, 52, 53, 60, 61, 62, 63, 64};
+  const int bits = all_bits[random.below(12)];
+  for (int k = 0; k < count; ++k) {
+    const double largest = std::ldexp(1, bits) - std::ldexp(random.below(3), std::max(0, bits - 53));
+    c[k] = random.below(3) == 0 ? random.below(2) : random.sign() * largest;
+  }
+}
+
 /// The nearest supported number: the identity unless x is tiny.
 double supported(double x) { return std::ldexp(std::nearbyint(std::ldexp(x, 255)), -255); }
 
@@ -184,6 +201,7 @@ struct Predicate {
   std::function<void(const host::Buffer<cl_double>&, std::size_t, double, const host::Buffer<cl_char>&)>
       filter;
   std::function<void(const host::Buffer<cl_double>&, std::size_t, const host::Buffer<cl_char>&)> exact;
+  std::function<int(const double*)> on_host;  // the same text, read as C++
   std::function<int(const double*)> reference;
 };
 
@@ -216,12 +234,14 @@ void check(const Predicate& predicate, const Class& of, std::size_t count, Rando
       tally.zeros += expected == 0;
       tally.undecided += filtered_signs[i] == kUndecided;
       tally.misled += bare_signs[i] != expected;
-      const bool right = exact_signs[i] == expected && (filtered_signs[i] == expected ||
-                                                        (of.bound_scale && filtered_signs[i] == kUndecided));
+      const int host_sign = predicate.on_host(c);
+      const bool right =
+          exact_signs[i] == expected && host_sign == expected &&
+          (filtered_signs[i] == expected || (of.bound_scale && filtered_signs[i] == kUndecided));
       if (right || ++failures > 3) continue;
       ADD_FAILURE() << predicate.name << ", " << of.name << ": the sign is " << expected
                     << ", the filter says " << +filtered_signs[i] << ", the exact version " << +exact_signs[i]
-                    << "\n"
+                    << " and on the host " << host_sign << "\n"
                     << text_of(c, predicate.width);
     }
   }
@@ -371,6 +391,11 @@ Predicate hull_predicate(int axis) {
   predicate.exact = [&runtime, axis](const auto& cases, std::size_t n, const auto& signs) {
     runtime.map("predicates", "hull_exact", n, cl_int{axis}, cases, signs);
   };
+  predicate.on_host = [axis](const double* c) {
+    using namespace recursive::kernel;
+    return hull_depth_sign(to_frame({c[0], c[1]}, axis), to_frame({c[2], c[3]}, axis),
+                           to_frame({c[4], c[5]}, axis), c[6], is_planar(axis));
+  };
   predicate.reference = HullReference(axis);
   return predicate;
 }
@@ -472,6 +497,23 @@ TEST_P(HullDepth, OfExtremeMagnitudes) {
       if (*x == 0 && random.coin())
         *x = random.wide(kLowestExponent, std::max(kLowestExponent, exponent - 60));
     }
+    return c;
+  });
+}
+
+TEST_P(HullDepth, AtTheLimitsOfIntegers) {
+  check_class({"straight of any span or next to it", 1, 0, 1, 0.1}, 60000, [&](Random& random) {
+    Chord c = straight_chord(random, planar_, random.between(1, 52), random.integer(random.between(1, 40)));
+    if (c.au > c.bu) std::swap(c.au, c.bu), std::swap(c.as, c.bs);
+    if (random.coin()) nudge_one(c, 1, random);
+    sort_along(c);
+    return c;
+  });
+  check_class({"the largest", 1, 0, 1, 0.05}, 60000, [](Random& random) {
+    double values[7];
+    fill_largest(random, 7, values);
+    Chord c{values[0], values[1], values[2], values[3], values[4], values[5], values[6]};
+    sort_along(c);
     return c;
   });
 }
@@ -666,6 +708,9 @@ class Orientation : public ::testing::Test {
     predicate_.exact = [&runtime](const auto& cases, std::size_t n, const auto& signs) {
       runtime.map("predicates", "orient_exact_cases", n, cases, signs);
     };
+    predicate_.on_host = [](const double* c) {
+      return recursive::kernel::orient_exact({c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]});
+    };
     predicate_.reference = [](const double* c) { return reference_orient2d(c, c + 2, c + 4); };
   }
   Predicate predicate_;
@@ -757,6 +802,23 @@ TEST_F(Orientation, OfExtremeMagnitudes) {
         });
 }
 
+TEST_F(Orientation, AtTheLimitsOfIntegers) {
+  check(predicate_, {"collinear of any span or next to it", 1, 0, 1, 0.2}, 100000, random_,
+        [](Random& random, double* c) {
+          const int bits = random.between(1, 53);
+          const double x = random.integer(bits), y = random.integer(bits);
+          for (int k = 0; k < 3; ++k) {
+            const int exponent = random.between(0, 64 - bits);
+            const double sign = random.sign();
+            c[2 * k] = sign * std::ldexp(x, exponent);
+            c[2 * k + 1] = sign * std::ldexp(y, exponent);
+          }
+          if (random.coin()) c[random.below(6)] += random.sign();
+        });
+  check(predicate_, {"the largest", 1, 0, 1, 0.05}, 100000, random_,
+        [](Random& random, double* c) { fill_largest(random, 6, c); });
+}
+
 /// Integers of so many bits, whose differences have one bit more; a triangle of twice the area 1.
 void fill_flat_triangle(Random& random, int bits, int exponent, double* c) {
   const std::int64_t most = (std::int64_t{1} << bits) - 1;
@@ -814,6 +876,9 @@ class InCircle : public ::testing::TestWithParam<const char*> {
     };
     predicate_.exact = [&runtime](const auto& cases, std::size_t n, const auto& signs) {
       runtime.map("predicates", "circle_exact_cases", n, cases, signs);
+    };
+    predicate_.on_host = [](const double* c) {
+      return recursive::kernel::circle_exact({c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]});
     };
     predicate_.reference = [](const double* c) { return reference_incircle(c, c + 2, c + 4, c + 6); };
   }
@@ -916,6 +981,32 @@ TEST_P(InCircle, OfExtremeMagnitudes) {
             }
           }
         });
+}
+
+TEST_P(InCircle, AtTheLimitsOfIntegers) {
+  check(predicate_, {"rectangles of any span or next to them", 1, 0, 1, 0.3}, 60000, random_,
+        [](Random& random, double* c) {
+          const int bits = random.between(20, 70);
+          const double x[] = {spanning(random, bits), spanning(random, bits)};
+          const double y[] = {spanning(random, bits), spanning(random, bits)};
+          fill_rectangle(x, y, c);
+          if (random.coin()) c[random.below(8)] += random.sign();
+          permute_points(random, c, 4);
+        });
+  check(predicate_, {"circles of any span or next to them", 1, 0, 1, 0.3}, 60000, random_,
+        [](Random& random, double* c) {
+          const double multiple = random.integer(random.between(1, 46));
+          const int bits = random.between(1, 60);
+          const double x = spanning(random, bits), y = spanning(random, bits);
+          for (int k = 0; k < 4; ++k) {
+            const auto p = on_circle(random);
+            c[2 * k] = x + multiple * p[0];
+            c[2 * k + 1] = y + multiple * p[1];
+          }
+          if (random.coin()) c[random.below(8)] += random.sign();
+        });
+  check(predicate_, {"the largest", 1, 0, 1, 0.05}, 60000, random_,
+        [](Random& random, double* c) { fill_largest(random, 8, c); });
 }
 
 /// On a circle of a radius of up to 65 times `multiple`, or one point next to it. The origin is 0 or makes

@@ -2,8 +2,8 @@
 #ifndef FLAUNAY_HULL_HEIGHT_H
 #define FLAUNAY_HULL_HEIGHT_H
 
-#include "shared/exact_arithmetic.h"
 #include "shared/frame.h"
+#include "shared/planar.h"
 
 // With h(p) the height of p's projection, and A, B the chord's ends, u_A < u_B: positive iff p lies strictly below
 // the chord, in a floating-point value that is also good to rank points by. For the cut at q,
@@ -37,15 +37,14 @@ static inline double2 hull_depth(double2 a, double2 b, double2 p, int planar) {
   return PAIR(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
 }
 
-// The exact sign of depth, a, b, p in the frame (s, u): -(bu * ds(c) - cu * ds(b)) with everything relative to a, where
-// for the cut at q ds(p) = p_s (p_s + t) + p_u^2, t = 2 (a_s - q), and for a planar hull ds(p) = p_s.
-static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int planar) {
+// The exact sign of depth for the cut at q: bu * pu * (bu - pu) + pu * (bs^2 - as^2) - bu * (ps^2 - as^2), where u is
+// relative to a and s to q. a, b, p in the frame (s, u).
+OUT_OF_LINE static inline int depth_by_expansions(double2 a, double2 b, double2 p, double q) {
   const double2 bu = two_sum(b.y, -a.y);
   const double2 pu = two_sum(p.y, -a.y);
   expansion sum;
   sum.size = 0;
-  // Terms: pu * bs (bs + t), -bu * ps (ps + t), bu * pu * (bu - pu).
-  for (int term = 0; term < (planar ? 2 : 3); ++term) {
+  for (int term = 0; term < 3; ++term) {
     expansion product;
     double factor[3];
     const double2 u = term == 0 ? pu : bu;
@@ -54,7 +53,7 @@ static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int
     expansion_add(&product, sign * u.y);
     expansion_add(&product, sign * u.x);
     const double2 c = term == 0 ? b : p;
-    for (int f = 0; f < (planar ? 1 : 2); ++f) {
+    for (int f = 0; f < 2; ++f) {
       double2 difference;
       factor[2] = 0.0;
       if (term == 2) {
@@ -76,6 +75,45 @@ static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int
     expansion_compress(&sum);
   }
   return expansion_sign(&sum);
+}
+
+// The same in integers below 2^NARROW_BITS or 2^WIDE_BITS, as pu * (bs^2 - as^2 + bu^2) - bu * (ps^2 - as^2 + pu^2): the
+// sums of squares are below 2^63, or 2^125.
+static inline int depth_narrow(long as, long bs, long bu, long ps, long pu) {
+  return sign_of_128(difference_128(product_128(pu, bs * bs - as * as + bu * bu),
+                                    product_128(bu, ps * ps - as * as + pu * pu)));
+}
+
+static inline integer256 depth_term(long u, long as, long ps, long pu) {
+  return product_256(widened(u), sum_128(difference_128(product_128(ps, ps), product_128(as, as)), product_128(pu, pu)));
+}
+
+static inline int depth_wide(long as, long bs, long bu, long ps, long pu) {
+  return sign_of_256(sum_256(depth_term(pu, as, bs, bu), depth_term(-bu, as, ps, pu)));
+}
+
+OUT_OF_LINE static inline int depth_exact(double2 a, double2 b, double2 p, double q) {
+  const double2 as = two_sum(a.x, -q);
+  const double2 bs = two_sum(b.x, -q);
+  const double2 ps = two_sum(p.x, -q);
+  const double2 bu = two_sum(b.y, -a.y);
+  const double2 pu = two_sum(p.y, -a.y);
+  const double largest = larger_magnitude(larger_magnitude(as.x, larger_magnitude(bs.x, ps.x)),
+                                          larger_magnitude(bu.x, pu.x));
+  if (largest == 0.0) return 0;
+  for (int bits = NARROW_BITS; bits <= WIDE_BITS; bits += WIDE_BITS - NARROW_BITS) {
+    const double factor = unit_factor(largest, bits);
+    long asi, bsi, bui, psi, pui;
+    if (is_integer(as, factor, &asi) & is_integer(bs, factor, &bsi) & is_integer(ps, factor, &psi) &
+        is_integer(bu, factor, &bui) & is_integer(pu, factor, &pui))
+      return bits == NARROW_BITS ? depth_narrow(asi, bsi, bui, psi, pui) : depth_wide(asi, bsi, bui, psi, pui);
+  }
+  return depth_by_expansions(a, b, p, q);
+}
+
+// The exact sign of depth, a, b, p in the frame (s, u).
+static inline int hull_depth_sign(double2 a, double2 b, double2 p, double q, int planar) {
+  return planar ? orient_exact(a, b, p) : depth_exact(a, b, p, q);
 }
 
 // Whether, of two points with equal u, p projects strictly lower than v; equal projections (mirror images in

@@ -1,8 +1,10 @@
-// Orientation and in-circle tests: floating point with a bound first, exact by expansions.
+// Orientation and in-circle tests: floating point with a bound first; exact by integers where they suffice, as for most
+// ties, else by expansions.
 #ifndef FLAUNAY_PLANAR_H
 #define FLAUNAY_PLANAR_H
 
 #include "shared/exact_arithmetic.h"
+#include "shared/integer_arithmetic.h"
 
 // Shewchuk's (1997) bounds for the straightforward evaluation, e = 2^-53: (3 + 16e)e and (10 + 96e)e, times the sum
 // of magnitudes. A bound of 0 says that the input is so coarse that nothing is rounded (docs/exactness.md).
@@ -19,11 +21,8 @@ static inline int orient_filtered(double2 a, double2 b, double2 c, double bound)
   return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
 
-static inline int orient_exact(double2 a, double2 b, double2 c) {
-  const double2 bx = two_sum(b.x, -a.x);
-  const double2 by = two_sum(b.y, -a.y);
-  const double2 cx = two_sum(c.x, -a.x);
-  const double2 cy = two_sum(c.y, -a.y);
+// Of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
+OUT_OF_LINE static inline int cross_by_expansions(double2 bx, double2 by, double2 cx, double2 cy) {
   expansion sum;
   sum.size = 0;
   for (int term = 0; term < 2; ++term) {
@@ -36,6 +35,21 @@ static inline int orient_exact(double2 a, double2 b, double2 c) {
     }
   }
   return expansion_sign(&sum);
+}
+
+OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
+  const double2 bx = two_sum(b.x, -a.x);
+  const double2 by = two_sum(b.y, -a.y);
+  const double2 cx = two_sum(c.x, -a.x);
+  const double2 cy = two_sum(c.y, -a.y);
+  const double largest = larger_magnitude(larger_magnitude(bx.x, by.x), larger_magnitude(cx.x, cy.x));
+  if (largest == 0.0) return 0;
+  const double factor = unit_factor(largest, WIDE_BITS);
+  long bxi, byi, cxi, cyi;
+  if (is_integer(bx, factor, &bxi) & is_integer(by, factor, &byi) & is_integer(cx, factor, &cxi) &
+      is_integer(cy, factor, &cyi))
+    return sign_of_128(difference_128(product_128(bxi, cyi), product_128(byi, cxi)));
+  return cross_by_expansions(bx, by, cx, cy);
 }
 
 // 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it, UNDECIDED.
@@ -97,14 +111,27 @@ static inline int angle_compared(angle seen, angle other, double bound) {
   return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
 
-static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
-  double2 dx[3], dy[3];
-  dx[0] = two_sum(a.x, -d.x);
-  dy[0] = two_sum(a.y, -d.y);
-  dx[1] = two_sum(b.x, -d.x);
-  dy[1] = two_sum(b.y, -d.y);
-  dx[2] = two_sum(c.x, -d.x);
-  dy[2] = two_sum(c.y, -d.y);
+// The in-circle determinant of differences from the fourth point: integers below 2^NARROW_BITS, or 2^WIDE_BITS, or what
+// two_sum gives. A term of the first is below 2^126, and their sum is less than 2^127 (docs/exactness.md); of the
+// second both factors of a term are below 2^125.
+static inline int circle_narrow(long ax, long ay, long bx, long by, long cx, long cy) {
+  const integer128 a = product_128(ax * ax + ay * ay, bx * cy - by * cx);
+  const integer128 b = product_128(bx * bx + by * by, cx * ay - cy * ax);
+  const integer128 c = product_128(cx * cx + cy * cy, ax * by - ay * bx);
+  return sign_of_128(sum_128(sum_128(a, b), c));
+}
+
+static inline integer256 circle_term(long ax, long ay, long bx, long by, long cx, long cy) {
+  return product_256(sum_128(product_128(ax, ax), product_128(ay, ay)),
+                     difference_128(product_128(bx, cy), product_128(by, cx)));
+}
+
+static inline int circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
+  return sign_of_256(sum_256(sum_256(circle_term(ax, ay, bx, by, cx, cy), circle_term(bx, by, cx, cy, ax, ay)),
+                             circle_term(cx, cy, ax, ay, bx, by)));
+}
+
+OUT_OF_LINE static inline int circle_by_expansions(const double2* dx, const double2* dy) {
   expansion sum;
   sum.size = 0;
   // lift(k) times the cross product of the other two: six products of four differences for each coordinate's
@@ -130,6 +157,29 @@ static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
     expansion_compress(&sum);
   }
   return expansion_sign(&sum);
+}
+
+OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
+  double2 dx[3], dy[3];
+  dx[0] = two_sum(a.x, -d.x);
+  dy[0] = two_sum(a.y, -d.y);
+  dx[1] = two_sum(b.x, -d.x);
+  dy[1] = two_sum(b.y, -d.y);
+  dx[2] = two_sum(c.x, -d.x);
+  dy[2] = two_sum(c.y, -d.y);
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k) largest = larger_magnitude(largest, larger_magnitude(dx[k].x, dy[k].x));
+  if (largest == 0.0) return 0;
+  long x[3], y[3];
+  for (int bits = NARROW_BITS; bits <= WIDE_BITS; bits += WIDE_BITS - NARROW_BITS) {
+    const double factor = unit_factor(largest, bits);
+    int integers = 1;
+    for (int k = 0; k < 3; ++k) integers &= is_integer(dx[k], factor, &x[k]) & is_integer(dy[k], factor, &y[k]);
+    if (integers)
+      return bits == NARROW_BITS ? circle_narrow(x[0], y[0], x[1], y[1], x[2], y[2])
+                                 : circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]);
+  }
+  return circle_by_expansions(dx, dy);
 }
 
 // The filter first, the exact test where it cannot decide.

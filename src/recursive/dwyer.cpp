@@ -284,15 +284,13 @@ class Builder {
 
   bool turns_left(Point a, Point b, Point c, Counts& counts) const {
     counts.orientation();
-    const int sign = kernel::orient_filtered(a, b, c, bounds_.orient);
-    return (sign == UNDECIDED ? exact_orient(a, b, c) : sign) > 0;
+    return kernel::orient_sign(a, b, c, bounds_.orient) > 0;
   }
 
   // Is d inside of the circle through a, b, c (counter-clockwise)?
   bool in_circle(Point a, Point b, Point c, Point d, Counts& counts) const {
     counts.circle();
-    const int sign = kernel::circle_filtered(a, b, c, d, bounds_.circle);
-    return (sign == UNDECIDED ? exact_circle(a, b, c, d) : sign) > 0;
+    return kernel::circle_sign(a, b, c, d, bounds_.circle) > 0;
   }
 
   std::int32_t make_edge(std::int32_t from, std::int32_t to) {

@@ -125,7 +125,7 @@ class Polygon {
   int side(const kernel::angle& seen, std::size_t a, std::size_t b, std::size_t v) {
     counter_.orientation();
     const int sign = kernel::angle_side(seen, predicates_.bounds.orient);
-    return sign == UNDECIDED ? exact_orient(places_[a], places_[b], places_[v]) : sign;
+    return sign == UNDECIDED ? kernel::orient_exact(places_[a], places_[b], places_[v]) : sign;
   }
   int orient(std::size_t a, std::size_t b, std::size_t c) {
     counter_.orientation();

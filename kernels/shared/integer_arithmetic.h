@@ -1,0 +1,118 @@
+// Exact predicates in integers: differences of doubles as integers of one unit, products and sums of 128 and 256
+// bits. Ties mostly are of coordinates with few bits, and integers decide them far sooner than expansions do; see
+// docs/exactness.md.
+#ifndef FLAUNAY_INTEGER_ARITHMETIC_H
+#define FLAUNAY_INTEGER_ARITHMETIC_H
+
+#include "shared/language.h"
+
+// Modulo 2^128 and 2^256, and so in two's complement.
+typedef struct {
+  ulong low, high;
+} integer128;
+
+typedef struct {
+  integer128 low, high;
+} integer256;
+
+static inline int sign_of_64(long x) { return (x > 0) - (x < 0); }
+
+static inline int sign_of_128(integer128 x) {
+  const int sign = sign_of_64(as_long(x.high));
+  return sign != 0 ? sign : x.low != 0;
+}
+
+static inline int sign_of_256(integer256 x) {
+  const int sign = sign_of_128(x.high);
+  return sign != 0 ? sign : (x.low.high | x.low.low) != 0;
+}
+
+static inline integer128 sum_128(integer128 a, integer128 b) {
+  integer128 sum;
+  sum.low = a.low + b.low;
+  sum.high = a.high + b.high + (sum.low < a.low);
+  return sum;
+}
+
+static inline integer128 difference_128(integer128 a, integer128 b) {
+  integer128 difference;
+  difference.low = a.low - b.low;
+  difference.high = a.high - b.high - (a.low < b.low);
+  return difference;
+}
+
+static inline integer128 widened(long x) {
+  integer128 wide;
+  wide.low = as_ulong(x);
+  wide.high = x < 0 ? ~0UL : 0UL;
+  return wide;
+}
+
+static inline integer128 product_128(long a, long b) {
+  integer128 product;
+  product.low = as_ulong(a) * as_ulong(b);
+  product.high = as_ulong(mul_hi(a, b));
+  return product;
+}
+
+static inline integer128 unsigned_product(ulong a, ulong b) {
+  integer128 product;
+  product.low = a * b;
+  product.high = mul_hi(a, b);
+  return product;
+}
+
+static inline integer128 plus_carry(integer128 a, ulong b) {
+  integer128 sum;
+  sum.low = a.low + b;
+  sum.high = a.high + (sum.low < b);
+  return sum;
+}
+
+static inline integer256 product_256(integer128 a, integer128 b) {
+  const integer128 al_bh = unsigned_product(a.low, b.high);
+  const integer128 ah_bl = unsigned_product(a.high, b.low);
+  integer256 product;
+  product.low = unsigned_product(a.low, b.low);
+  product.high = unsigned_product(a.high, b.high);
+  // An upper half of a product is at most 2^64 - 2, so that the carry fits.
+  product.low.high += al_bh.low;
+  product.high = plus_carry(product.high, al_bh.high + (product.low.high < al_bh.low));
+  product.low.high += ah_bl.low;
+  product.high = plus_carry(product.high, ah_bl.high + (product.low.high < ah_bl.low));
+  // A negative number was taken for one greater by 2^128.
+  if (as_long(a.high) < 0) product.high = difference_128(product.high, b);
+  if (as_long(b.high) < 0) product.high = difference_128(product.high, a);
+  return product;
+}
+
+static inline integer256 sum_256(integer256 a, integer256 b) {
+  integer256 sum;
+  sum.low = sum_128(a.low, b.low);
+  const int carry = sum.low.high != b.low.high ? sum.low.high < b.low.high : sum.low.low < b.low.low;
+  sum.high = plus_carry(sum_128(a.high, b.high), carry);
+  return sum;
+}
+
+// A unit for differences: with `largest` the greatest magnitude of all (rounded; not 0), it makes them integers below
+// 2^bits. As a factor, a power of two.
+#define NARROW_BITS 31
+#define WIDE_BITS 62
+static inline double unit_factor(double largest, int bits) {
+  const int exponent = (int)(as_ulong(largest) >> 52);  // 1023 for [1, 2)
+  return as_double((ulong)(1023 + 1023 + bits - 1 - exponent) << 52);
+}
+
+// Whether a difference as two_sum gives it, below 2^bits units, is an integer; it is then put into *integer.
+static inline int is_integer(double2 difference, double factor, long* integer) {
+  const double high = difference.x * factor;
+  const double low = difference.y * factor;
+  const long whole_high = convert_long(high);
+  const long whole_low = convert_long(low);
+  *integer = whole_high + whole_low;
+  return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
+}
+
+static inline double larger_magnitude(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }
+
+#endif
