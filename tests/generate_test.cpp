@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -59,9 +60,11 @@ TEST(Generate, KnowsTheDistributionsOfItsHeader) {
     EXPECT_FALSE(d.description.empty()) << d.name;
   }
   const std::vector<std::string> expected = {
-      "uniform",         "normal",    "kuzmin",         "line",           "grid",    "rotated-grid",
-      "hexagonal",       "circle",    "integer-circle", "nested-circles", "columns", "small-integers",
-      "half-duplicates", "collinear", "parabola",       "clusters",       "spiral"};
+      "uniform",      "normal",         "kuzmin",          "line",           "grid",
+      "rotated-grid", "hexagonal",      "circle",          "integer-circle", "nested-circles",
+      "columns",      "small-integers", "half-duplicates", "collinear",      "parabola",
+      "clusters",     "spiral",         "horizontal",      "thirty-lines",   "power-of-two-span",
+      "one-ulp",      "mostly-equal",   "two-clusters"};
   EXPECT_EQ(names, expected);
 }
 
@@ -121,6 +124,12 @@ TEST(Generate, SameBytesOnEveryMachine) {
       {"parabola", 0x7dc9dcd94a8c3f50},
       {"clusters", 0x2b5f9350a489977c},
       {"spiral", 0xdedaf1dbe81557ed},
+      {"horizontal", 0xbaee1a9c57305568},
+      {"thirty-lines", 0x4de8fc3071f2e36e},
+      {"power-of-two-span", 0x35343ae89c50e74a},
+      {"one-ulp", 0xac2935e42991bafb},
+      {"mostly-equal", 0xc96ceb4753918e59},
+      {"two-clusters", 0x32a89030b06e9199},
   };
   for (const Distribution& d : distributions()) {
     ASSERT_EQ(recorded.count(d.name), 1u) << d.name;
@@ -259,6 +268,71 @@ TEST(Generate, CollinearAndParabolaAreExact) {
     ASSERT_EQ(y * 512 * 512, integer * integer) << i;
     ASSERT_LE(std::fabs(x), 1) << i;
   }
+}
+
+TEST(Generate, HorizontalIsOneLine) {
+  const Points points = generate("horizontal", 1000, 3);
+  EXPECT_EQ(share(points, [](double x, double y) { return y == 7 && x == std::rint(x); }), 1);
+  EXPECT_GT(distinct(points).size(), 800u);
+}
+
+/// The number of lines through two of the points that hold at least so many of the distinct ones.
+std::size_t lines_with(const Points& points, std::size_t least) {
+  const std::set<Pair> set = distinct(points);
+  const std::vector<Pair> all(set.begin(), set.end());
+  std::set<std::set<Pair>> lines;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::map<std::pair<long, long>, std::set<Pair>> by_direction;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      if (j == i) continue;
+      long x = std::lround(all[j].first - all[i].first), y = std::lround(all[j].second - all[i].second);
+      const long divisor = (x < 0 || (x == 0 && y < 0) ? -1 : 1) * std::gcd(x, y);
+      by_direction[{x / divisor, y / divisor}].insert(all[j]);
+    }
+    for (auto& [direction, line] : by_direction) {
+      line.insert(all[i]);
+      if (line.size() >= least) lines.insert(line);
+    }
+  }
+  return lines.size();
+}
+
+TEST(Generate, ThirtyLinesAreExactlyThirty) {
+  EXPECT_EQ(lines_with(generate("thirty-lines", 600, 3), 8), 30u);
+}
+
+TEST(Generate, PowerOfTwoSpanIsExact) {
+  for (const std::size_t n : {2, 1000, 100000}) {
+    const Points points = generate("power-of-two-span", n, 3);
+    const auto [low, high] = std::minmax_element(points.coordinates.begin(), points.coordinates.end());
+    int exponent;
+    EXPECT_EQ(*low, 0) << n;
+    EXPECT_EQ(std::frexp(*high, &exponent), 0.5) << n;
+    EXPECT_GT(distinct(points).size(), n * 9 / 10);
+    EXPECT_EQ(share(points, [](double x, double y) { return x == std::rint(x) && y == std::rint(y); }), 1);
+  }
+}
+
+TEST(Generate, OneUlpIsRoundingErrorsWide) {
+  const Points points = generate("one-ulp", 10000, 3);
+  const auto within = [](double v) { return v >= 1 && v < 1 + 52 * 0x1p-52; };
+  EXPECT_EQ(share(points, [&](double x, double y) { return within(x) && within(y); }), 1);
+  EXPECT_EQ(distinct(points).size(), distinct(generate("small-integers", 10000, 3)).size());
+}
+
+TEST(Generate, MostlyEqualHasFewOthers) {
+  for (const std::size_t n : {100, 1003, 100000}) {
+    const std::size_t others = distinct(generate("mostly-equal", n, 3)).size() - 1;
+    EXPECT_GE(others, 9u) << n;
+    EXPECT_LE(others, 10u) << n;
+  }
+}
+
+TEST(Generate, TwoClustersAreFarApart) {
+  const Points points = generate("two-clusters", 10000, 3);
+  const auto near = [](double x, double y, double center) { return std::hypot(x - center, y - center) < 8; };
+  EXPECT_EQ(share(points, [&](double x, double y) { return near(x, y, 0) || near(x, y, 1e9); }), 1);
+  EXPECT_NEAR(share(points, [&](double x, double y) { return near(x, y, 0); }), 0.5, 0.02);
 }
 
 TEST(Generate, ClustersDifferInSizeByOrders) {

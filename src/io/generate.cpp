@@ -358,6 +358,79 @@ Points spiral(std::size_t n, Random& random) {
   return sink.take();
 }
 
+Points horizontal(std::size_t n, Random& random) {
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) sink.add(static_cast<double>(random.below(8 * n)), 7);
+  return sink.take();
+}
+
+Points thirty_lines(std::size_t n, Random& random) {
+  constexpr std::size_t kLines = 30;
+  // No two of the directions are parallel; each line goes through a random node of a grid as wide as it is
+  // long, so that all of them cross.
+  constexpr std::int64_t kDirections[kLines][2] = {
+      {1, 0}, {0, 1},  {1, 1}, {1, -1}, {2, 1}, {2, -1}, {1, 2}, {1, -2}, {3, 1}, {3, -1},
+      {1, 3}, {1, -3}, {3, 2}, {3, -2}, {2, 3}, {2, -3}, {4, 1}, {4, -1}, {1, 4}, {1, -4},
+      {4, 3}, {4, -3}, {3, 4}, {3, -4}, {5, 1}, {5, -1}, {1, 5}, {1, -5}, {5, 2}, {5, -2}};
+  const std::uint64_t length = 8 * n;
+  double starts[kLines][2];
+  for (auto& start : starts) {
+    for (double& coordinate : start) coordinate = static_cast<double>(random.below(length + 1));
+  }
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t l = random.below(kLines);
+    const double position = static_cast<double>(random.below(length)) - static_cast<double>(length / 2);
+    sink.add(starts[l][0] + static_cast<double>(kDirections[l][0]) * position,
+             starts[l][1] + static_cast<double>(kDirections[l][1]) * position);
+  }
+  return sink.take();
+}
+
+Points power_of_two_span(std::size_t n, Random& random) {
+  std::uint64_t span = 4;
+  while (span * span / 16 < n) span *= 2;
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    // Two opposite corners, so that the span is exact.
+    const bool corner = i < 2;
+    const auto coordinate = [&] { return static_cast<double>(corner ? i * span : random.below(span + 1)); };
+    const double x = coordinate();
+    sink.add(x, coordinate());
+  }
+  return sink.take();
+}
+
+Points one_ulp(std::size_t n, Random& random) {
+  Points points = small_integers(n, random);
+  for (double& coordinate : points.coordinates) coordinate = 1 + coordinate * 0x1p-52;
+  return points;
+}
+
+Points mostly_equal(std::size_t n, Random& random) {
+  constexpr std::size_t kOthers = 10;
+  const double x = random.unit(), y = random.unit();
+  const std::size_t stride = n / kOthers + 1;
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool other = i % stride == stride / 2;
+    const double own_x = other ? random.unit() : x;
+    sink.add(own_x, other ? random.unit() : y);
+  }
+  return sink.take();
+}
+
+Points two_clusters(std::size_t n, Random& random) {
+  constexpr double kDistance = 1e9;
+  Sink sink(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double center = random.below(2) ? kDistance : 0;
+    const Direction d = random.normal_pair();
+    sink.add(center + d.x, center + d.y);
+  }
+  return sink.take();
+}
+
 struct Generator {
   Distribution distribution;
   Points (*generate)(std::size_t n, Random& random);
@@ -384,6 +457,13 @@ const std::vector<Generator>& generators() {
       {{"parabola", "exactly on a parabola: every point on the hull"}, parabola},
       {{"clusters", "twelve Gaussian clusters, each a quarter as wide as the one before"}, clusters},
       {{"spiral", "a spiral with evenly spaced arms"}, spiral},
+      {{"horizontal", "random integers exactly on one horizontal line"}, horizontal},
+      {{"thirty-lines", "integers exactly on thirty lines that cross"}, thirty_lines},
+      {{"power-of-two-span", "random integers from 0 to a power of two, both included"}, power_of_two_span},
+      {{"one-ulp", "rounding errors beside (1, 1): small integers times 2^-52; most points several times"},
+       one_ulp},
+      {{"mostly-equal", "all points equal but up to ten"}, mostly_equal},
+      {{"two-clusters", "two Gaussian clusters a billion times as far apart as wide"}, two_clusters},
   };
   return all;
 }

@@ -16,7 +16,7 @@ struct Distribution {
 
 /// The known distributions: uniform, normal, kuzmin, line (the paper's four), grid, rotated-grid, hexagonal,
 /// circle, integer-circle, nested-circles, columns, small-integers, half-duplicates, collinear, parabola,
-/// clusters, spiral.
+/// clusters, spiral, horizontal, thirty-lines, power-of-two-span, one-ulp, mostly-equal, two-clusters.
 const std::vector<Distribution>& distributions();
 
 /// n points of the named distribution. Throws Error(usage) that lists the names if there is no such.

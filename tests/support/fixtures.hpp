@@ -196,7 +196,6 @@ inline const std::vector<Fixture>& all_fixtures() {
                       }});
     }
     list.push_back({"two-lines", [](auto n, auto seed) { return detail::on_lines(n, seed, 2); }});
-    list.push_back({"thirty-lines", [](auto n, auto seed) { return detail::on_lines(n, seed, 30); }});
     list.push_back({"star", detail::star});
     list.push_back({"integer-star", detail::integer_star});
     list.push_back({"circle-few-inside", detail::circle_few_inside});
