@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
+#include <initializer_list>
+#include <random>
 
 #include "io/generate.hpp"
 
@@ -15,20 +16,21 @@ constexpr std::uint64_t kSeed = 1;
 template <typename Value>
 using Named = std::vector<std::pair<std::string, Value>>;
 
+template <typename Value>
+Named<Value> with_names(std::initializer_list<Value> values) {
+  Named<Value> named;
+  for (const Value value : values) named.push_back({to_string(value), value});
+  return named;
+}
+
 const Named<Mode>& named_modes() {
-  static const Named<Mode> kModes = {{"flattened", Mode::flattened},
-                                     {"recursive-device", Mode::recursive_device},
-                                     {"recursive", Mode::recursive},
-                                     {"partition", Mode::partition},
-                                     {"dwyer", Mode::dwyer}};
+  static const auto kModes =
+      with_names({Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
   return kModes;
 }
 
 const Named<Hull>& named_hulls() {
-  static const Named<Hull> kHulls = {{"prune", Hull::prune},
-                                     {"quickhull", Hull::quickhull},
-                                     {"balanced", Hull::balanced},
-                                     {"monotone-chain", Hull::monotone_chain}};
+  static const auto kHulls = with_names({Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain});
   return kHulls;
 }
 
@@ -47,7 +49,46 @@ Value find_named(const Named<Value>& all, const std::string& name, const char* k
   throw Error(ErrorKind::usage, fmt::format("no {} is called '{}'", kind, name));
 }
 
+/// Another set: appends n points of the distribution.
+void append_set(Input& input, const std::string& distribution, std::size_t n) {
+  const std::vector<double> set = io::generate(distribution, n, kSeed + input.offsets.size()).coordinates;
+  std::vector<double>& all = input.points.coordinates;
+  all.insert(all.end(), set.begin(), set.end());
+  input.n += n;
+  input.offsets.push_back(input.n);
+}
+
+/// At least x with probability 8 / (8 + x).
+std::size_t heavy_tailed_size(std::mt19937_64& random) {
+  const double rest = 1 - static_cast<double>(random() >> 11) * 0x1p-53;
+  return static_cast<std::size_t>(8 / rest - 8);
+}
+
 }  // namespace
+
+Input make_input(const std::string& distribution, std::size_t n) {
+  return {distribution, n, io::generate(distribution, n, kSeed), {0, n}};
+}
+
+Input equal_sets(std::size_t sets, std::size_t size) {
+  Input input{fmt::format("{} sets of {}", sets, size), 0, {}, {0}};
+  for (std::size_t s = 0; s < sets; ++s) append_set(input, "uniform", size);
+  return input;
+}
+
+Input heavy_tailed_sets(std::size_t n) {
+  static const std::vector<std::string> kKinds = {"collinear", "grid", "mostly-equal", "small-integers"};
+  constexpr std::size_t kOneInSets = 4;
+  std::mt19937_64 random(kSeed);
+  Input input{"", 0, {}, {0}};
+  for (std::size_t s = 0; input.n < n; ++s) {
+    const std::size_t size =
+        std::min({heavy_tailed_size(random), std::max<std::size_t>(1, n / 10), n - input.n});
+    append_set(input, s % kOneInSets == 0 ? kKinds[s / kOneInSets % kKinds.size()] : "uniform", size);
+  }
+  input.distribution = fmt::format("{} sets of all sizes", input.offsets.size() - 1);
+  return input;
+}
 
 std::vector<Input> make_inputs(const std::vector<std::string>& distributions,
                                std::vector<std::size_t> sizes) {
@@ -55,7 +96,7 @@ std::vector<Input> make_inputs(const std::vector<std::string>& distributions,
   std::vector<Input> inputs;
   for (const std::size_t n : sizes) {
     for (const std::string& distribution : distributions) {
-      inputs.push_back({distribution, n, io::generate(distribution, n, kSeed)});
+      inputs.push_back(make_input(distribution, n));
     }
   }
   return inputs;
@@ -64,6 +105,8 @@ std::vector<Input> make_inputs(const std::vector<std::string>& distributions,
 std::string input_name(const Input& input) {
   return fmt::format("{}, {} points", input.distribution, input.n);
 }
+
+std::string default_mode_name() { return to_string(kDefaultMode); }
 
 const std::vector<std::string>& mode_names() {
   static const std::vector<std::string> kNames = names_of(named_modes());
@@ -79,13 +122,25 @@ Mode mode_named(const std::string& name) { return find_named(named_modes(), name
 
 Hull hull_named(const std::string& name) { return find_named(named_hulls(), name, "hull"); }
 
-Triangulation run_mode(Triangulator& triangulator, const io::Points& points, const Options& options) {
-  return triangulator.triangulate(points.coordinates.data(), points.size(), options);
+Triangulation run_mode(Triangulator& triangulator, const Input& input, const Options& options) {
+  return triangulator.triangulate(input.points.coordinates.data(), input.offsets, options);
 }
 
 void prepare_mode(Triangulator& triangulator, const Options& options) {
   constexpr std::size_t kEnoughForAllKernels = 3000;
-  run_mode(triangulator, io::generate("uniform", kEnoughForAllKernels, kSeed), options);
+  run_mode(triangulator, make_input("uniform", kEnoughForAllKernels), options);
+}
+
+std::size_t DeviceMemory::peak(const Input& input, const Options& options) {
+  Triangulator& triangulator =
+      triangulators_.try_emplace({options.mode, options.hull}, device_).first->second;
+  return run_mode(triangulator, input, options).statistics.device_bytes_peak;
+}
+
+std::vector<std::size_t> powers_of_two(int least, int most) {
+  std::vector<std::size_t> powers;
+  for (int exponent = least; exponent <= most; ++exponent) powers.push_back(std::size_t{1} << exponent);
+  return powers;
 }
 
 plot::Axis size_axis(const std::vector<std::size_t>& sizes) {

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "contest.hpp"
 #include "inputs.hpp"
+#include "options.hpp"
 #include "plot.hpp"
 #include "record.hpp"
 #include "timing.hpp"
@@ -21,10 +23,9 @@ struct Request {
   std::vector<std::string> distributions{"uniform"};
   std::vector<std::string> modes = mode_names();
   std::vector<std::string> hulls{"prune"};
-  int runs = 5;
   double limit = 10;
   std::size_t count_up_to = 131072;
-  std::string device, json_path, plot_path;
+  Measurement measurement;
 };
 
 /// A mode with a hull on one input.
@@ -80,7 +81,7 @@ void measure(Triangulator& triangulator, std::vector<Row>& rows, int runs, doubl
   for (Row& row : rows) {
     Job job{fmt::format("{} on {}", row.variant, input_name(*row.input)), [&triangulator, &row] {
               const Stopwatch watch;
-              Triangulation mesh = run_mode(triangulator, row.input->points, options_of(row));
+              Triangulation mesh = run_mode(triangulator, *row.input, options_of(row));
               const double seconds = watch.seconds();
               row.statistics = std::move(mesh.statistics);
               return seconds;
@@ -95,17 +96,12 @@ void measure(Triangulator& triangulator, std::vector<Row>& rows, int runs, doubl
   }
 }
 
-/// Device memory, with a triangulator that has held nothing larger before: it keeps what it has for the next
-/// call. Rows are in ascending order of size.
 void measure_device_memory(std::vector<Row>& rows, const std::string& device) {
-  std::map<std::string, std::unique_ptr<Triangulator>> fresh;
+  DeviceMemory memory(device);
   Progress progress(rows.size());
   for (Row& row : rows) {
     progress.step(fmt::format("device memory: {} on {}", row.variant, input_name(*row.input)));
-    if (!row.skipped.empty()) continue;
-    auto& triangulator = fresh[row.variant];
-    if (!triangulator) triangulator = std::make_unique<Triangulator>(device);
-    row.bytes_peak = run_mode(*triangulator, row.input->points, options_of(row)).statistics.device_bytes_peak;
+    if (row.skipped.empty()) row.bytes_peak = memory.peak(*row.input, options_of(row));
   }
 }
 
@@ -116,7 +112,7 @@ void count_work(Triangulator& triangulator, std::vector<Row>& rows, std::size_t 
     if (!row.skipped.empty() || row.input->n > up_to) continue;
     Options options = options_of(row);
     options.count = true;
-    row.work = run_mode(triangulator, row.input->points, options).statistics.work;
+    row.work = run_mode(triangulator, *row.input, options).statistics.work;
   }
 }
 
@@ -324,18 +320,9 @@ plot::Lines panel_of(const std::vector<Row>& rows, const std::vector<Crossover>&
   panel.title = request.distributions.size() > 1 ? distribution : "";
   panel.x = size_axis(request.sizes);
   panel.y = {"time per point", plot::Scale::log10, plot::Unit::seconds};
-  for (const auto& [variant, curve] : curves_of(rows, distribution))
-    panel.series.push_back({variant, {}, {}});
   for (const Row& row : rows) {
     if (!row.skipped.empty() || row.input->distribution != distribution) continue;
-    const auto series =
-        std::find_if(panel.series.begin(), panel.series.end(),
-                     [&](const plot::Series& candidate) { return candidate.name == row.variant; });
-    const auto n = static_cast<double>(row.input->n);
-    series->x.push_back(n);
-    series->y.push_back(row.seconds.median / n);
-    series->low.push_back(row.seconds.low / n);
-    series->high.push_back(row.seconds.high / n);
+    add_time_per_point(panel, row.variant, row.input->n, row.seconds);
   }
   for (const Crossover& c : crossovers) {
     if (c.distribution != distribution || !c.of_fastest) continue;
@@ -350,7 +337,7 @@ plot::Figure figure_of(const std::vector<Row>& rows, const std::vector<Crossover
   figure.title = request.distributions.size() > 1
                      ? "Time by mode"
                      : fmt::format("Time by mode, {} points", request.distributions.front());
-  figure.subtitle = measured_on(device, request.runs);
+  figure.subtitle = measured_on(device, request.measurement.runs);
   for (const std::string& distribution : request.distributions) {
     figure.panels.push_back(panel_of(rows, crossovers, request, distribution));
   }
@@ -364,48 +351,38 @@ bool counts_agree(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     if (!row.skipped.empty()) continue;
     const Row& expected = *first.emplace(row.input, &row).first->second;
-    if (row.statistics.triangles == expected.statistics.triangles) continue;
-    agree = false;
-    fmt::print(stderr, "WARNING: {}: {} has {} triangles, {} has {}\n", input_name(*row.input), row.variant,
-               row.statistics.triangles, expected.variant, expected.statistics.triangles);
+    agree &= same_count(*row.input, expected.variant, expected.statistics.triangles, row.variant,
+                        row.statistics.triangles);
   }
   return agree;
 }
 
 int run(const Request& request, const std::string& command) {
-  check_writable({request.json_path, request.plot_path});
+  const Measurement& measurement = request.measurement;
+  check_writable(measurement);
   const std::vector<Input> inputs = make_inputs(request.distributions, request.sizes);
   std::vector<Row> rows = make_rows(request, inputs);
-  Triangulator triangulator(request.device);
+  Triangulator triangulator(measurement.device);
   prepare(triangulator, rows);
-  measure(triangulator, rows, request.runs, request.limit);
-  measure_device_memory(rows, request.device);
+  measure(triangulator, rows, measurement.runs, request.limit);
+  measure_device_memory(rows, measurement.device);
   count_work(triangulator, rows, request.count_up_to);
 
   const std::vector<Crossover> crossovers = find_crossovers(rows, request.distributions);
   print_table(rows);
   print_crossovers(crossovers);
-  nlohmann::json file = record(triangulator.device(), command, request.runs);
+  nlohmann::json file = record(triangulator.device(), command, measurement.runs);
   add_results(file, rows);
   file["crossovers"] = crossover_record(crossovers);
-  if (!request.json_path.empty()) write_record(request.json_path, file);
-  if (!request.plot_path.empty()) {
-    plot::write(request.plot_path, figure_of(rows, crossovers, request, triangulator.device()));
-  }
+  write_files(measurement, file, [&] { return figure_of(rows, crossovers, request, triangulator.device()); });
   return counts_agree(rows) ? kSuccess : kFailure;
-}
-
-std::vector<std::size_t> default_sizes() {
-  std::vector<std::size_t> sizes;
-  for (int power = 8; power <= 20; ++power) sizes.push_back(std::size_t{1} << power);
-  return sizes;
 }
 
 }  // namespace
 
 void add_modes(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
-  request->sizes = default_sizes();
+  request->sizes = powers_of_two(8, 20);
   CLI::App* command = app.add_subcommand("modes", "flaunay's modes beside each other, by number of points");
   command->footer(
       "Times are from points in host memory to triangles and neighbours in host memory; all modes and inputs "
@@ -414,33 +391,19 @@ void add_modes(CLI::App& app, Action& action) {
       "interpolated "
       "between sizes by power laws, where differences are above 3 %. Operations are those of "
       "docs/counting.md, counted in a run of its own.");
-  command->add_option("--sizes", request->sizes, "numbers of points")->delimiter(',')->capture_default_str();
-  command->add_option("--distributions", request->distributions, "which (see flaunay generate --help)")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--modes", request->modes, "which modes")
-      ->delimiter(',')
-      ->check(CLI::IsMember(mode_names()))
-      ->capture_default_str();
+  add_sizes_option(command, request->sizes);
+  add_distributions_option(command, request->distributions);
+  add_modes_option(command, request->modes);
   command->add_option("--hulls", request->hulls, "which variants of the dividing paths; dwyer has none")
       ->delimiter(',')
       ->check(CLI::IsMember(hull_names()))
       ->capture_default_str();
-  command->add_option("--runs", request->runs, "counted runs of each")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--limit", request->limit,
-                   "a mode whose first run takes more seconds is not run at larger sizes")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_limit_option(command, request->limit,
+                   "a mode whose first run takes more seconds is not run at larger sizes");
   command->add_option("--count-up-to", request->count_up_to, "largest size whose operations are counted")
       ->capture_default_str();
-  command->add_option("--device", request->device, "device, as for flaunay triangulate");
-  command->add_option("--json", request->json_path, "write the results here");
-  command->add_option("--plot", request->plot_path, "write a plot here, as SVG");
-  command->callback(
-      [request, &action] { action = [request](const std::string& line) { return run(*request, line); }; });
+  add_measurement_options(command, request->measurement);
+  set_action(command, action, request, run);
 }
 
 }  // namespace flaunay::bench

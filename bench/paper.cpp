@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "io/file.hpp"
+#include "options.hpp"
 #include "paper_figures.hpp"
 #include "paper_report.hpp"
 #include "paper_runs.hpp"
@@ -210,7 +211,7 @@ void add_paper(CLI::App& app, Action& action) {
   command->add_option("--threads", request->plan.threads, "host threads")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--device", request->device, "device, as for flaunay triangulate");
+  add_device_option(command, request->device);
   command->callback([request, &action] {
     if (request->plan.smallest > request->plan.largest) {
       throw CLI::ValidationError("--smallest", "is greater than --largest");

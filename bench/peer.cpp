@@ -1,15 +1,11 @@
 #include "peer.hpp"
 
-#include <fmt/format.h>
 #include <malloc.h>
-#include <poll.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "child.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::bench {
@@ -25,32 +21,21 @@ std::size_t status_bytes(const std::string& name) {
   return 0;
 }
 
-struct Answer {
-  PeerRun run;
-  std::size_t bytes_peak;
-};
-
-[[noreturn]] void answer_from_child(const Peer& peer, const io::Points& points, int pipe) {
+/// Runs the peer in this process, which must be a child: what was resident before counts as the parent's.
+nlohmann::json run_measured(const Peer& peer, const Input& input) {
   // Freed memory that the allocator keeps would be used again without being seen; and the highest mark is
   // still the parent's until it is reset.
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";
   const std::size_t before = status_bytes("VmRSS");
-  Answer answer{peer.run(points), 0};
+  const Outcome outcome = peer.run(input);
   const std::size_t peak = status_bytes("VmHWM");
-  answer.bytes_peak = peak > before ? peak - before : 0;
-  const bool told = write(pipe, &answer, sizeof answer) == sizeof answer;
-  // Without destructors and exit handlers: those belong to the parent.
-  _exit(told ? EXIT_SUCCESS : EXIT_FAILURE);
+  return {{"seconds", outcome.seconds},
+          {"triangles", outcome.triangles},
+          {"bytes_peak", peak > before ? peak - before : 0}};
 }
 
-/// Whether something can be read, or the other end is closed, before the limit is over.
-bool wait_for(int pipe, double limit) {
-  pollfd waiting{pipe, POLLIN, 0};
-  return poll(&waiting, 1, static_cast<int>(1e3 * limit)) > 0;
-}
-
-std::function<PeerRun(const io::Points&)> if_built(bool built, PeerRun (*run)(const io::Points&)) {
+std::function<Outcome(const Input&)> if_built(bool built, Outcome (*run)(const Input&)) {
   if (!built) return {};
   return run;
 }
@@ -60,15 +45,15 @@ std::function<PeerRun(const io::Points&)> if_built(bool built, PeerRun (*run)(co
 // Peers that were not found when this was built.
 #ifndef FLAUNAY_BENCH_CGAL
 #define FLAUNAY_BENCH_CGAL 0
-PeerRun run_cgal(const io::Points&) { throw Error(ErrorKind::usage, "built without CGAL"); }
+Outcome run_cgal(const Input&) { throw Error(ErrorKind::usage, "built without CGAL"); }
 #endif
 #ifndef FLAUNAY_BENCH_QHULL
 #define FLAUNAY_BENCH_QHULL 0
-PeerRun run_qhull(const io::Points&) { throw Error(ErrorKind::usage, "built without Qhull"); }
+Outcome run_qhull(const Input&) { throw Error(ErrorKind::usage, "built without Qhull"); }
 #endif
 #ifndef FLAUNAY_BENCH_GTS
 #define FLAUNAY_BENCH_GTS 0
-PeerRun run_gts(const io::Points&) { throw Error(ErrorKind::usage, "built without GTS"); }
+Outcome run_gts(const Input&) { throw Error(ErrorKind::usage, "built without GTS"); }
 #endif
 
 const std::vector<Peer>& all_peers() {
@@ -76,7 +61,8 @@ const std::vector<Peer>& all_peers() {
       {"cgal",
        "CGAL's Delaunay_triangulation_2 with Exact_predicates_inexact_constructions_kernel, exact, one "
        "thread: "
-       "copying the points, sorting them spatially, inserting them as a range",
+       "copying the points, sorting them spatially with their indices, inserting them, writing triangles and "
+       "neighbours into arrays",
        if_built(FLAUNAY_BENCH_CGAL, run_cgal)},
       {"qhull",
        "libqhull_r with 'd Qt Qbb Qc Qz Q12', not exact (it merges facets that it cannot tell apart), one "
@@ -93,39 +79,11 @@ const std::vector<Peer>& all_peers() {
   return kPeers;
 }
 
-Trial try_peer(const Peer& peer, const io::Points& points, double limit) {
-  int ends[2];
-  if (pipe(ends) != 0) return {{0, 0}, 0, "cannot make a pipe"};
-  std::fflush(nullptr);  // what is buffered would be written twice
-  const pid_t child = fork();
-  if (child < 0) return {{0, 0}, 0, "cannot make a process"};
-  if (child == 0) {
-    close(ends[0]);
-    try {
-      answer_from_child(peer, points, ends[1]);
-    } catch (const std::exception& error) {
-      fmt::print(stderr, "{}: {}\n", peer.name, error.what());
-      _exit(EXIT_FAILURE);
-    }
-  }
-  close(ends[1]);
-  Trial trial;
-  Answer answer{};
-  if (!wait_for(ends[0], limit)) {
-    kill(child, SIGKILL);
-    trial.failure = fmt::format("took more than {:g} s", limit);
-  } else if (read(ends[0], &answer, sizeof answer) != sizeof answer) {
-    trial.failure = "failed";
-  }
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (trial.failure == "failed" && WIFSIGNALED(status)) {
-    trial.failure = fmt::format("was ended by signal {}", WTERMSIG(status));
-  }
-  trial.run = answer.run;
-  trial.bytes_peak = answer.bytes_peak;
-  return trial;
+Trial try_peer(const Peer& peer, const Input& input, double limit) {
+  const Answer answer = ask_child([&] { return run_measured(peer, input).dump(); }, limit);
+  if (!answer.failure.empty()) return {{0, 0}, 0, answer.failure};
+  const auto json = nlohmann::json::parse(answer.text);
+  return {{json.at("seconds"), json.at("triangles")}, json.at("bytes_peak"), ""};
 }
 
 }  // namespace flaunay::bench

@@ -115,7 +115,8 @@ void insert_all(const io::Points& points, GtsSurface* surface) {
 
 }  // namespace
 
-PeerRun run_gts(const io::Points& points) {
+Outcome run_gts(const Input& input) {
+  const io::Points& points = input.points;
   if (points.size() == 0) return {0, 0};
   const Stopwatch watch;
   GtsSurface* surface =

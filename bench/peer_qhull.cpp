@@ -34,7 +34,8 @@ void release(qhT* qh) {
 
 }  // namespace
 
-PeerRun run_qhull(const io::Points& points) {
+Outcome run_qhull(const Input& input) {
+  const io::Points& points = input.points;
   const auto state = std::make_unique<qhT>();
   qhT* qh = state.get();
   // d: Delaunay; Qt: splits merged facets into triangles; Qbb: scales the lifted coordinate; Qc: keeps points

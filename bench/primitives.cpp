@@ -15,6 +15,7 @@
 #include "flattened/device_info.hpp"
 #include "host/device.hpp"
 #include "host/vector_operations.hpp"
+#include "options.hpp"
 #include "plot.hpp"
 #include "record.hpp"
 #include "timing.hpp"
@@ -27,8 +28,7 @@ using host::Runtime;
 
 struct Request {
   std::vector<std::size_t> sizes{10000, 1000000};
-  int runs = 5;
-  std::string device, json_path, plot_path;
+  Measurement measurement;
 };
 
 std::string help() {
@@ -442,7 +442,7 @@ plot::Bars panel_of(const std::vector<Measured>& all, std::size_t n) {
 plot::Figure figure_of(const std::vector<Measured>& all, const Request& request, const DeviceInfo& device) {
   plot::Figure figure;
   figure.title = "Vector operations: bytes that must be read and written, by time";
-  figure.subtitle = measured_on(device, request.runs);
+  figure.subtitle = measured_on(device, request.measurement.runs);
   figure.columns = 1;
   figure.panel_width = 1000;
   for (const std::size_t n : request.sizes) figure.panels.push_back(panel_of(all, n));
@@ -450,8 +450,9 @@ plot::Figure figure_of(const std::vector<Measured>& all, const Request& request,
 }
 
 int measure_all(const Request& request, const std::string& command) {
-  check_writable({request.json_path, request.plot_path});
-  Runtime runtime(host::find_device(request.device));
+  const Measurement& measurement = request.measurement;
+  check_writable(measurement);
+  Runtime runtime(host::find_device(measurement.device));
   std::vector<std::unique_ptr<Arrays>> arrays;
   std::vector<std::unique_ptr<Operations>> makers;
   std::vector<std::unique_ptr<Segmentation>> segmentations;
@@ -473,16 +474,13 @@ int measure_all(const Request& request, const std::string& command) {
   for (Operation& candidate : candidates) {
     if (works(runtime, candidate)) operations.push_back(std::move(candidate));
   }
-  const std::vector<Measured> measured = measure(runtime, operations, request.runs);
+  const std::vector<Measured> measured = measure(runtime, operations, measurement.runs);
 
   print_table(measured);
   const DeviceInfo device = flattened::describe(runtime.device());
-  if (!request.json_path.empty()) {
-    nlohmann::json file = record(device, command, request.runs);
-    file["results"] = results(measured);
-    write_record(request.json_path, file);
-  }
-  if (!request.plot_path.empty()) plot::write(request.plot_path, figure_of(measured, request, device));
+  nlohmann::json file = record(device, command, measurement.runs);
+  file["results"] = results(measured);
+  write_files(measurement, file, [&] { return figure_of(measured, request, device); });
   return kSuccess;
 }
 
@@ -501,18 +499,9 @@ void add_primitives(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("primitives", "the vector operations beside a plain copy and Boost.Compute's");
   command->footer(help());
-  command->add_option("--sizes", request->sizes, "numbers of elements")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--runs", request->runs, "counted runs of each")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--device", request->device, "device, as for flaunay triangulate");
-  command->add_option("--json", request->json_path, "write the results here");
-  command->add_option("--plot", request->plot_path, "write a plot here, as SVG");
-  command->callback(
-      [request, &action] { action = [request](const std::string& line) { return run(*request, line); }; });
+  add_sizes_option(command, request->sizes, "numbers of elements");
+  add_measurement_options(command, request->measurement);
+  set_action(command, action, request, run);
 }
 
 }  // namespace flaunay::bench
