@@ -20,5 +20,10 @@ void add_peers(CLI::App& app, Action& action);
 void add_primitives(CLI::App& app, Action& action);
 void add_modes(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
+void add_targets(CLI::App& app, Action& action);
+void add_scaling(CLI::App& app, Action& action);
+void add_cliffs(CLI::App& app, Action& action);
+void add_small(CLI::App& app, Action& action);
+void add_threads(CLI::App& app, Action& action);
 
 }  // namespace flaunay::bench

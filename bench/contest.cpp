@@ -69,12 +69,30 @@ std::vector<Implementation> mode_implementations(Triangulator& triangulator,
   return implementations;
 }
 
-std::vector<Implementation> cgal_implementation() {
+std::vector<Peer> chosen_peers(const std::vector<std::string>& names) {
+  std::vector<Peer> chosen;
   for (const Peer& peer : all_peers()) {
-    if (peer.name == kCgal && peer.run) return {{peer.name, peer.run}};
+    if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
+    if (peer.run) {
+      chosen.push_back(peer);
+    } else {
+      fmt::print(stderr, "not measured: {}: this build is without it\n", peer.name);
+    }
   }
-  fmt::print(stderr, "not measured: {}: this build is without it\n", kCgal);
-  return {};
+  return chosen;
+}
+
+std::vector<Implementation> implementations_of(const std::vector<Peer>& peers) {
+  std::vector<Implementation> implementations;
+  for (const Peer& peer : peers) implementations.push_back({peer.name, peer.run});
+  return implementations;
+}
+
+std::vector<Implementation> modes_and_cgal(Triangulator& triangulator,
+                                           const std::vector<std::string>& modes) {
+  std::vector<Implementation> all = mode_implementations(triangulator, modes);
+  append(all, implementations_of(chosen_peers({kCgal})));
+  return all;
 }
 
 std::vector<Entry> make_entries(const std::vector<Implementation>& implementations,
@@ -85,6 +103,38 @@ std::vector<Entry> make_entries(const std::vector<Implementation>& implementatio
       entries.push_back({implementation.name, &input});
     }
   }
+  return entries;
+}
+
+std::vector<Entry> try_peers(const std::vector<Peer>& peers, const std::vector<Input>& inputs, double limit) {
+  std::vector<Entry> entries;
+  std::map<std::pair<std::string, std::string>, std::string> ended;
+  Progress progress(peers.size() * inputs.size());
+  for (const Input& input : inputs) {
+    for (const Peer& peer : peers) {
+      Entry entry{peer.name, &input};
+      std::string& reason = ended[{peer.name, input.distribution}];
+      progress.step(fmt::format("memory of {}: {}", peer.name, input_name(input)));
+      if (reason.empty()) {
+        const Trial trial = try_peer(peer, input, limit);
+        entry.triangles = trial.outcome.triangles;
+        entry.bytes_peak = trial.bytes_peak;
+        if (!trial.failure.empty()) reason = fmt::format("{} on {}", trial.failure, input_name(input));
+      }
+      entry.skipped = reason;
+      if (!reason.empty()) {
+        progress.say(fmt::format("not measured: {} on {}: {}", peer.name, input_name(input), reason));
+      }
+      entries.push_back(entry);
+    }
+  }
+  return entries;
+}
+
+std::vector<Entry> by_input(std::vector<Entry> entries, const std::vector<Entry>& more) {
+  append(entries, more);
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.input < b.input; });
   return entries;
 }
 
@@ -116,12 +166,17 @@ bool same_count(const Input& input, const std::string& first, std::size_t expect
 }
 
 bool check_counts(std::vector<Entry>& entries) {
+  std::map<const Input*, const Entry*> expected;
+  for (const Entry& entry : entries) {
+    if (!entry.skipped.empty()) continue;
+    const Entry*& chosen = expected.emplace(entry.input, &entry).first->second;
+    if (entry.implementation == kCgal) chosen = &entry;
+  }
   bool all_agree = true;
-  std::map<const Input*, const Entry*> firsts;
   for (Entry& entry : entries) {
     if (!entry.skipped.empty()) continue;
-    const Entry& first = *firsts.emplace(entry.input, &entry).first->second;
-    entry.agrees = same_count(*entry.input, first.implementation, first.triangles, entry.implementation,
+    const Entry& other = *expected.at(entry.input);
+    entry.agrees = same_count(*entry.input, other.implementation, other.triangles, entry.implementation,
                               entry.triangles);
     all_agree = all_agree && entry.agrees;
   }

@@ -16,6 +16,11 @@
 
 namespace flaunay::bench {
 
+template <typename T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
 struct Implementation {
   std::string name;
   std::function<Outcome(const Input&)> run;
@@ -33,8 +38,13 @@ std::vector<Implementation> mode_implementations(Triangulator& triangulator,
 
 constexpr const char* kCgal = "cgal";
 
-/// CGAL; nothing if this build is without it, which standard error is told.
-std::vector<Implementation> cgal_implementation();
+/// Those of these names that this build has; standard error is told of the others.
+std::vector<Peer> chosen_peers(const std::vector<std::string>& names);
+
+std::vector<Implementation> implementations_of(const std::vector<Peer>& peers);
+
+/// Both, CGAL last.
+std::vector<Implementation> modes_and_cgal(Triangulator& triangulator, const std::vector<std::string>& modes);
 
 /// One implementation on one input.
 struct Entry {
@@ -44,7 +54,7 @@ struct Entry {
   std::size_t bytes_peak = 0;        ///< 0 if it was not measured
   std::string skipped = {};          ///< why there are no times; else empty
   std::vector<double> seconds = {};  ///< of the counted runs
-  bool agrees = true;                ///< as many triangles as the first implementation on this input
+  bool agrees = true;                ///< as many triangles as there should be; see check_counts
 
   bool of_flaunay() const;
   /// Measured with a right result: time for a wrong one says nothing.
@@ -54,6 +64,13 @@ struct Entry {
 /// All implementations on all inputs; those of an input stand together, so that they run side by side.
 std::vector<Entry> make_entries(const std::vector<Implementation>& implementations,
                                 const std::vector<Input>& inputs);
+
+/// Runs each peer once in a process of its own, see ask_child. The entries of those that are too slow or fail
+/// are marked as skipped; larger inputs of the same distribution are not tried then.
+std::vector<Entry> try_peers(const std::vector<Peer>& peers, const std::vector<Input>& inputs, double limit);
+
+/// All of both by input, so that those of an input run side by side.
+std::vector<Entry> by_input(std::vector<Entry> entries, const std::vector<Entry>& more);
 
 /// Measures all entries that are not skipped, in turns. What is over soon is repeated within a run. An
 /// implementation whose first run on a distribution took longer than `limit` seconds (0: none) is not run
@@ -65,7 +82,8 @@ void measure(std::vector<Entry>& entries, const std::vector<Implementation>& imp
 bool same_count(const Input& input, const std::string& first, std::size_t expected, const std::string& other,
                 std::size_t triangles);
 
-/// Marks the entries that have not as many triangles as the first of their input; whether there are none.
+/// Marks the entries that have not as many triangles as CGAL's of the same input, or as the first if CGAL was
+/// not run; whether there are none.
 bool check_counts(std::vector<Entry>& entries);
 
 /// Median seconds, if the entry is there and valid.

@@ -28,10 +28,10 @@ int run(int argc, char** argv) {
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
-  add_peers(app, action);
-  add_modes(app, action);
-  add_primitives(app, action);
-  add_paper(app, action);
+  for (const auto add : {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_threads,
+                         add_primitives, add_paper}) {
+    add(app, action);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -47,37 +47,9 @@ std::string help() {
       "what "
       "one run in a process of its own adds to the resident memory at its peak.\n"
       "Peers with more than --limit seconds are not run on this or larger sizes of the distribution. All "
-      "must "
-      "have as many triangles as flaunay; if not, a warning says so, the entry is not in the plot, and the "
-      "exit code is 1.";
+      "must have as many triangles as CGAL, or as flaunay's first mode where CGAL is not run; if not, a "
+      "warning says so, the entry is not in the plot, and the exit code is 1.";
   return text;
-}
-
-/// Runs each peer once in a process of its own. The entries of those that are too slow or fail are marked;
-/// larger inputs of the same distribution are not tried then.
-std::vector<Entry> try_peers(const std::vector<Peer>& peers, const std::vector<Input>& inputs, double limit) {
-  std::vector<Entry> entries;
-  std::map<std::pair<std::string, std::string>, std::string> ended;
-  Progress progress(peers.size() * inputs.size());
-  for (const Input& input : inputs) {
-    for (const Peer& peer : peers) {
-      Entry entry{peer.name, &input};
-      std::string& reason = ended[{peer.name, input.distribution}];
-      progress.step(fmt::format("memory of {}: {}", peer.name, input_name(input)));
-      if (reason.empty()) {
-        const Trial trial = try_peer(peer, input, limit);
-        entry.triangles = trial.outcome.triangles;
-        entry.bytes_peak = trial.bytes_peak;
-        if (!trial.failure.empty()) reason = fmt::format("{} on {}", trial.failure, input_name(input));
-      }
-      entry.skipped = reason;
-      if (!reason.empty()) {
-        progress.say(fmt::format("not measured: {} on {}: {}", peer.name, input_name(input), reason));
-      }
-      entries.push_back(entry);
-    }
-  }
-  return entries;
 }
 
 void measure_device_memory(std::vector<Entry>& entries, const std::string& device) {
@@ -88,27 +60,6 @@ void measure_device_memory(std::vector<Entry>& entries, const std::string& devic
     options.mode = mode_named(mode_of(entry.implementation));
     entry.bytes_peak = memory.peak(*entry.input, options);
   }
-}
-
-/// Entries by input, and within an input flaunay's first.
-std::vector<Entry> in_order(std::vector<Entry> entries) {
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.input != b.input ? a.input < b.input : a.of_flaunay() > b.of_flaunay();
-  });
-  return entries;
-}
-
-std::vector<Peer> chosen_peers(const std::vector<std::string>& names) {
-  std::vector<Peer> chosen;
-  for (const Peer& peer : all_peers()) {
-    if (std::find(names.begin(), names.end(), peer.name) == names.end()) continue;
-    if (peer.run) {
-      chosen.push_back(peer);
-    } else {
-      fmt::print(stderr, "not measured: {}: this build is without it\n", peer.name);
-    }
-  }
-  return chosen;
 }
 
 const Entry* fastest(const std::vector<const Entry*>& entries, bool of_flaunay) {
@@ -177,10 +128,8 @@ int run(const Request& request, const std::string& command) {
 
   Triangulator triangulator(measurement.device);
   std::vector<Implementation> implementations = mode_implementations(triangulator, request.modes);
-  const std::vector<Entry> own = make_entries(implementations, inputs);
-  entries.insert(entries.end(), own.begin(), own.end());
-  entries = in_order(std::move(entries));
-  for (const Peer& peer : peers) implementations.push_back({peer.name, peer.run});
+  entries = by_input(make_entries(implementations, inputs), entries);
+  append(implementations, implementations_of(peers));
   measure(entries, implementations, measurement.runs);
   measure_device_memory(entries, measurement.device);
 

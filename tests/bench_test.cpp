@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -120,6 +121,11 @@ TEST_F(BenchTest, Usage) {
   EXPECT_EQ(run("modes --modes nothing"), 2);
   EXPECT_EQ(run("peers --distributions nothing"), 2);
   EXPECT_EQ(run("primitives --sizes 0"), 2);
+  EXPECT_EQ(run("scaling --least 8 --most 7"), 2);
+  EXPECT_EQ(run("cliffs --distributions nothing"), 2);
+  EXPECT_EQ(run("small --batch-points 0"), 2);
+  EXPECT_EQ(run("threads --counts 0"), 2);
+  EXPECT_EQ(run("targets --modes nothing"), 2);
   EXPECT_EQ(run("paper --smallest 9 --largest 8"), 2);
   EXPECT_EQ(run("paper --output " + path("err") + "/folder --smallest 6 --largest 6"), 3);
   EXPECT_EQ(run("modes --sizes 100 --json " + path("no/such/folder.json")), 3);
@@ -194,6 +200,114 @@ TEST_F(BenchTest, PrimitivesAreRecorded) {
   for (const char* name :
        {"plain copy", "exclusive_scan uint8", "sort_by_key", "segmented_select", "permute"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  }
+}
+
+/// Rows of measured times; of how many implementations.
+std::size_t expect_entries(const nlohmann::json& record) {
+  std::set<std::string> implementations;
+  EXPECT_TRUE(record.contains("skipped"));
+  EXPECT_FALSE(record["results"].empty());
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"implementation", "distribution", "n", "triangles"});
+    expect_times(row);
+    EXPECT_TRUE(row.value("agrees", false)) << row;
+    implementations.insert(row.value("implementation", ""));
+  }
+  return implementations.size();
+}
+
+bool without_cgal(const std::string& messages) {
+  return messages.find("cgal: this build is without it") != std::string::npos;
+}
+
+TEST_F(BenchTest, TargetsAreMeasured) {
+  const auto record = run_well("targets --quick --modes flattened");
+  const bool cgal = !without_cgal(contents(path("err")));
+  EXPECT_EQ(expect_entries(record), cgal ? 2u : 1u);
+  std::map<std::string, int> of_goal;
+  for (const auto& target : record["targets"]) {
+    expect_keys(target, {"what", "implementation", "more_is_better", "at_least", "goal", "verdict"});
+    const bool more = target.value("more_is_better", false);
+    EXPECT_EQ(more, target.value("goal", 0.0) > target.value("at_least", 0.0));
+    if (more && !cgal) continue;
+    ASSERT_TRUE(target["measured"].is_number()) << target;
+    const double measured = target["measured"], at_least = target["at_least"], goal = target["goal"];
+    const auto keeps = [&](double limit) { return more ? measured >= limit : measured <= limit; };
+    EXPECT_EQ(target.value("verdict", ""), keeps(goal) ? "goal" : keeps(at_least) ? "kept" : "MISSED");
+    ++of_goal[target["goal"].dump()];
+  }
+  // Speedups, spreads, growth and degenerate inputs, sets, the call, memory.
+  const std::map<std::string, int> expected = {{"1.15", 2}, {"1.1", 4}, {"0.7", 1}, {"1.0", 1}, {"140.0", 1}};
+  EXPECT_EQ(of_goal["3.5"], cgal ? 8 : 0);
+  for (const auto& [goal, count] : expected) EXPECT_EQ(of_goal[goal], count) << goal;
+}
+
+TEST_F(BenchTest, TargetsWithoutTheLargestInput) {
+  const auto record = run_well("targets --quick --without-largest --modes dwyer");
+  std::size_t unmeasured = 0;
+  for (const auto& target : record["targets"]) {
+    if (!target["measured"].is_null()) continue;
+    ++unmeasured;
+    EXPECT_EQ(target.value("verdict", ""), "not measured");
+  }
+  EXPECT_EQ(unmeasured, without_cgal(contents(path("err"))) ? 9u : 1u);
+}
+
+TEST_F(BenchTest, ScalingIsRecorded) {
+  const auto record = run_well(
+      "scaling --least 6 --most 8 --cgal-most 7 --distributions uniform,line --modes flattened,dwyer");
+  const bool cgal = !without_cgal(contents(path("err")));
+  EXPECT_EQ(expect_entries(record), cgal ? 3u : 2u);
+  EXPECT_EQ(record["results"].size(), cgal ? 16u : 12u);
+  EXPECT_EQ(record["skipped"].size(), cgal ? 2u : 0u);
+}
+
+TEST_F(BenchTest, CliffsAreBesideUniform) {
+  const auto record = run_well("cliffs --sizes 300,900 --distributions grid,mostly-equal --modes flattened");
+  const std::size_t implementations = expect_entries(record);
+  EXPECT_EQ(record["cliffs"].size(), 2 * 2 * implementations);
+  EXPECT_EQ(record["worst"].size(), implementations);
+  double worst = 0;
+  for (const auto& cliff : record["cliffs"]) {
+    expect_keys(cliff, {"implementation", "distribution", "n", "times_uniform", "limit", "within"});
+    if (cliff.value("implementation", "") == record["worst"][0].value("implementation", "")) {
+      worst = std::max(worst, cliff.value("times_uniform", 0.0));
+    }
+  }
+  EXPECT_EQ(record["worst"][0].value("times_uniform", -1.0), worst);
+}
+
+TEST_F(BenchTest, SlowInputsEnd) {
+  const auto record =
+      run_well("cliffs --sizes 300,900 --distributions grid --modes flattened --limit 0.0000001");
+  std::size_t of_flaunay = 0;
+  for (const auto& row : record["results"])
+    of_flaunay += row.value("implementation", "") == "flaunay-flattened";
+  EXPECT_EQ(of_flaunay, 2u);  // the smaller size of both inputs
+}
+
+TEST_F(BenchTest, SmallSetsAreRecorded) {
+  const auto record = run_well("small --sizes 32,100 --batch-points 3000 --modes flattened");
+  const std::size_t implementations = expect_entries(record);
+  EXPECT_EQ(record["results"].size(), (2 + 4) * implementations);
+  ASSERT_EQ(record["batches"].size(), 3 * implementations);
+  for (const auto& batch : record["batches"]) {
+    expect_keys(batch, {"implementation", "batch", "sets", "n", "times_one_set"});
+    EXPECT_GT(batch.value("sets", 0), 1);
+    EXPECT_EQ(batch.value("n", 0), 3000);
+  }
+}
+
+TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
+  const auto record = run_well("threads --sizes 500,1000 --counts 1,2,3 --modes flattened,partition");
+  expect_entries(record);
+  EXPECT_EQ(record["results"].size(), 2u * 3 * 2);
+  ASSERT_EQ(record["speedups"].size(), 2u * 2 * 2);
+  for (const auto& row : record["results"]) EXPECT_GT(row.value("threads", 0), 0);
+  for (const auto& speedup : record["speedups"]) {
+    EXPECT_GT(speedup.value("speedup", 0.0), 0);
+    EXPECT_NEAR(speedup.value("goal", 0.0), 0.9 * speedup.value("to_threads", 0), 1e-9);
   }
 }
 
