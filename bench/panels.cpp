@@ -430,6 +430,16 @@ void draw_bar(Canvas& canvas, const Bars& panel, const Bar& bar, double center, 
                values_turned(panel, places.slot));
 }
 
+/// How far a row's labels reach beyond the left edge of the area, from where their centers count.
+double overhang(const LabelRow& row) {
+  constexpr double kCosine = 0.788;
+  double most = 0;
+  for (std::size_t i = 0; row.turned && i < row.texts.size(); ++i) {
+    most = std::max(most, kCosine * text_width(row.texts[i], kTickSize) - row.centers[i]);
+  }
+  return most;
+}
+
 Margins margins(const Bars& panel, const Ranges& ranges, double width, bool with_y_title) {
   Margins result;
   result.left =
@@ -438,7 +448,9 @@ Margins margins(const Bars& panel, const Ranges& ranges, double width, bool with
   const BarPlaces places = bar_places(panel, 0, width - result.left - result.right);
   result.top = title_height(panel.title);
   if (panel.values) result.top += values_turned(panel, places.slot) ? widest_value(panel) + 4 : kRow;
-  result.bottom = kTickGap + bar_name_row(panel, places).height + group_name_row(panel, places).height + 4;
+  const LabelRow bar_names = bar_name_row(panel, places), group_names = group_name_row(panel, places);
+  result.left = std::max({result.left, overhang(bar_names), overhang(group_names)});
+  result.bottom = kTickGap + bar_names.height + group_names.height + 4;
   return result;
 }
 

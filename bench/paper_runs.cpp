@@ -50,10 +50,7 @@ Options options_of(const Method& method) {
   return options;
 }
 
-const std::vector<std::string>& distributions() {
-  static const std::vector<std::string> kNames = {"uniform", "normal", "kuzmin", "line"};
-  return kNames;
-}
+const std::vector<std::string>& distributions() { return kPaperDistributions; }
 
 std::vector<double> instance_coordinates(const std::string& distribution, std::size_t n, int instance) {
   return io::generate(distribution, n, static_cast<std::uint64_t>(instance) + 1).coordinates;

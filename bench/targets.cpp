@@ -242,9 +242,8 @@ nlohmann::json record_of(const std::vector<Target>& targets) {
 
 plot::Figure figure_of(const std::vector<Target>& targets, const Request& request, const DeviceInfo& device) {
   plot::Bars panel;
-  panel.y = {"how far (100 %: what it must be at least)", plot::Scale::linear, plot::Unit::percent};
+  panel.y = {"how far (100 %: what it must be at least)", plot::Scale::log10, plot::Unit::percent};
   panel.comparison_name = "goal";
-  panel.values = true;
   for (const Target& t : targets) {
     if (!t.measured) continue;
     auto group = std::find_if(panel.groups.begin(), panel.groups.end(),
