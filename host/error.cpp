@@ -79,6 +79,9 @@ std::string error_advice(cl_int code) {
     case CL_BUILD_PROGRAM_FAILURE:
     case CL_COMPILER_NOT_AVAILABLE:
       return "the driver could not compile the kernels: update it, or use another device (FLAUNAY_DEVICE)";
+    case CL_INVALID_WORK_GROUP_SIZE:
+      return "the device takes no work-group of this kernel: update its driver, or use another device "
+             "(FLAUNAY_DEVICE)";
     case CL_DEVICE_NOT_AVAILABLE:
       return "the device is taken or gone: use another (FLAUNAY_DEVICE)";
     case -1001:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -61,13 +62,26 @@ Runtime::Runtime(const boost::compute::device& device)
     : device_(device),
       tuning_(tuning_for(device)),
       context_(device),
-      queue_(context_, device_, CL_QUEUE_PROFILING_ENABLE),
+      queue_(make_queue()),
       arena_(context_, device) {
   if (tuning_.separate_buffers) arena_.separate_buffers();
 }
 
 Runtime::~Runtime() {
   for (const auto& [event, name] : events_) clReleaseEvent(event);
+}
+
+// In order. Time stamps are not free on every device, so there are none unless they are read.
+boost::compute::command_queue Runtime::make_queue() const {
+  return {context_, device_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0}};
+}
+
+void Runtime::set_profiling(bool on) {
+  if (on == profiling_) return;
+  collect_times();
+  FLAUNAY_CL(clFinish(queue_.get()));
+  profiling_ = on;
+  queue_ = make_queue();
 }
 
 void Runtime::set_tuning(const Tuning& tuning) {
@@ -118,16 +132,37 @@ Runtime::Kernel& Runtime::find_kernel(const char* file, const char* name) {
   check_call(code, "clCreateKernel", fmt::format("{}.cl: {}", file, name));
   const boost::compute::kernel owned(kernel, false);
   const auto arguments = static_cast<cl_uint>(owned.arity());
-  return kernels.emplace(key, Kernel{owned, name, arguments}).first->second;
+  std::size_t largest = 0;
+  std::size_t required[3] = {};
+  cl_ulong local_memory = 0;
+  const auto query = [&](cl_kernel_work_group_info what, std::size_t size, void* value) {
+    FLAUNAY_CL_KERNEL(clGetKernelWorkGroupInfo(kernel, device_.id(), what, size, value, nullptr), name);
+  };
+  query(CL_KERNEL_WORK_GROUP_SIZE, sizeof largest, &largest);
+  query(CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof required, required);
+  query(CL_KERNEL_LOCAL_MEM_SIZE, sizeof local_memory, &local_memory);
+  if (local_memory > device_.get_info<cl_ulong>(CL_DEVICE_LOCAL_MEM_SIZE)) largest = 0;
+  return kernels.emplace(key, Kernel{owned, name, arguments, largest, required[0] != 0}).first->second;
 }
 
 void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group) {
-  const std::size_t global = (work_items + group - 1) / group * group;
+  if (work_items == 0) return;  // which OpenCL 1.2 does not allow
+  if (!kernel.requires_group) group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
   cl_event event = nullptr;
   ++launches_;
-  FLAUNAY_CL_KERNEL(clEnqueueNDRangeKernel(queue_.get(), kernel.kernel.get(), 1, nullptr, &global, &group, 0,
-                                           nullptr, profiling_ ? &event : nullptr),
-                    kernel.name);
+  for (;;) {
+    const std::size_t global = (work_items + group - 1) / group * group;
+    const cl_int code = clEnqueueNDRangeKernel(queue_.get(), kernel.kernel.get(), 1, nullptr, &global, &group,
+                                               0, nullptr, profiling_ ? &event : nullptr);
+    // Registers may run out for groups that the driver has called possible.
+    const bool is_too_large = code == CL_INVALID_WORK_GROUP_SIZE || code == CL_OUT_OF_RESOURCES;
+    if (!is_too_large || group == 1 || kernel.requires_group) {
+      check_call(code, "clEnqueueNDRangeKernel", kernel.name);
+      break;
+    }
+    group /= 2;
+    kernel.largest_group = group;
+  }
   if (profiling_) events_.emplace_back(event, &kernel.name);
   if (profiling_ && events_.size() >= 4096) collect_times();
 }

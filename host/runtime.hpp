@@ -56,7 +56,8 @@ class Runtime {
            static_cast<cl_int>(chunk), arguments...);
   }
 
-  /// Launches a kernel over work_items, padded to whole groups.
+  /// Launches a kernel over work_items, padded to whole groups: of the size given, or smaller ones if the
+  /// device takes no such groups of this kernel, unless the kernel itself requires a size.
   template <typename... Arguments>
   void launch(const char* file, const char* name, std::size_t work_items, std::size_t group,
               const Arguments&... arguments) {
@@ -65,6 +66,11 @@ class Runtime {
     (set_argument(kernel, index++, arguments), ...);
     if (counting_ && index < kernel.arguments) set_argument(kernel, index, counters_);
     enqueue(kernel, work_items, group);
+  }
+
+  /// The most work-items in a group of this kernel; 0 if it needs more local memory than there is.
+  std::size_t largest_group(const char* file, const char* name) {
+    return find_kernel(file, name).largest_group;
   }
 
   /// Copies from the device and waits; one host wait.
@@ -105,7 +111,8 @@ class Runtime {
   /// From now on kernels are built with FLAUNAY_COUNT, and those that count get these counters as their last
   /// argument; see kernels/shared/counting.h. An empty buffer ends that.
   void set_counters(const Buffer<cl_uint>& counters);
-  void set_profiling(bool on) { profiling_ = on; }
+  /// Waits if that changes something.
+  void set_profiling(bool on);
   /// Per kernel, since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();
   std::size_t launches() const { return launches_; }
@@ -118,6 +125,8 @@ class Runtime {
     boost::compute::kernel kernel;
     std::string name;
     cl_uint arguments;
+    std::size_t largest_group;  ///< work-items
+    bool requires_group;        ///< has an attribute reqd_work_group_size
   };
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
@@ -129,6 +138,7 @@ class Runtime {
     FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(T), &value), kernel.name);
   }
 
+  boost::compute::command_queue make_queue() const;
   Kernel& find_kernel(const char* file, const char* name);
   const boost::compute::program& find_program(const std::string& file);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
@@ -139,6 +149,7 @@ class Runtime {
   boost::compute::device device_;
   Tuning tuning_;
   boost::compute::context context_;
+  bool profiling_ = false;
   boost::compute::command_queue queue_;
   Arena arena_;
   // Two of each: kernels that count and kernels that do not.
@@ -146,7 +157,6 @@ class Runtime {
   std::map<std::pair<const char*, const char*>, Kernel> kernels_[2];
   Buffer<cl_uint> counters_{};
   bool counting_ = false;
-  bool profiling_ = false;
   std::vector<std::pair<cl_event, const std::string*>> events_;
   std::map<std::string, KernelTime> times_;
   std::size_t launches_ = 0;

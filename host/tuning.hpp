@@ -1,4 +1,4 @@
-// Every tuning value, in one place, by kind of device.
+// Every tuning value, in one place, by kind of device and fitted to what the device can do.
 #pragma once
 
 #include <boost/compute/device.hpp>
@@ -31,7 +31,19 @@ struct Tuning {
   std::size_t chunk(std::size_t n) const;
 };
 
-/// The values for a device; FLAUNAY_TUNING ("cpu", "gpu", "small") overrides the kind, for tests.
+/// What a device allows.
+struct DeviceLimits {
+  std::size_t work_group;    ///< work-items
+  std::size_t local_memory;  ///< bytes
+};
+DeviceLimits limits_of(const boost::compute::device& device);
+
+/// The same with groups as small, and sorting by as few bits at a time, as the limits demand. A kernel may
+/// take less than its device: Runtime sees to that.
+Tuning fitted(Tuning tuning, const DeviceLimits& limits);
+
+/// The values for a device, fitted. FLAUNAY_TUNING overrides the kind, for tests: "cpu", "gpu", "small", or
+/// "gpu:N", a GPU's with groups of N work-items (1 to 1024) everywhere.
 Tuning tuning_for(const boost::compute::device& device);
 
 }  // namespace flaunay::host

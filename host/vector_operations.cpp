@@ -1,5 +1,7 @@
 #include "host/vector_operations.hpp"
 
+#include <fmt/format.h>
+
 namespace flaunay::host {
 namespace {
 
@@ -76,9 +78,33 @@ std::pair<Buffer<cl_int>, std::size_t> pack_positions(Runtime& runtime, const Bu
   return {positions, total};
 }
 
+namespace {
+
+/// Makes the sort's groups so small that the device takes them: its kernels are built for one size.
+void fit_sort_group(Runtime& runtime) {
+  for (const char* const kernel : {"sort_count", "sort_scatter"}) {
+    for (;;) {
+      const std::size_t largest = runtime.largest_group("sort", kernel);
+      Tuning tuning = runtime.tuning();
+      if (tuning.sort_group <= largest) break;
+      if (tuning.sort_group == 1) {
+        throw DeviceError(
+            fmt::format("the device has not the local memory for any work-group of kernel {}; use another "
+                        "(FLAUNAY_DEVICE)",
+                        kernel));
+      }
+      tuning.sort_group /= 2;
+      runtime.set_tuning(tuning);
+    }
+  }
+}
+
+}  // namespace
+
 void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads,
                  std::size_t n) {
   if (n < 2) return;
+  fit_sort_group(runtime);
   Arena::Scope scope(runtime.arena());
   const Tuning& tuning = runtime.tuning();
   const auto varying = runtime.arena().allocate<cl_uint>(2);

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "bench/plot.hpp"
+#include "tests/support/paths.hpp"
 
 namespace {
 
@@ -78,7 +79,7 @@ class BenchTest : public testing::Test {
   /// Runs flaunay-bench and returns its exit code; standard output and error are in files "out" and "err".
   int run(const std::string& arguments) const {
     const std::string command =
-        std::string(FLAUNAY_BENCH) + " " + arguments + " >" + path("out") + " 2>" + path("err");
+        flaunay::bench_executable() + " " + arguments + " >" + path("out") + " 2>" + path("err");
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

@@ -13,6 +13,7 @@
 #include "flaunay/flaunay.hpp"
 #include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
 
 namespace flaunay::testing {
@@ -76,7 +77,7 @@ TEST_F(Cgal, CountsOnFixtures) {
 
 TEST_F(Cgal, CountsOnFiles) {
   for (const std::string& file : data_files()) {
-    const Coordinates points = io::read_points(std::string(FLAUNAY_TEST_DATA) + "/" + file).coordinates;
+    const Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
     for (const double factor : {1.0, 1e-9, 1e9}) {
       SCOPED_TRACE(file + " times " + std::to_string(factor));
       compare_counts(scaled(points, factor));

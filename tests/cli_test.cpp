@@ -22,6 +22,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/paths.hpp"
+
 extern char** environ;
 
 namespace {
@@ -126,14 +128,14 @@ class ChildEnvironment {
 };
 
 pid_t spawn(const Arguments& arguments, const Environment& changes, posix_spawn_file_actions_t* actions) {
-  std::vector<std::string> words = {FLAUNAY_EXECUTABLE};
+  std::vector<std::string> words = {flaunay::flaunay_executable()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   ChildEnvironment environment(changes);
   pid_t child = -1;
-  EXPECT_EQ(posix_spawn(&child, FLAUNAY_EXECUTABLE, actions, nullptr, pointers.data(), environment.get()), 0);
+  EXPECT_EQ(posix_spawn(&child, pointers.front(), actions, nullptr, pointers.data(), environment.get()), 0);
   return child;
 }
 
@@ -230,7 +232,7 @@ class CommandTest : public testing::Test {
   fs::path directory_;
 };
 
-std::string data(const std::string& name) { return std::string(FLAUNAY_TEST_DATA) + "/" + name; }
+std::string data(const std::string& name) { return flaunay::test_data() + "/" + name; }
 
 // ---------------------------------------------------------------------------------------------------- usage
 
@@ -640,7 +642,7 @@ using CommandTriangulateTest = CommandTest;
 
 TEST_F(CommandTriangulateTest, EveryFileOfTheTestDataIsTriangulatedExactly) {
   std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(FLAUNAY_TEST_DATA)) {
+  for (const auto& entry : fs::directory_iterator(flaunay::test_data())) {
     const std::string input = entry.path().string();
     if (entry.path().extension() != ".xy" && entry.path().extension() != ".node") continue;
     SCOPED_TRACE(input);

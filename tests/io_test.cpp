@@ -27,6 +27,7 @@
 #include "io/points.hpp"
 #include "io/region.hpp"
 #include "io/svg.hpp"
+#include "tests/support/paths.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -241,7 +242,7 @@ TEST_F(IoTest, ReadsPipesLongerThanOneBuffer) {
 }
 
 TEST_F(IoTest, ReadsTheFixtures) {
-  const std::string data = FLAUNAY_TEST_DATA;
+  const std::string data = flaunay::test_data();
   for (const auto& [name, count] : std::vector<std::pair<const char*, std::size_t>>{{"issue43.xy", 5},
                                                                                     {"robustness1.xy", 79},
                                                                                     {"robustness4.xy", 36},
@@ -257,7 +258,7 @@ TEST_F(IoTest, ReadsTheFixtures) {
 // ---- .node ----
 
 TEST_F(IoTest, NodeTakesBothIndexBases) {
-  const Points greenland = read_points(std::string(FLAUNAY_TEST_DATA) + "/greenland.node");
+  const Points greenland = read_points(flaunay::test_data() + "/greenland.node");
   ASSERT_EQ(greenland.size(), 33343u);
   EXPECT_EQ(greenland.coordinates[0], 105);
   EXPECT_EQ(greenland.coordinates[1], 39.5);

@@ -13,6 +13,7 @@
 #include "flaunay/flaunay.hpp"
 #include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {
@@ -130,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Fixtures, OnFixture, ::testing::ValuesIn(fixture_names(
 TEST(Modes, OnFiles) {
   for (const std::string& file : data_files()) {
     SCOPED_TRACE(file);
-    const Coordinates points = io::read_points(std::string(FLAUNAY_TEST_DATA) + "/" + file).coordinates;
+    const Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
     expect_all_same(points, points.size() < 300);
     expect_all_same(scaled(points, 1e-150), false);
   }

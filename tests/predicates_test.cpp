@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "tests/support/device.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
 
 namespace flaunay {
@@ -62,7 +63,7 @@ class PredicateRuntime : public ::testing::Environment {
   struct State {
     State() : environment("FLAUNAY_KERNEL_PATH", folder.path().c_str()), runtime(host::find_device("")) {
       namespace fs = std::filesystem;
-      const fs::path source = fs::path(FLAUNAY_TEST_DATA) / ".." / "..";
+      const fs::path source = fs::path(test_data()) / ".." / "..";
       fs::copy(source / "kernels" / "shared", fs::path(folder.path()) / "shared");
       fs::copy(source / "tests" / "kernels" / "predicates.cl", folder.path());
     }

@@ -18,6 +18,7 @@
 #include "io/generate.hpp"
 #include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"
 #include "verify/exact.hpp"
@@ -623,7 +624,8 @@ TEST_P(EveryTuning, SameInputSameBytes) {
                          triangulate(sets.points, sets.offsets)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Determinism, EveryTuning, ::testing::Values("cpu", "gpu", "small"), instance_name);
+INSTANTIATE_TEST_SUITE_P(Determinism, EveryTuning,
+                         ::testing::Values("cpu", "gpu", "gpu:32", "gpu:256", "small"), instance_name);
 
 /// Another rule for the cuts makes other regions, but the same triangles.
 TEST(Determinism, AlternateCutsSameTriangles) {
@@ -653,7 +655,7 @@ TEST(Determinism, AlternateCutsSameTriangles) {
 class OnFile : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(OnFile, IsValidAtEveryScale) {
-  const Coordinates points = io::read_points(std::string(FLAUNAY_TEST_DATA) + "/" + GetParam()).coordinates;
+  const Coordinates points = io::read_points(test_data() + "/" + GetParam()).coordinates;
   ASSERT_GT(points.size(), 0U);
   const Triangulation result = triangulate(points);
   EXPECT_TRUE(valid(points, result));

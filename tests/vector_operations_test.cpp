@@ -12,6 +12,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "tests/support/device.hpp"
+#include "tests/support/paths.hpp"
 
 namespace flaunay {
 namespace {
@@ -42,7 +44,8 @@ using Random = std::mt19937_64;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// "own": what the device would get; the others are for boundaries.
+/// "own": what the device would get, or what the environment names, and then no other; the others are for
+/// boundaries.
 const char* const kTunings[] = {"own", "small", "gpu"};
 
 host::Tuning tuning_named(const std::string& name) {
@@ -76,7 +79,9 @@ class Runtimes : public ::testing::Environment {
 /// Each tuning must give what the plain loop gives, so all give the same.
 template <typename Check>
 void under_each_tuning(const Check& check) {
+  const bool chosen = std::getenv("FLAUNAY_TUNING") != nullptr;
   for (const char* const tuning : kTunings) {
+    if (chosen && tuning != kTunings[0]) continue;
     SCOPED_TRACE(std::string("tuning ") + tuning);
     Runtime& runtime = Runtimes::get(tuning);
     const Arena::Scope scope(runtime.arena());
@@ -567,8 +572,7 @@ TEST(SegmentedArg, PassesOverElementsThatAreNoCandidates) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() + "/shared");
   for (const char* const header : {"/shared/segmented_arg_reduce.h", "/shared/counting.h"}) {
-    std::filesystem::copy_file(std::string(FLAUNAY_TEST_DATA) + "/../../kernels" + header,
-                               folder.path() + header);
+    std::filesystem::copy_file(test_data() + "/../../kernels" + header, folder.path() + header);
   }
   folder.write("kept.cl",
                "#include \"shared/segmented_arg_reduce.h\"\n"
@@ -1274,9 +1278,74 @@ TEST(SmallTuning, IsNamedByTheEnvironment) {
     const bool cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
     EXPECT_EQ(host::tuning_for(device).map_group, tuning_named(cpu ? "cpu" : "gpu").map_group);
   }
-  const ScopedEnvironment wrong("FLAUNAY_TUNING", "fast");
-  const std::string message = message_of([&] { host::tuning_for(device); }, CL_SUCCESS);
-  EXPECT_TRUE(contains(message, "'fast'")) << message;
+  for (const char* const name : {"fast", "gpu:", "gpu:0", "gpu:1025", "gpu:x", "gpu:-1", "gpu:32 ",
+                                 "gpu:032x", "gpu:99999999999999999999", "cpu:32", "GPU"}) {
+    const ScopedEnvironment wrong("FLAUNAY_TUNING", name);
+    const std::string message = message_of([&] { host::tuning_for(device); }, CL_SUCCESS);
+    EXPECT_TRUE(contains(message, std::string("'") + name + "'")) << message;
+  }
+}
+
+TEST(SmallTuning, GroupsOfAGivenSize) {
+  const std::size_t most = host::limits_of(host::find_device("")).work_group;
+  for (const std::size_t group : {1, 32, 256}) {
+    if (group > most) continue;
+    const host::Tuning tuning = tuning_named("gpu:" + std::to_string(group));
+    EXPECT_EQ(tuning.map_group, group);
+    EXPECT_EQ(tuning.chunk_group, group);
+    EXPECT_EQ(tuning.sort_group, group);
+    EXPECT_EQ(tuning.sort_bits, tuning_named("gpu").sort_bits);
+  }
+}
+
+TEST(SmallTuning, FitsTheDevice) {
+  const std::size_t kilobyte = 1024;
+  const host::Tuning gpu = host::fitted(tuning_named("gpu"), {1024, 64 * kilobyte});
+  host::Tuning fitted = host::fitted(gpu, {64, 64 * kilobyte});
+  EXPECT_EQ(fitted.map_group, 64u);
+  EXPECT_EQ(fitted.chunk_group, 64u);
+  EXPECT_EQ(fitted.sort_group, 64u);
+  fitted = host::fitted(gpu, {1, 64 * kilobyte});
+  EXPECT_EQ(fitted.map_group, 1u);
+  EXPECT_EQ(fitted.sort_group, 1u);
+  // The sort's tables: a counter of 4 bytes for each digit and work-item.
+  for (const std::size_t bytes :
+       {32 * kilobyte, 4 * kilobyte, 1000 * std::size_t{1}, 64 * std::size_t{1}, 8 * std::size_t{1}}) {
+    fitted = host::fitted(gpu, {1024, bytes});
+    EXPECT_LE(4 * fitted.sort_group << fitted.sort_bits, bytes);
+    EXPECT_GE(fitted.sort_bits, 1);
+    EXPECT_GE(fitted.sort_group, 1u);
+    EXPECT_EQ(fitted.map_group, gpu.map_group);
+  }
+}
+
+// Sizes that fit no device: the runtime has to find smaller ones, by kernel.
+TEST(Tuning, GroupsThatAKernelDoesNotTakeBecomeSmaller) {
+  Runtime runtime(host::find_device(""));
+  host::Tuning tuning = tuning_named("gpu");
+  tuning.map_group = tuning.chunk_group = std::size_t{1} << 20;
+  tuning.sort_group = std::size_t{1} << 15;
+  runtime.set_tuning(tuning);
+  EXPECT_GT(runtime.largest_group("split", "split_flags"), 0u);
+  EXPECT_LT(runtime.largest_group("split", "split_flags"), tuning.map_group);
+  Random random(26);
+  check_sort(runtime, random_keys(5000, kPatterns[0], random), "groups too large");
+  check_sum(runtime, shape_of("groups too large", {3, 0, 3000}), random);
+  EXPECT_LT(runtime.tuning().sort_group, tuning.sort_group);
+  EXPECT_LE(runtime.tuning().sort_group, runtime.largest_group("sort", "sort_scatter"));
+}
+
+TEST(Tuning, AGroupThatAKernelCannotHaveIsAnErrorWithItsName) {
+  Runtime runtime(host::find_device(""));
+  host::Tuning tuning = tuning_named("gpu");
+  // Tables that are larger than any device's local memory, even for groups of one.
+  tuning.sort_bits = 26;
+  tuning.sort_group = 2;
+  runtime.set_tuning(tuning);
+  const auto keys = upload(runtime, std::vector<cl_ulong>{3, 1, 2});
+  const auto payloads = upload(runtime, std::vector<cl_int>{0, 1, 2});
+  const std::string message = message_of([&] { host::sort_by_key(runtime, keys, payloads, 3); }, CL_SUCCESS);
+  EXPECT_TRUE(contains(message, "kernel sort_count")) << message;
 }
 
 TEST(SmallTuning, ChunksAreNeitherTooSmallNorTooMany) {
