@@ -75,8 +75,9 @@ trap 'rm -rf "$work"' EXIT
 
 build() {
   say 'Building'
-  cmake -S "$source" --preset release >/dev/null &&
-    cmake --build "$source/build/release" || fail 'it does not build; scripts/install-deps.sh says what is missing'
+  if ! { cmake -S "$source" --preset release >/dev/null && cmake --build "$source/build/release"; }; then
+    fail 'it does not build; scripts/install-deps.sh says what is missing'
+  fi
 }
 
 # Libraries that a program needs but for the C library's own, which a machine has in its own version.
@@ -93,7 +94,6 @@ pack_programs() {
   strip "$pack"/flaunay "$pack"/flaunay-bench "$pack"/tests/test_*
   for program in "$pack"/flaunay "$pack"/flaunay-bench "$pack"/tests/test_*; do libraries_of "$program"; done |
     sort -u | while read -r library; do cp -L "$library" "$pack/lib/"; done
-  git -C "$source" describe --always --dirty >"$pack/commit" 2>/dev/null || true
   echo "gpu.sh: $(du -sh "$pack" | cut -f 1) in $pack"
 }
 
@@ -115,21 +115,20 @@ programs="$(cd "$prebuilt" && pwd)"
 libraries="$work/lib"
 mkdir "$libraries"
 add_missing_libraries() {
-  local before after missing
-  for before in 1 2 3 4 5 6; do
+  local library missing added=true
+  while $added; do
+    added=false
     missing="$(for program in "$programs"/flaunay "$programs"/flaunay-bench "$programs"/tests/test_*; do
       LD_LIBRARY_PATH="$libraries" ldd "$program" 2>&1 || true
     done | sed -nE 's/^[[:space:]]*([^ ]+) => not found$/\1/p; s/^.*: ([^ ]*\/)?([^ /]+): version .* not found.*$/\2/p' | sort -u)"
-    after=0
     for library in $missing; do
       if [[ -e $programs/lib/$library && ! -e $libraries/$library ]]; then
         ln -s "$programs/lib/$library" "$libraries/$library"
-        after=1
+        added=true
       fi
     done
-    ((after == 1)) || break
   done
-  [[ -z $missing ]] || fail "libraries are missing, and not in $programs/lib:" $missing
+  [[ -z $missing ]] || fail "libraries are missing, and not in $programs/lib: ${missing//$'\n'/ }"
 }
 [[ ! -d $programs/lib ]] || add_missing_libraries
 own_library_path="$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
@@ -154,6 +153,7 @@ say 'Devices'
 run "$programs/flaunay" devices || fail 'no usable device; --icd names a driver'
 
 failures=()
+cupy_verdicts=''
 
 # --- Tests --------------------------------------------------------------------------------------------------
 
@@ -231,7 +231,7 @@ bench modes modes --sizes "$mode_sizes" --count-up-to 0
 
 say "CuPy's Delaunay triangulation (gDel2D)"
 cupy="$work/cupy.json"
-if ! reason="$(python3 -c 'import cupy, cupyx.scipy.spatial' 2>&1)"; then
+if ! reason="$(python3 -c 'import cupy, cupyx.scipy.spatial; cupy.cuda.Device().synchronize()' 2>&1)"; then
   reason="$(tail -n 1 <<<"$reason")"
   echo "not measured: $reason"
   echo "{\"measured\": false, \"reason\": $(json_string "$reason")}" >"$cupy"
@@ -251,8 +251,9 @@ else
       triangles="$work/cupy/verify-$distribution.npy"
       [[ -s $triangles ]] || continue
       verdict="$(run "$programs/flaunay" verify "$work/verify-$distribution.npy" "$triangles" 2>&1 || true)"
-      echo "CuPy, $distribution, $verify_size points: $(head -n 1 <<<"$verdict")"
-      cupy_verdicts+="${cupy_verdicts:+, }{\"distribution\": \"$distribution\", \"n\": $verify_size, \"verify\": $(json_string "$(head -n 1 <<<"$verdict")")}"
+      verdict="$(head -n 1 <<<"${verdict//"$work/"/}")"
+      echo "CuPy, $distribution, $verify_size points: $verdict"
+      cupy_verdicts+="${cupy_verdicts:+, }{\"distribution\": \"$distribution\", \"n\": $verify_size, \"verify\": $(json_string "$verdict")}"
     done
   else
     failures+=(CuPy)
@@ -286,11 +287,15 @@ record="$output/${file_name:-unknown-device}.json"
   echo '"peers":' && cat "$work/peers.json"
   echo ', "modes":' && cat "$work/modes.json"
   echo ', "cupy":' && cat "$cupy"
-  echo ", \"cupy_verified\": [${cupy_verdicts-}]"
+  echo ", \"cupy_verified\": [$cupy_verdicts]"
   echo '}'
 } >"$work/record.json"
-# Only for the eye: Python is not needed.
-if ! python3 -m json.tool --indent 2 "$work/record.json" "$record" 2>/dev/null; then cp "$work/record.json" "$record"; fi
+# Python makes it even, and sees that it is JSON; it is not needed.
+if command -v python3 >/dev/null; then
+  python3 -c 'import json, sys; print(json.dumps(json.load(open(sys.argv[1])), indent=2))' "$work/record.json" >"$record"
+else
+  cp "$work/record.json" "$record"
+fi
 
 say 'Done'
 echo "record: $record"
