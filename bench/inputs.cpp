@@ -24,8 +24,8 @@ Named<Value> with_names(std::initializer_list<Value> values) {
 }
 
 const Named<Mode>& named_modes() {
-  static const auto kModes =
-      with_names({Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
+  static const auto kModes = with_names({Mode::hybrid, Mode::flattened, Mode::recursive_device,
+                                         Mode::recursive, Mode::partition, Mode::dwyer});
   return kModes;
 }
 

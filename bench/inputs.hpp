@@ -13,7 +13,7 @@
 namespace flaunay::bench {
 
 /// The mode that is measured if none is asked for.
-inline constexpr Mode kDefaultMode = Mode::partition;
+inline constexpr Mode kDefaultMode = Mode::hybrid;
 
 /// The paper's distributions, and inputs full of ties: cocircular points everywhere.
 inline const std::vector<std::string> kPaperDistributions{"uniform", "normal", "kuzmin", "line"};

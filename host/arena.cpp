@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 
 #include "host/error.hpp"
@@ -29,6 +30,15 @@ std::shared_ptr<_cl_mem> create_buffer(cl_context context, std::size_t bytes) {
 }
 
 }  // namespace
+
+void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+  const auto address = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (address + kHugePage - 1) / kHugePage * kHugePage;
+  const std::uintptr_t last = (address + bytes) / kHugePage * kHugePage;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
+}
 
 Arena::Arena(boost::compute::context context, const boost::compute::device& device)
     : context_(std::move(context)),
@@ -60,7 +70,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
   if (in_host_memory_ && bytes >= kHugePage) {
     const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     if (void* pages = std::aligned_alloc(kHugePage, rounded)) {
-      madvise(pages, rounded, MADV_HUGEPAGE);
+      prefer_huge_pages(pages, rounded);
       cl_int code = CL_SUCCESS;
       cl_mem memory =
           clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);

@@ -91,4 +91,7 @@ class Arena {
   std::size_t block_allocations_ = 0;
 };
 
+/// Asks the system for huge pages in [begin, begin + bytes), memory not yet touched.
+void prefer_huge_pages(void* begin, std::size_t bytes);
+
 }  // namespace flaunay::host

@@ -103,9 +103,9 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   if (found != programs.end()) return found->second;
   const double begin = now();
   auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
-  const std::string options =
-      fmt::format("-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={}{}", tuning_.sort_bits,
-                  tuning_.sort_group, tuning_.small_region, counting_ ? " -DFLAUNAY_COUNT" : "");
+  const std::string options = fmt::format(
+      "-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={} -DFETCH_AHEAD={}{}", tuning_.sort_bits,
+      tuning_.sort_group, tuning_.small_region, tuning_.fetch_ahead, counting_ ? " -DFLAUNAY_COUNT" : "");
   const cl_device_id id = device_.id();
   const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
@@ -167,15 +167,31 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
   if (profiling_ && events_.size() >= 4096) collect_times();
 }
 
-void Runtime::read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to) {
-  ++waits_;
-  FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, CL_TRUE, offset, bytes, to, 0, nullptr, nullptr));
+void Runtime::enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait) {
+  FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, wait, offset, bytes, to, 0, nullptr, nullptr));
 }
 
-void Runtime::write_bytes(cl_mem to, std::size_t offset, std::size_t bytes, const void* from) {
-  ++waits_;
-  FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, CL_TRUE, offset, bytes, from, 0, nullptr, nullptr));
+void Runtime::enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from,
+                            cl_bool wait) {
+  FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, wait, offset, bytes, from, 0, nullptr, nullptr));
 }
+
+std::shared_ptr<_cl_mem> Runtime::wrap(void* memory, std::size_t bytes, cl_mem_flags access) {
+  cl_int code = CL_SUCCESS;
+  cl_mem buffer = clCreateBuffer(context_.get(), access | CL_MEM_USE_HOST_PTR, bytes, memory, &code);
+  check_call(code, "clCreateBuffer");
+  return std::shared_ptr<_cl_mem>(buffer, [](cl_mem m) { clReleaseMemObject(m); });
+}
+
+void Runtime::hand_over(cl_mem shared, std::size_t bytes) {
+  cl_int code = CL_SUCCESS;
+  void* mapped =
+      clEnqueueMapBuffer(queue_.get(), shared, CL_FALSE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &code);
+  check_call(code, "clEnqueueMapBuffer");
+  FLAUNAY_CL(clEnqueueUnmapMemObject(queue_.get(), shared, mapped, 0, nullptr, nullptr));
+}
+
+void Runtime::flush() { FLAUNAY_CL(clFlush(queue_.get())); }
 
 void Runtime::finish() {
   ++waits_;

@@ -7,6 +7,7 @@
 #include <boost/compute/kernel.hpp>
 #include <boost/compute/program.hpp>
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <string>
 #include <vector>
@@ -77,7 +78,8 @@ class Runtime {
   template <typename T>
   void read(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
-    read_bytes(from.memory(), first * sizeof(T), count * sizeof(T), to);
+    ++waits_;
+    enqueue_read(from.memory(), first * sizeof(T), count * sizeof(T), to, CL_TRUE);
   }
   template <typename T>
   T read_one(const Buffer<T>& from, std::size_t index) {
@@ -89,7 +91,49 @@ class Runtime {
   template <typename T>
   void write(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
-    write_bytes(to.memory(), first * sizeof(T), count * sizeof(T), from);
+    ++waits_;
+    enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_TRUE);
+  }
+  /// The same without waiting, for what is read together: `to` has the values after the next wait.
+  template <typename T>
+  void read_later(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
+    if (count == 0) return;
+    enqueue_read(from.memory(), first * sizeof(T), count * sizeof(T), to, CL_FALSE);
+  }
+  /// The same without waiting: `from` must stay until the next wait.
+  template <typename T>
+  void write_later(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
+    if (count == 0) return;
+    enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_FALSE);
+  }
+  /// Host memory as kernels read it: in place on a device that works in host memory, else a copy, which comes
+  /// from the arena. The memory must stay until the work is done.
+  template <typename T>
+  Buffer<T> view(const T* values, std::size_t count) {
+    if (tuning_.in_host_memory && count > 0) {
+      return {wrap(const_cast<T*>(values), count * sizeof(T), CL_MEM_READ_ONLY), count};
+    }
+    const auto copy = arena_.allocate<T>(count);
+    write(copy, 0, count, values);
+    return copy;
+  }
+  /// What kernels write for values: its own memory, or a buffer from the arena; fetch_later() ends it.
+  template <typename T>
+  Buffer<T> output(std::vector<T>& values) {
+    if (tuning_.in_host_memory && !values.empty()) {
+      return {wrap(values.data(), values.size() * sizeof(T), CL_MEM_READ_WRITE), values.size()};
+    }
+    return arena_.allocate<T>(values.size());
+  }
+  /// After the next wait, values are what kernels have written until now.
+  template <typename T>
+  void fetch_later(const Buffer<T>& from, std::vector<T>& values) {
+    if (values.empty()) return;
+    if (tuning_.in_host_memory) {
+      hand_over(from.memory(), values.size() * sizeof(T));
+    } else {
+      read_later(from, 0, values.size(), values.data());
+    }
   }
   template <typename T>
   void fill(const Buffer<T>& to, std::size_t count, T value) {
@@ -107,6 +151,24 @@ class Runtime {
                                    to_first * sizeof(T), count * sizeof(T), 0, nullptr, nullptr));
   }
   void finish();
+  /// Lets the device begin with what was enqueued.
+  void flush();
+
+  /// Waits, if an exception ends its scope, for what was to be read or written later: the memory that is meant
+  /// must be declared before.
+  class Settled {
+   public:
+    explicit Settled(const Runtime& runtime) : runtime_(runtime), exceptions_(std::uncaught_exceptions()) {}
+    ~Settled() {
+      if (std::uncaught_exceptions() > exceptions_) clFinish(runtime_.queue());
+    }
+    Settled(const Settled&) = delete;
+    Settled& operator=(const Settled&) = delete;
+
+   private:
+    const Runtime& runtime_;
+    int exceptions_;
+  };
 
   /// From now on kernels are built with FLAUNAY_COUNT, and those that count get these counters as their last
   /// argument; see kernels/shared/counting.h. An empty buffer ends that.
@@ -142,8 +204,10 @@ class Runtime {
   Kernel& find_kernel(const char* file, const char* name);
   const boost::compute::program& find_program(const std::string& file);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
-  void read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to);
-  void write_bytes(cl_mem to, std::size_t offset, std::size_t bytes, const void* from);
+  void enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait);
+  std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access);
+  void hand_over(cl_mem shared, std::size_t bytes);
+  void enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, cl_bool wait);
   void collect_times();
 
   boost::compute::device device_;

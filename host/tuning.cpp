@@ -12,7 +12,9 @@
 namespace flaunay::host {
 namespace {
 
-constexpr int kSmallRegion = 48;
+// So far an edge leads at most, as a rule: 3 pairs a point.
+constexpr std::size_t kPairsOfABlock = 3 * kBlockPoints;
+constexpr std::size_t kPointsOfASmallBlock = 6;
 constexpr std::size_t kLargestNamedGroup = 1024;
 
 /// Of the sort's kernels, which count digits by work-item.
@@ -21,20 +23,53 @@ std::size_t sort_table_bytes(const Tuning& tuning) {
 }
 
 Tuning cpu_tuning(const boost::compute::device& device) {
-  // A CPU's work-item walks a long chunk: a core each, with a few to spare for balance. Wide digits, since a
-  // core's first-level cache holds the counters.
   const std::size_t cores = std::max<std::size_t>(1, device.compute_units());
-  return {256, 1, 1024, 8 * cores, 8, 1, 0, kSmallRegion, 16 * cores};
+  Tuning tuning;
+  // A work-item walks a long chunk: a core each, with a few to spare for balance.
+  tuning.map_group = 256;
+  tuning.chunk_group = 1;
+  tuning.chunk_least = 1024;
+  tuning.chunks_most = 8 * cores;
+  // Wide digits, since a core's first-level cache holds the counters.
+  tuning.sort_bits = 8;
+  tuning.sort_group = 1;
+  tuning.list_workers = 16 * cores;
+  tuning.block_workers = 2 * cores;
+  tuning.block_group = 1;
+  tuning.fetch_ahead = kPairsOfABlock;
+  tuning.in_host_memory = true;
+  return tuning;
 }
 
 Tuning gpu_tuning() {
-  // A GPU wants many short chunks; its counters live in local memory.
-  return {256, 64, 32, 0, 4, 128, 16, kSmallRegion, 16384};
+  // Many short chunks; the sort's counters live in local memory.
+  Tuning tuning;
+  tuning.map_group = 256;
+  tuning.chunk_group = 64;
+  tuning.chunk_least = 32;
+  tuning.sort_bits = 4;
+  tuning.sort_group = 128;
+  tuning.sort_items = 16;
+  tuning.list_workers = 16384;
+  tuning.block_workers = 16384;
+  tuning.block_group = 32;
+  return tuning;
 }
 
 Tuning small_tuning() {
   // Odd sizes that make every boundary occur on small inputs, and buffers that show every access beyond them.
-  return {3, 2, 5, 0, 3, 4, 3, kSmallRegion, 7, true};
+  Tuning tuning;
+  tuning.map_group = 3;
+  tuning.chunk_group = 2;
+  tuning.chunk_least = 5;
+  tuning.sort_bits = 3;
+  tuning.sort_group = 4;
+  tuning.sort_items = 3;
+  tuning.list_workers = 7;
+  tuning.block_workers = 3;
+  tuning.block_group = 2;
+  tuning.separate_buffers = true;
+  return tuning;
 }
 
 /// The N of "gpu:N"; 0 if it is none.
@@ -52,15 +87,20 @@ Tuning tuning_named(const std::string& name, const boost::compute::device& devic
   if (name == "cpu") return cpu_tuning(device);
   if (name == "gpu") return gpu_tuning();
   if (name == "small") return small_tuning();
-  if (const std::size_t group = named_group(name); group != 0) {
-    Tuning tuning = gpu_tuning();
-    tuning.map_group = tuning.chunk_group = tuning.sort_group = group;
+  if (name == "small-blocks") {
+    Tuning tuning = small_tuning();
+    tuning.block_points = kPointsOfASmallBlock;
     return tuning;
   }
-  throw DeviceError(fmt::format(
-      "FLAUNAY_TUNING is '{}'; it can be cpu, gpu, gpu:N with groups of N work-items (1 to {}), or "
-      "small",
-      name, kLargestNamedGroup));
+  if (const std::size_t group = named_group(name); group != 0) {
+    Tuning tuning = gpu_tuning();
+    tuning.map_group = tuning.chunk_group = tuning.sort_group = tuning.block_group = group;
+    return tuning;
+  }
+  throw DeviceError(
+      fmt::format("FLAUNAY_TUNING is '{}'; it can be cpu, gpu, gpu:N with groups of N work-items (1 to {}), "
+                  "small, or small-blocks",
+                  name, kLargestNamedGroup));
 }
 
 }  // namespace
@@ -81,7 +121,8 @@ DeviceLimits limits_of(const boost::compute::device& device) {
 
 Tuning fitted(Tuning tuning, const DeviceLimits& limits) {
   const std::size_t most = std::max<std::size_t>(1, limits.work_group);
-  for (std::size_t* group : {&tuning.map_group, &tuning.chunk_group, &tuning.sort_group}) {
+  for (std::size_t* group :
+       {&tuning.map_group, &tuning.chunk_group, &tuning.sort_group, &tuning.block_group}) {
     *group = std::min(*group, most);
   }
   while (sort_table_bytes(tuning) > limits.local_memory && tuning.sort_group > 1) tuning.sort_group /= 2;

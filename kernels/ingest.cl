@@ -4,9 +4,7 @@
 // set), distinct_flags and distinct_write give each distinct point the id that is its rank in (set, x, y).
 // Each pass is over all points of all sets.
 
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#pragma OPENCL FP_CONTRACT OFF
-
+#include "shared/coordinates.h"
 #include "shared/search.h"
 
 // Accounts of inspect, in one array of int.
@@ -28,14 +26,14 @@ static inline int2 bit_range(double x) {
   return (int2)(unit + 63 - (int)clz(mantissa), unit + trailing);
 }
 
-kernel void inspect(int n, int chunk, global const double2* restrict input, global volatile int* restrict accounts) {
+kernel void inspect(int n, int chunk, global const double* restrict input, global volatile int* restrict accounts) {
   const int c = get_global_id(0);
   const int low = c * chunk;
   if (low < n) {
     const int high = min(n, low + chunk);
     int largest = -10000, lowest = 10000, bad = INT_MAX;
     for (int i = low; i < high; ++i) {
-      const double2 p = input[i];
+      const double2 p = vload2(i, input);  // which need not be aligned as pairs
       if (!isfinite(p.x) || !isfinite(p.y)) {
         bad = min(bad, i);
         continue;
@@ -56,15 +54,6 @@ kernel void inspect(int n, int chunk, global const double2* restrict input, glob
     atomic_min(&accounts[INSPECT_BAD], bad);
   }
 }
-
-// An unsigned number in the order of the double; -0 counts as +0.
-static inline ulong orderable(double x) {
-  const ulong bits = as_ulong(x + 0.0);
-  return bits >> 63 ? ~bits : bits | 0x8000000000000000UL;
-}
-
-// Scaling by a power of two, exact by the host's choice; three steps, since the whole power may not be a double.
-static inline double scaled(double x, double s0, double s1, double s2) { return ((x * s0) * s1) * s2; }
 
 kernel void keys_y(int n, global const double2* restrict input, double s0, double s1, double s2,
                    global ulong* restrict keys, global int* restrict order) {

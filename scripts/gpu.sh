@@ -18,14 +18,14 @@
 set -euo pipefail
 
 # What is measured. The record says which; change it here.
-modes=flattened,partition,dwyer
+modes=hybrid,flattened,dwyer
 distributions=uniform,normal,kuzmin,line
 peers=cgal
 peer_sizes=10000000
 mode_sizes=1024,16384,131072,1048576,4194304
 verify_size=200000
 runs=5
-device_tests=(test_predicates test_vector_operations test_stages test_triangulation test_modes test_work test_cgal)
+device_tests=(test_predicates test_vector_operations test_stages test_hybrid_stages test_triangulation test_modes test_work test_cgal)
 
 source="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 command_line="scripts/gpu.sh $*"

@@ -281,12 +281,16 @@ TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
     refused("--device", mode, {"--mode", mode, "--device", "#0"});
     refused("--profile", mode, {"--mode", mode, "--profile"});
   }
-  for (const char* mode : {"flattened", "recursive-device", "partition", "dwyer"}) {
+  for (const char* mode : {"hybrid", "flattened", "recursive-device", "partition", "dwyer"}) {
     refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "monotone-chain"});
   }
-  refused("--hull-variant", "dwyer", {"--mode", "dwyer", "--hull-variant", "prune"});
-  refused("--cut", "dwyer", {"--mode", "dwyer", "--cut", "iqr"});
-  for (const char* mode : {"flattened", "recursive-device", "recursive", "dwyer"}) {
+  for (const char* mode : {"hybrid", "dwyer"}) {
+    refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "prune"});
+    refused("--cut", mode, {"--mode", mode, "--cut", "iqr"});
+  }
+  refused("--cut", "--mode flattened", {"--cut", "alternate"});
+  refused("--count", "--mode flattened", {"--count"});
+  for (const char* mode : {"hybrid", "flattened", "recursive-device", "recursive", "dwyer"}) {
     refused("--partition-levels", "--mode partition", {"--mode", mode, "--partition-levels", "2"});
     refused("--threads", "--mode partition", {"--mode", mode, "--threads", "2"});
   }
@@ -764,7 +768,8 @@ TEST_F(CommandTriangulateTest, ThreePointsAreOneTriangle) {
 TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   run_well({"generate", "uniform", "2000", "-o", path("points.npy")}, kNoPlatform);
   const Outcome outcome = run_well(
-      {"triangulate", path("points.npy"), "--cut", "alternate", "--stats", path("stats.json"), "--profile"});
+      {"triangulate", path("points.npy"), "--mode", "flattened", "--cut", "alternate", "--stats",
+                path("stats.json"), "--profile"});
   EXPECT_NE(outcome.out.find("kernel"), std::string::npos) << outcome.out;
   const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
   ASSERT_FALSE(stats.is_discarded());
@@ -793,6 +798,16 @@ TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   }
   ASSERT_FALSE(stats["kernels"].empty());
   EXPECT_GT(stats["kernels"][0].value("launches", 0), 0);
+}
+
+TEST_F(CommandTriangulateTest, HybridIsTheDefault) {
+  run_well({"triangulate", data("ukraine.xy"), "--stats", path("stats.json"), "--profile"});
+  const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
+  ASSERT_FALSE(stats.is_discarded());
+  EXPECT_EQ(stats.value("mode", ""), "hybrid");
+  EXPECT_TRUE(stats["cut"].is_null());
+  EXPECT_EQ(stats["phases"].size(), 3U);
+  EXPECT_GT(stats["kernels"].size(), 5U);
 }
 
 TEST_F(CommandTriangulateTest, QuietSaysNothing) {
@@ -843,6 +858,7 @@ TEST_F(CommandTriangulateTest, AFailedWriteLeavesNoFileBehind) {
 
 TEST_F(CommandTriangulateTest, EveryModeGivesTheSameTriangles) {
   const std::vector<Arguments> modes = {
+      {"--mode", "flattened"},
       {"--mode", "flattened", "--hull-variant", "quickhull"},
       {"--mode", "flattened", "--hull-variant", "balanced"},
       {"--mode", "recursive-device"},

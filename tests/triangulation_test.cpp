@@ -31,12 +31,26 @@ using ::testing::AssertionFailure;
 using ::testing::AssertionResult;
 using ::testing::AssertionSuccess;
 
-Triangulation triangulate(const Coordinates& points, const Options& options = {}) {
+/// The mode under test: FLAUNAY_TEST_MODE ("flattened") or the default one.
+Options defaults() {
+  Options options;
+  const char* mode = std::getenv("FLAUNAY_TEST_MODE");
+  if (mode != nullptr && std::string(mode) == to_string(Mode::flattened)) options.mode = Mode::flattened;
+  return options;
+}
+
+Options in_mode(Mode mode) {
+  Options options;
+  options.mode = mode;
+  return options;
+}
+
+Triangulation triangulate(const Coordinates& points, const Options& options = defaults()) {
   return triangulator().triangulate(points.data(), points.size() / 2, options);
 }
 
 Triangulation triangulate(const Coordinates& points, const std::vector<std::size_t>& offsets,
-                          const Options& options = {}) {
+                          const Options& options = defaults()) {
   return triangulator().triangulate(points.data(), offsets, options);
 }
 
@@ -409,17 +423,16 @@ TEST(SmallTriangulation, OtherExecutions) {
     SCOPED_TRACE(name);
     const Coordinates points = make_fixture(name, 40, 5);
     for (const Hull hull : {Hull::quickhull, Hull::balanced}) {
-      Options options;
+      Options options = in_mode(Mode::flattened);
       options.hull = hull;
       EXPECT_TRUE(valid(points, triangulate(points, options))) << to_string(hull);
     }
-    for (const Mode mode : {Mode::recursive_device, Mode::partition}) {
-      Options options;
-      options.mode = mode;
+    for (const Mode mode : {Mode::flattened, Mode::recursive_device, Mode::partition}) {
+      Options options = in_mode(mode);
       options.partition_levels = 2;
       EXPECT_TRUE(valid(points, triangulate(points, options))) << to_string(mode);
     }
-    Options options;
+    Options options = in_mode(Mode::flattened);
     options.count = true;
     const Triangulation counted = triangulate(points, options);
     EXPECT_TRUE(valid(points, counted));
@@ -428,7 +441,7 @@ TEST(SmallTriangulation, OtherExecutions) {
 }
 
 TEST(SmallTriangulation, Alternate) {
-  Options options;
+  Options options = in_mode(Mode::flattened);
   options.cut = Cut::alternate;
   const Coordinates points = io::generate("kuzmin", 20, 2).coordinates;
   EXPECT_TRUE(matches_reference(points, triangulate(points, options)));
@@ -589,15 +602,29 @@ TEST(Determinism, SameInputSameBytes) {
     triangulate(other);
     EXPECT_TRUE(same_bytes(triangulate(points), first)) << "after other work";
 
-    Options options;
+    Options options = defaults();
     options.profile = true;
     EXPECT_TRUE(same_bytes(triangulate(points, options), first)) << "profiled";
-    options = {};
+    options = defaults();
     options.neighbors = false;
     const Triangulation without = triangulate(points, options);
     EXPECT_EQ(without.triangles, first.triangles);
     EXPECT_EQ(without.hull, first.hull);
     EXPECT_TRUE(without.neighbors.empty());
+  }
+}
+
+/// Other blocks make another order of rows, but the same triangles: blocks of a few points on every input.
+TEST(Determinism, SmallBlocksSameTriangles) {
+  Triangulator tuned = make_tuned("small-blocks");
+  for (const Fixture& fixture : all_fixtures()) {
+    for (const std::size_t n : {5, 20, 100, 1500}) {
+      SCOPED_TRACE(fixture.name + ", n = " + std::to_string(n));
+      const Coordinates points = fixture.make(n, 13);
+      const Triangulation found = tuned.triangulate(points.data(), size_of(points));
+      EXPECT_TRUE(valid(points, found));
+      EXPECT_EQ(sorted_triangles(found.triangles), sorted_triangles(triangulate(points).triangles));
+    }
   }
 }
 
@@ -610,17 +637,17 @@ TEST_P(EveryTuning, SameInputSameBytes) {
     for (const std::size_t n : {3, 10, 100, 1500}) {
       SCOPED_TRACE(fixture.name + ", n = " + std::to_string(n));
       const Coordinates points = fixture.make(n, 11);
-      EXPECT_TRUE(same_bytes(tuned.triangulate(points.data(), size_of(points)), triangulate(points)));
+      EXPECT_TRUE(same_bytes(tuned.triangulate(points.data(), size_of(points), defaults()), triangulate(points)));
     }
   }
   const Coordinates many = io::generate("kuzmin", 30000, 1).coordinates;
-  EXPECT_TRUE(same_bytes(tuned.triangulate(many.data(), size_of(many)), triangulate(many)));
+  EXPECT_TRUE(same_bytes(tuned.triangulate(many.data(), size_of(many), defaults()), triangulate(many)));
 
   Sets sets;
   for (std::uint64_t s = 0; s < 300; ++s) {
     sets.add(make_fixture(s % 2 ? "uniform" : "small-integers", s % 30, s));
   }
-  EXPECT_TRUE(same_bytes(tuned.triangulate(sets.points.data(), sets.offsets),
+  EXPECT_TRUE(same_bytes(tuned.triangulate(sets.points.data(), sets.offsets, defaults()),
                          triangulate(sets.points, sets.offsets)));
 }
 
@@ -629,7 +656,7 @@ INSTANTIATE_TEST_SUITE_P(Determinism, EveryTuning,
 
 /// Another rule for the cuts makes other regions, but the same triangles.
 TEST(Determinism, AlternateCutsSameTriangles) {
-  Options options;
+  Options options = in_mode(Mode::flattened);
   options.cut = Cut::alternate;
   for (const Fixture& fixture : all_fixtures()) {
     for (const std::size_t n : {50, 1500}) {
@@ -940,7 +967,7 @@ TEST_F(Errors, ThrowingProgress) {
   struct Cancelled {};
   for (int when = 0;; ++when) {
     int calls = 0;
-    Options options;
+    Options options = defaults();
     options.progress = [&](const std::string&, int, double) {
       if (calls++ == when) throw Cancelled{};
     };
@@ -984,7 +1011,7 @@ TEST(Statistics, CountsAreConsistent) {
   for (const char* name : {"uniform", "kuzmin", "half-duplicates", "line", "star", "grid", "apex"}) {
     SCOPED_TRACE(name);
     const Coordinates points = make_fixture(name, 20000, 2);
-    Options options;
+    Options options = defaults();
     options.profile = true;
     const Triangulation result = triangulate(points, options);
     const Statistics& statistics = result.statistics;
@@ -1020,7 +1047,11 @@ TEST(Statistics, CountsAreConsistent) {
       internal = level.internal_points;
       regions = 2 * level.regions;
     }
-    EXPECT_EQ(statistics.levels.empty(), distinct == statistics.hull_vertices || statistics.triangles == 0);
+    if (defaults().mode != Mode::flattened) {
+      EXPECT_TRUE(statistics.levels.empty());
+    } else {
+      EXPECT_EQ(statistics.levels.empty(), distinct == statistics.hull_vertices || statistics.triangles == 0);
+    }
 
     std::size_t launches = 0;
     double kernel_seconds = 0;
@@ -1036,7 +1067,7 @@ TEST(Statistics, CountsAreConsistent) {
     double phase_seconds = 0;
     for (const PhaseStatistics& phase : statistics.phases) phase_seconds += phase.seconds;
     EXPECT_GT(phase_seconds, 0);
-    EXPECT_LE(phase_seconds, statistics.seconds);
+    EXPECT_LE(phase_seconds, statistics.seconds + 1e-9) << "but for rounding";
   }
   EXPECT_TRUE(triangulate({0, 0, 1, 0, 0, 1}).statistics.kernels.empty()) << "profile was not asked for";
 }
@@ -1051,7 +1082,7 @@ TEST(Statistics, ProgressRises) {
   const Coordinates points = io::generate("uniform", 5000, 2).coordinates;
   double last = 0;
   int calls = 0, levels = 0;
-  Options options;
+  Options options = defaults();
   options.progress = [&](const std::string& stage, int level, double done) {
     EXPECT_FALSE(stage.empty());
     EXPECT_GE(done, last);
@@ -1065,16 +1096,17 @@ TEST(Statistics, ProgressRises) {
   EXPECT_EQ(static_cast<std::size_t>(levels), result.statistics.levels.size());
 }
 
-/// At most 300 bytes a point of device memory, on degenerate input too; each measured with a memory of its
-/// own.
+/// At most 200 bytes a point of device memory (flattened: 300), on degenerate input too; each measured with a
+/// memory of its own.
 TEST(Statistics, DeviceMemory) {
   for (const char* name :
        {"line", "grid", "circle", "star", "columns", "small-integers", "clusters", "apex"}) {
     const Coordinates points = make_fixture(name, 100000, 1);
     Triangulator fresh;
-    const Triangulation result = fresh.triangulate(points.data(), 100000);
+    const Triangulation result = fresh.triangulate(points.data(), 100000, defaults());
+    const std::size_t most = defaults().mode == Mode::flattened ? 300 : 200;
     EXPECT_GT(result.statistics.device_bytes_peak, 0U) << name;
-    EXPECT_LE(result.statistics.device_bytes_peak, 300U * 100000U) << name;
+    EXPECT_LE(result.statistics.device_bytes_peak, most * 100000U) << name;
   }
 }
 

@@ -194,7 +194,7 @@ static inline int circle_sign(double2 a, double2 b, double2 c, double2 d, double
 }
 
 // The order of the canonical form: by x, then by y.
-static inline int comes_before(double2 p, double2 q) { return p.x != q.x ? p.x < q.x : p.y < q.y; }
+static inline int comes_before(double2 p, double2 q) { return (p.x < q.x) | ((p.x == q.x) & (p.y < q.y)); }
 
 // circle_sign that is never 0, of four different points: on a tie it is as if the first of the four (comes_before) were
 // lowered a little below the paraboloid that all are lifted to. The Delaunay triangulation so defined is unique, and makes

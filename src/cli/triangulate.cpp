@@ -19,7 +19,7 @@ namespace {
 struct TriangulateRequest {
   std::string input;
   ResultPaths results;
-  Mode mode = Mode::flattened;
+  Mode mode = Mode::hybrid;
   Cut cut = Cut::interquartile;
   Hull dividing_paths = Hull::prune;
   int partition_levels = 0;
@@ -30,6 +30,8 @@ struct TriangulateRequest {
   bool quiet = false;
 };
 
+// Whether regions are divided by paths.
+bool has_paths(Mode mode) { return mode != Mode::hybrid && mode != Mode::dwyer; }
 bool on_host(Mode mode) { return mode == Mode::recursive || mode == Mode::dwyer; }
 
 // Options that the chosen mode would ignore, or cannot do, are a mistake.
@@ -42,10 +44,13 @@ void check_combination(const CLI::App& command, const TriangulateRequest& reques
   } else if (request.dividing_paths == Hull::monotone_chain) {
     refuse(command, "--hull-variant", fmt::format("monotone-chain needs --mode recursive, not {}", mode));
   }
-  if (request.mode == Mode::dwyer) {
+  if (!has_paths(request.mode)) {
     for (const char* option : {"--cut", "--hull-variant"}) {
-      refuse(command, option, "mode dwyer has no such choice");
+      refuse(command, option, fmt::format("mode {} has no such choice; take --mode flattened", mode));
     }
+  }
+  if (request.mode == Mode::hybrid) {
+    refuse(command, "--count", "mode hybrid does not count; take --mode flattened");
   }
   if (request.mode != Mode::partition) {
     for (const char* option : {"--partition-levels", "--threads"}) {
@@ -59,7 +64,7 @@ RunFacts facts_of(const TriangulateRequest& request) {
   facts.input = request.input;
   facts.mode = to_string(request.mode);
   facts.counted = request.count;
-  if (request.mode != Mode::dwyer) {
+  if (has_paths(request.mode)) {
     facts.cut = to_string(request.cut);
     facts.dividing_paths = to_string(request.dividing_paths);
   }
@@ -128,7 +133,7 @@ void add_triangulate(CLI::App& app, Action& action) {
   add_choice<Mode>(
       command, "--mode", request->mode,
       "How to divide and conquer; the triangles are the same. recursive and dwyer need no device",
-      {Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
+      {Mode::hybrid, Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
   add_cut(command, request->cut);
   add_hull_variant(
       command, request->dividing_paths, {Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain},

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "flattened/stages.hpp"
 #include "input/magnitudes.hpp"
 
@@ -28,11 +26,8 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), input, device_magnitudes);
   runtime.read(device_magnitudes, 0, 3, &magnitudes.largest);
   const Scaling scaling = scaling_for(coordinates, n, magnitudes);
-  const int shift = scaling.shift;
   work.bounds = scaling.bounds;
-  const cl_double s0 = std::ldexp(1.0, shift / 3);
-  const cl_double s1 = std::ldexp(1.0, (shift - shift / 3) / 2);
-  const cl_double s2 = std::ldexp(1.0, shift - shift / 3 - (shift - shift / 3) / 2);
+  const auto [s0, s1, s2] = scaling.powers();
 
   // Sort by y, with dense ranks; then stably by x, and by set.
   const auto keys = scratch.allocate<cl_ulong>(n);

@@ -1,9 +1,13 @@
 #include <algorithm>
-#include <limits>
 
 #include "flattened/stages.hpp"
+#include "hybrid/ring_edge.hpp"
 
 namespace flaunay::flattened {
+
+using hybrid::kEdgesPerVertex;
+using hybrid::kLeafVertices;
+using hybrid::RingEdge;
 
 void strips(Workspace& work, const PointTable& table, const RetiredRegions& retired,
             const Buffer<cl_int>& large, std::size_t large_count, const Buffer<cl_uint>& counts) {
@@ -42,33 +46,29 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
   }
   const std::size_t vertex_count = runtime.read_one(scanned, corners);
 
-  const auto origin = scratch.allocate<cl_int>(6 * vertex_count);
-  const auto around = scratch.allocate<cl_int2>(6 * vertex_count);
-  const auto hull_edges = scratch.allocate<cl_int2>(vertex_count);
+  const auto edges = scratch.allocate<RingEdge>(kEdgesPerVertex * vertex_count);
+  const auto vertex_edge = scratch.allocate<cl_int>(vertex_count);
   const auto free_lists = scratch.allocate<cl_int2>(vertex_count);
-  // Deep enough that every block has at most three vertices.
+  const auto places = scratch.allocate<cl_double2>(vertex_count);
   int depth = 0;
-  while ((std::size_t{3} << depth) < largest) ++depth;
+  while ((kLeafVertices << depth) < largest) ++depth;
   for (; depth >= 0; --depth) {
     runtime.map("strips", "merge_strips", vertex_count, cl_int{depth}, work.bounds.orient, work.bounds.circle,
-                vertices, vertex_region, vertex_offsets, table.points, origin, around, hull_edges,
+                vertices, vertex_region, vertex_offsets, table.points, places, edges, vertex_edge,
                 free_lists);
   }
 
-  const auto vertex_edge = scratch.allocate<cl_int>(vertex_count);
-  runtime.fill(vertex_edge, vertex_count, std::numeric_limits<cl_int>::max());
-  runtime.map("strips", "vertex_edges", 6 * vertex_count, origin, vertex_edge);
   const auto border_edge = scratch.allocate<cl_int>(corners);
   const auto missing = scratch.allocate<cl_int>(large_count);
   runtime.fill(missing, large_count, cl_int{0});
   runtime.map("strips", "border_edges", corners, large_corners, corner_region, corner_vertex, vertices,
-              vertex_edge, origin, around, border_edge, missing);
+              vertex_edge, edges, border_edge, missing);
   runtime.map("strips", "restore_border", large_count, missing, large_offsets, large_corners, corner_vertex,
-              vertices, vertex_edge, table.points, work.bounds.orient, work.bounds.circle, origin, around,
+              vertices, places, table.points, work.bounds.orient, work.bounds.circle, edges, vertex_edge,
               border_edge, work.broken);
   for (const cl_int write : {0, 1}) {
     runtime.map("strips", "count_fans", corners, write, large_corners, corner_region, corner_vertex, vertices,
-                origin, around, border_edge, large, large_offsets, retired.offsets, scanned, scanned,
+                edges, border_edge, large, large_offsets, retired.offsets, scanned, scanned,
                 retired.corner_ids, work.broken);
     if (!write) host::exclusive_scan(runtime, scanned, corners, scanned);
   }

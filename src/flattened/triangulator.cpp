@@ -10,8 +10,10 @@
 #include "flattened/stages.hpp"
 #include "host/clock.hpp"
 #include "host/device.hpp"
+#include "hybrid/stages.hpp"
 #include "recursive/counter.hpp"
 #include "recursive/mesh.hpp"
+#include "recursive/phases.hpp"
 #include "recursive/regions.hpp"
 
 namespace flaunay {
@@ -29,6 +31,11 @@ constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // twice: of the level at work and of the next
 constexpr std::size_t kScratchBytesPerPoint = 118;
+// Mode::hybrid: vertices, their sources and edges, and what belongs to blocks.
+constexpr std::size_t kHybridBytesPerPoint = 97;
+// Shares of its time, for progress.
+constexpr double kBlocksMade = 0.15;
+constexpr double kTriangulated = 0.8;
 // The most that any input measured has needed, those made to be bad among them.
 constexpr std::size_t kBytesPerPoint = 320;
 
@@ -101,8 +108,9 @@ struct Triangulator::Implementation {
 
   std::size_t capacity() const {
     const std::size_t by_memory = runtime.device().global_memory_size() / kBytesPerPoint;
-    // The arenas are made of blocks, but one array must be in one piece: at most 48 bytes a point, in strips.
-    const std::size_t by_buffer = runtime.device().max_memory_alloc_size() / 48;
+    // The arenas are made of blocks, but one array must be in one piece: at most the edges of rings.
+    const std::size_t by_buffer =
+        runtime.device().max_memory_alloc_size() / (hybrid::kEdgesPerVertex * sizeof(hybrid::RingEdge));
     return std::min({kMostPoints, by_memory, by_buffer});
   }
 
@@ -111,6 +119,9 @@ struct Triangulator::Implementation {
   }
 
   struct Call;
+  void begin_accounts(const Options& options);
+  /// What the device did since.
+  void write_accounts(Statistics& statistics);
   /// Throws Error for what this device cannot do.
   void check_request(std::size_t n, const Options& options) const;
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
@@ -119,6 +130,8 @@ struct Triangulator::Implementation {
   /// Canonical form, neighbours, and everything to the host.
   void write_result(Call& call, const Buffer<cl_int>& triangles, const flattened::Borders& borders,
                     Triangulation& result);
+  void hybrid(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
+              Triangulation& result);
   void finish_partition(Call& call, flattened::Recursion& recursion, const flattened::Borders& borders,
                         Triangulation& result);
 
@@ -163,8 +176,7 @@ Triangulator::Implementation::Call::Call(Implementation& owner_, const double* c
   const std::size_t n = offsets.back();
   host::Runtime& runtime = owner.runtime;
   Arena& persistent = owner.persistent;
-  runtime.reset_accounts();
-  runtime.set_profiling(options.profile);
+  owner.begin_accounts(options);
   persistent.reserve(n * kPersistentBytesPerPoint);
   owner.even.reserve(n * kStateBytesPerPoint);
   owner.odd.reserve(n * kStateBytesPerPoint);
@@ -215,9 +227,18 @@ void Triangulator::Implementation::Call::end_levels(std::size_t done, std::size_
 
 void Triangulator::Implementation::Call::finish_statistics() {
   Statistics& statistics = work.statistics;
-  host::Runtime& runtime = owner.runtime;
-  statistics.undecided = runtime.read_one(work.undecided, 0);
-  statistics.device_bytes_peak = owner.held_bytes();
+  statistics.undecided = owner.runtime.read_one(work.undecided, 0);
+  owner.write_accounts(statistics);
+  statistics.seconds = now() - begin;
+}
+
+void Triangulator::Implementation::begin_accounts(const Options& options) {
+  runtime.reset_accounts();
+  runtime.set_profiling(options.profile);
+}
+
+void Triangulator::Implementation::write_accounts(Statistics& statistics) {
+  statistics.device_bytes_peak = held_bytes();
   statistics.kernel_launches = runtime.launches();
   statistics.host_waits = runtime.waits();
   statistics.build_seconds = runtime.build_seconds();
@@ -226,12 +247,14 @@ void Triangulator::Implementation::Call::finish_statistics() {
   }
   std::sort(statistics.kernels.begin(), statistics.kernels.end(),
             [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
-  statistics.seconds = now() - begin;
 }
 
 void Triangulator::Implementation::check_request(std::size_t n, const Options& options) const {
   if (options.hull == Hull::monotone_chain) {
     throw Error(ErrorKind::usage, "monotone-chain hulls are computed by mode recursive only");
+  }
+  if (options.count && options.mode == Mode::hybrid) {
+    throw Error(ErrorKind::usage, "mode hybrid does not count operations; take flattened");
   }
   if (n > capacity()) {
     throw Error(
@@ -261,6 +284,10 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   result.hull_offsets.assign(sets + 1, 0);
   if (n == 0) return result;
 
+  if (options.mode == Mode::hybrid) {
+    hybrid(coordinates, offsets, options, result);
+    return result;
+  }
   Call call(*this, coordinates, offsets, options, statistics, result.representatives);
   Workspace& work = call.work;
   PointTable& table = call.table;
@@ -284,6 +311,41 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   statistics.hull_vertices = borders.size;
   call.finish_statistics();
   return result;
+}
+
+void Triangulator::Implementation::hybrid(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                          const Options& options, Triangulation& result) {
+  const std::size_t n = offsets.back();
+  recursive::Phases phases(options);
+  begin_accounts(options);
+  Arena::Scope scope(persistent);
+  persistent.reserve(n * kHybridBytesPerPoint);
+  hybrid::Workspace work{runtime, persistent};
+  result.statistics.points = n;
+
+  phases.progress("blocks", 0);
+  result.representatives.resize(n);
+  const auto representatives = runtime.output(result.representatives);
+  const hybrid::Blocks blocks = make_blocks(work, coordinates, offsets, representatives);
+  phases.end("blocks");
+  phases.progress("triangulate", kBlocksMade);
+  hybrid::Rings rings;
+  const host::Runtime::Settled settled(runtime);
+  rings = divide(work, blocks, representatives);
+  prepare_result(blocks, options.neighbors, result);
+  await_rings(work, blocks, rings);
+  runtime.fetch_later(representatives, result.representatives);
+  phases.end("triangulate");
+  phases.progress("output", kTriangulated);
+  write_mesh(work, blocks, rings, options.neighbors, result);
+  phases.end("output");
+
+  result.statistics.undecided = rings.undecided;
+  result.statistics.triangles = result.triangle_offsets.back();
+  result.statistics.hull_vertices = result.hull_offsets.back();
+  write_accounts(result.statistics);
+  phases.write(result.statistics);
+  phases.progress("output", 1);
 }
 
 // A few levels on the device, the rest and the canonical form on the host, where the triangles are then.
@@ -318,13 +380,13 @@ Partition Triangulator::Implementation::partition(const double* coordinates, std
                                                   const Options& options) {
   using namespace flattened;
   if (levels < 0) throw Error(ErrorKind::usage, "a partition's number of levels cannot be negative");
-  check_request(n, options);
+  Options uncounted = options;
+  uncounted.count = false;
+  check_request(n, uncounted);
   Partition result;
   result.statistics.device = runtime.device().name();
   if (n == 0) return result;
   std::vector<std::int32_t> representatives;
-  Options uncounted = options;
-  uncounted.count = false;
   Call call(*this, coordinates, {0, n}, uncounted, result.statistics, representatives);
   Recursion recursion(call.work, call.table, uncounted, {&even, &odd});
   const Borders borders = recursion.begin();
@@ -429,6 +491,8 @@ Partition Triangulator::partition(const double* coordinates, std::size_t n, int 
 
 const char* to_string(Mode mode) noexcept {
   switch (mode) {
+    case Mode::hybrid:
+      return "hybrid";
     case Mode::flattened:
       return "flattened";
     case Mode::recursive_device:

@@ -77,6 +77,11 @@ Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& 
   return scaling;
 }
 
+std::array<double, 3> Scaling::powers() const {
+  const int first = shift / 3, second = (shift - first) / 2;
+  return {std::ldexp(1.0, first), std::ldexp(1.0, second), std::ldexp(1.0, shift - first - second)};
+}
+
 void check_offsets(const std::vector<std::size_t>& offsets) {
   if (offsets.empty() || offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
     throw Error(ErrorKind::usage, "offsets of point sets must begin with 0 and not decrease");

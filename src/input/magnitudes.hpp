@@ -2,6 +2,7 @@
 // (docs/exactness.md).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -26,6 +27,9 @@ struct Magnitudes {
 struct Scaling {
   int shift = 0;  ///< multiply by 2^shift, which is exact
   Bounds bounds{};
+
+  /// Factors whose product is 2^shift, which may be no double itself.
+  std::array<double, 3> powers() const;
 };
 
 /// Exponent of the lowest set bit; x is finite and not 0.

@@ -38,6 +38,7 @@ enum class Cut {
 
 /// How the divide and conquer is executed. The result is the same set of triangles, whatever the mode.
 enum class Mode {
+  hybrid,            ///< on the device, blocks of points solved whole and merged: the fastest
   flattened,         ///< on the device, all regions of a level at once
   recursive_device,  ///< by the same kernels, one region at a time, depth first
   recursive,         ///< plain recursion on the host, one thread: the readable twin
@@ -59,12 +60,12 @@ const char* to_string(Hull hull) noexcept;
 
 /// What a caller can ask of one triangulation.
 struct Options {
-  Mode mode = Mode::flattened;
+  Mode mode = Mode::hybrid;
   Cut cut = Cut::interquartile;
   Hull hull = Hull::prune;
   bool neighbors = true;     ///< compute Triangulation::neighbors
   bool profile = false;      ///< time every kernel by events; costs a little
-  bool count = false;        ///< count operations into Statistics::work; slow
+  bool count = false;        ///< count operations into Statistics::work; slow; not in Mode::hybrid
   int partition_levels = 0;  ///< Mode::partition: levels on the device; 0 chooses
   int threads = 0;           ///< Mode::partition: host threads; 0 takes one per core
   /// Called between levels, on the calling thread; may be empty.

@@ -1,0 +1,110 @@
+// Points to blocks: each set that is larger than a block is cut by a tree, whose leaves are its blocks.
+//
+// gather_samples fetches the points that the host makes the trees from. copy_points checks nothing and scales; of chunks
+// of sets that are one block each it brings the points to their places. Other chunks lie in one set: count_blocks finds
+// each point's block and counts them, a row of `cursors` a chunk; the counts, block by block and chunk by chunk, are
+// scanned; move_points brings points, scaled, and their indices to their blocks, in the order of the input. All are one
+// pass over the points. block_offsets tells where blocks begin.
+
+#include "shared/coordinates.h"
+
+kernel void gather_samples(int n, global const int* restrict indices, global const double* restrict input,
+                           global double2* restrict samples) {
+  const int i = get_global_id(0);
+  if (i < n) samples[i] = vload2(indices[i], input);
+}
+
+// A chunk: points [first, last), and of a set with a tree: its depth, where its nodes begin, where the chunk's row of
+// cursors begins, the set's first count, the chunk's number in the set, and the set's number of chunks.
+typedef struct {
+  int first, last, depth, nodes, row, counts, number, chunks;
+} chunk_of_points;
+
+// A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
+// has all bits set; without branches, since each would be taken by chance.
+typedef struct {
+  ulong major, minor, turn;
+} cut_node;
+static inline int goes_high(ulong x, ulong y, cut_node cut) {
+  const ulong swapped = (x ^ y) & cut.turn;
+  const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;
+  return (major > cut.major) | ((major == cut.major) & (minor >= cut.minor));
+}
+
+// Points that go down a tree at the same time: each step waits for the one before.
+#define DESCENTS 16
+
+kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const double* restrict input,
+                         global const cut_node* restrict nodes, global int* restrict block_of_point,
+                         global int* restrict cursors, global uint* restrict counts) {
+  const int c = get_global_id(0);
+  if (c < n && chunks[c].depth > 0) {
+    const chunk_of_points chunk = chunks[c];
+    global const cut_node* const tree = nodes + chunk.nodes;
+    global int* const cursor = cursors + chunk.row;
+    const int blocks = 1 << chunk.depth;
+    for (int b = 0; b < blocks; ++b) cursor[b] = 0;
+    for (int i = chunk.first; i < chunk.last; i += DESCENTS) {
+      ulong x[DESCENTS], y[DESCENTS];
+      int node[DESCENTS];
+      for (int k = 0; k < DESCENTS; ++k) {
+        const double2 p = vload2(min(i + k, chunk.last - 1), input);
+        x[k] = orderable(p.x);
+        y[k] = orderable(p.y);
+        node[k] = 1;
+      }
+      for (int d = 0; d < chunk.depth; ++d) {
+        for (int k = 0; k < DESCENTS; ++k) node[k] = 2 * node[k] + goes_high(x[k], y[k], tree[node[k]]);
+      }
+      for (int k = 0; k < min(DESCENTS, chunk.last - i); ++k) {
+        block_of_point[i + k] = node[k] - blocks;
+        ++cursor[node[k] - blocks];
+      }
+    }
+    for (int b = 0; b < blocks; ++b) counts[chunk.counts + b * chunk.chunks + chunk.number] = cursor[b];
+  }
+}
+
+static inline double2 scaled_point(int i, global const double* input, double s0, double s1, double s2) {
+  const double2 p = vload2(i, input);
+  return (double2)(scaled(p.x, s0, s1, s2) + 0.0, scaled(p.y, s0, s1, s2) + 0.0);
+}
+
+kernel void move_points(int n, global const chunk_of_points* restrict chunks, global const int* restrict set_first,
+                        global const double* restrict input, double s0, double s1, double s2,
+                        global const int* restrict block_of_point, global const uint* restrict scanned,
+                        global int* restrict cursors, global double2* restrict points, global int* restrict source,
+                        global int* restrict representatives) {
+  const int c = get_global_id(0);
+  if (c < n) {
+    const chunk_of_points chunk = chunks[c];
+    for (int i = chunk.first; i < chunk.last; ++i) representatives[i] = i;
+    if (chunk.depth == 0) {
+      for (int i = chunk.first; i < chunk.last; ++i) {
+        points[i] = scaled_point(i, input, s0, s1, s2);
+        source[i] = i;
+      }
+    } else {
+      global int* const cursor = cursors + chunk.row;
+      const int begin = set_first[c] - (int)scanned[chunk.counts];
+      for (int b = 0; b < 1 << chunk.depth; ++b) {
+        cursor[b] = begin + (int)scanned[chunk.counts + b * chunk.chunks + chunk.number];
+      }
+      for (int i = chunk.first; i < chunk.last; ++i) {
+        const int to = cursor[block_of_point[i]]++;
+        points[to] = scaled_point(i, input, s0, s1, s2);
+        source[to] = i;
+      }
+    }
+  }
+}
+
+// offsets of blocks: of block k of its set, in whose counts it begins at first_count (-1: the set is one block).
+kernel void block_offsets(int n, global const int2* restrict set_and_count, global const int* restrict set_count,
+                          global const uint* restrict scanned, global int* restrict offsets) {
+  const int b = get_global_id(0);
+  if (b < n) {
+    const int2 place = set_and_count[b];
+    offsets[b] = place.x + (place.y < 0 ? 0 : (int)(scanned[place.y] - scanned[set_count[b]]));
+  }
+}

@@ -1,0 +1,355 @@
+// Delaunay triangulations as rings of edges, and Guibas and Stolfi's merge of two of them (ACM Transactions on Graphics 4,
+// 1985). RINGS_CIRCLE breaks the ties of cocircular points: by circle_canonical, so that the result is the canonical one,
+// unless it says otherwise.
+#ifndef FLAUNAY_RINGS_H
+#define FLAUNAY_RINGS_H
+
+#include "shared/counting.h"
+#include "shared/order.h"
+#include "shared/planar.h"
+
+// A directed edge e in the ring of its origin; its reverse is e ^ 1. (Quad-edges without the dual half.)
+typedef struct {
+  int to;        // vertex, or NO_VERTEX for a free edge
+  int next;      // counter-clockwise about the origin; of a free edge the next free one
+  int previous;  // clockwise
+} ring_edge;
+
+#define NO_VERTEX -1
+#define NO_EDGE -1
+// Directed edges that a vertex brings: a planar graph has less than 3 edges a vertex.
+#define EDGES_PER_VERTEX 6
+// Where it is 0, edges stay as they are.
+#ifndef RINGS_CIRCLE
+#define RINGS_CIRCLE circle_canonical
+#endif
+// The most vertices that make_leaf takes.
+#define LEAF_VERTICES 4
+
+// What one work-item works on: edges of its own, all free at first.
+typedef struct {
+  global ring_edge* edges;
+  global const double2* points;  // by vertex
+  // An edge out of each vertex: of a hull's strict corner the counter-clockwise hull edge; NO_EDGE if there is none.
+  global int* vertex_edge;
+  double orient_bound, circle_bound;
+  int free_first, free_last;  // of the list of free edges
+  int unused;                 // the first that was never used
+  uint undecided;             // predicates that floating point could not decide
+  COUNTED(uint orientations; uint circles;)
+} rings;
+
+static inline rings rings_on(global ring_edge* edges, global const double2* points, global int* vertex_edge,
+                             double orient_bound, double circle_bound) {
+  rings g;
+  g.edges = edges;
+  g.points = points;
+  g.vertex_edge = vertex_edge;
+  g.orient_bound = orient_bound;
+  g.circle_bound = circle_bound;
+  g.free_first = g.free_last = g.unused = NO_EDGE;
+  g.undecided = 0;
+  COUNTED(g.orientations = g.circles = 0;)
+  return g;
+}
+
+// The first and the last vertex in the orders (x, y) and (y, -x): first x, last x, first y, last y. All are corners of the
+// hull, strictly convex. NO_VERTEX, all of them, if there is no vertex.
+typedef int4 ends;
+
+static inline int first_along(ends all, int axis) { return axis ? all.z : all.x; }
+static inline int last_along(ends all, int axis) { return axis ? all.w : all.y; }
+
+static inline ends joined_ends(const rings* g, ends low, ends high, int axis) {
+  if (low.x == NO_VERTEX) return high;
+  if (high.x == NO_VERTEX) return low;
+  const int along = !axis;
+  const int first = first_along(low, along), other_first = first_along(high, along);
+  const int last = last_along(low, along), other_last = last_along(high, along);
+  const int least = precedes(g->points[other_first], g->points[first], along) ? other_first : first;
+  const int most = precedes(g->points[last], g->points[other_last], along) ? other_last : last;
+  return axis ? (ends)(least, most, low.z, high.w) : (ends)(low.x, high.y, least, most);
+}
+
+static inline int side_of(rings* g, double2 a, double2 b, double2 c) {
+  COUNTED(++g->orientations;)
+  const int sign = orient_filtered(a, b, c, g->orient_bound);
+  if (sign != UNDECIDED) return sign;
+  ++g->undecided;
+  return orient_exact(a, b, c);
+}
+static inline int turns_left(rings* g, double2 a, double2 b, double2 c) { return side_of(g, a, b, c) > 0; }
+
+// Is d inside of the circle through a, b, c (counter-clockwise)?
+static inline int in_circle(rings* g, double2 a, double2 b, double2 c, double2 d) {
+  COUNTED(++g->circles;)
+  const int sign = circle_filtered(a, b, c, d, g->circle_bound);
+  if (sign == 1 || sign == -1) return sign > 0;
+  g->undecided += sign == UNDECIDED;
+  return RINGS_CIRCLE(a, b, c, d, g->circle_bound) > 0;
+}
+
+static inline void put_edge(rings* g, int e, int to, int next, int previous) {
+  const ring_edge edge = {to, next, previous};
+  g->edges[e] = edge;
+}
+
+static inline int make_edge(rings* g, int from, int to) {
+  int e = g->free_first;
+  if (e == NO_EDGE) {
+    e = g->unused;
+    g->unused += 2;
+  } else {
+    g->free_first = g->edges[e].next;
+  }
+  put_edge(g, e, to, e, e);
+  put_edge(g, e ^ 1, from, e ^ 1, e ^ 1);
+  return e;
+}
+
+static inline void free_edge(rings* g, int e) {
+  g->edges[e].to = g->edges[e ^ 1].to = NO_VERTEX;
+  g->edges[e].next = g->free_first;
+  if (g->free_first == NO_EDGE) g->free_last = e;
+  g->free_first = e;
+}
+
+static inline int2 free_list(const rings* g) { return (int2)(g->free_first, g->free_last); }
+
+// The free edges of two parts that are to be merged.
+static inline void join_free_lists(rings* g, int2 low, int2 high) {
+  g->free_first = low.x == NO_EDGE ? high.x : low.x;
+  g->free_last = high.x == NO_EDGE ? low.y : high.y;
+  if (low.x != NO_EDGE && high.x != NO_EDGE) g->edges[low.y].next = high.x;
+}
+
+// Lists those from the first unused one to end - 1.
+static inline void free_unused(rings* g, int end) {
+  for (int e = g->unused; e < end; e += 2) {
+    put_edge(g, e, NO_VERTEX, e, e);
+    put_edge(g, e + 1, NO_VERTEX, e, e);
+    free_edge(g, e);
+  }
+}
+
+// Puts edge e, alone so far, into the ring of f.
+static inline void insert_after(rings* g, int e, int f) {
+  const int next = g->edges[f].next;
+  g->edges[e].previous = f;
+  g->edges[e].next = next;
+  g->edges[f].next = e;
+  g->edges[next].previous = e;
+}
+static inline void insert_before(rings* g, int e, int f) { insert_after(g, e, g->edges[f].previous); }
+
+// Takes edge e out of the ring of its origin, in which there are others.
+static inline void take_out(rings* g, int e, int origin) {
+  const int next = g->edges[e].next, previous = g->edges[e].previous;
+  g->edges[previous].next = next;
+  g->edges[next].previous = previous;
+  if (g->vertex_edge[origin] == e) g->vertex_edge[origin] = next;
+}
+
+static inline void remove_edge(rings* g, int e) {
+  const int to = g->edges[e].to, from = g->edges[e ^ 1].to;
+  take_out(g, e, from);
+  take_out(g, e ^ 1, to);
+  free_edge(g, e & ~1);
+}
+
+// Vertices v and v + 1.
+static inline void make_pair(rings* g, int v) {
+  const int e = make_edge(g, v, v + 1);
+  g->vertex_edge[v] = e;
+  g->vertex_edge[v + 1] = e ^ 1;
+}
+
+// Vertices v to v + 2, in the order of axis 0.
+static inline void make_three(rings* g, int v) {
+  const double2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2];
+  const int side = side_of(g, a, b, c);
+  const int e = g->unused;
+  const int third = side != 0;
+  g->unused += 4 + 2 * third;
+  put_edge(g, e, v + 1, third ? e + 5 : e, third ? e + 5 : e);
+  put_edge(g, e + 1, v, e + 2, e + 2);
+  put_edge(g, e + 2, v + 2, e + 1, e + 1);
+  put_edge(g, e + 3, v + 1, third ? e + 4 : e + 3, third ? e + 4 : e + 3);
+  if (third) {
+    put_edge(g, e + 4, v, e + 3, e + 3);
+    put_edge(g, e + 5, v + 2, e, e);
+  }
+  g->vertex_edge[v] = side < 0 ? e + 5 : e;
+  g->vertex_edge[v + 1] = side < 0 ? e + 1 : e + 2;
+  g->vertex_edge[v + 2] = side > 0 ? e + 4 : e + 3;
+}
+
+// A convex quadrilateral, counter-clockwise, with the diagonal from q.x to q.z.
+static inline void make_quadrilateral(rings* g, int4 q) {
+  const int e = g->unused;
+  g->unused += 10;
+  put_edge(g, e, q.y, e + 8, e + 7);
+  put_edge(g, e + 1, q.x, e + 2, e + 2);
+  put_edge(g, e + 2, q.z, e + 1, e + 1);
+  put_edge(g, e + 3, q.y, e + 4, e + 9);
+  put_edge(g, e + 4, q.w, e + 9, e + 3);
+  put_edge(g, e + 5, q.z, e + 6, e + 6);
+  put_edge(g, e + 6, q.x, e + 5, e + 5);
+  put_edge(g, e + 7, q.w, e, e + 8);
+  put_edge(g, e + 8, q.z, e + 7, e);
+  put_edge(g, e + 9, q.x, e + 3, e + 4);
+  g->vertex_edge[q.x] = e;
+  g->vertex_edge[q.y] = e + 2;
+  g->vertex_edge[q.z] = e + 4;
+  g->vertex_edge[q.w] = e + 6;
+}
+
+// A triangle, counter-clockwise, joined to a vertex inside, q.w.
+static inline void make_star(rings* g, int4 q) {
+  const int e = g->unused;
+  g->unused += 12;
+  put_edge(g, e, q.y, e + 6, e + 5);
+  put_edge(g, e + 1, q.x, e + 2, e + 8);
+  put_edge(g, e + 2, q.z, e + 8, e + 1);
+  put_edge(g, e + 3, q.y, e + 4, e + 10);
+  put_edge(g, e + 4, q.x, e + 10, e + 3);
+  put_edge(g, e + 5, q.z, e, e + 6);
+  put_edge(g, e + 6, q.w, e + 5, e);
+  put_edge(g, e + 7, q.x, e + 9, e + 11);
+  put_edge(g, e + 8, q.w, e + 1, e + 2);
+  put_edge(g, e + 9, q.y, e + 11, e + 7);
+  put_edge(g, e + 10, q.w, e + 3, e + 4);
+  put_edge(g, e + 11, q.z, e + 7, e + 9);
+  g->vertex_edge[q.x] = e;
+  g->vertex_edge[q.y] = e + 2;
+  g->vertex_edge[q.z] = e + 4;
+  g->vertex_edge[q.w] = e + 7;
+}
+
+// An edge from the right triangulation to the left one that has both above it.
+static inline int lower_tangent(rings* g, int left, int right) {
+  global const ring_edge* edges = g->edges;
+  int left_edge = g->vertex_edge[left], right_edge = g->vertex_edge[right];
+  // The clockwise hull edge out of the left vertex; a vertex alone has none.
+  if (left_edge != NO_EDGE) left_edge = edges[left_edge].previous;
+  for (int moves = 1; moves;) {
+    const double2 l = g->points[left], r = g->points[right];
+    if (left_edge != NO_EDGE && turns_left(g, r, l, g->points[edges[left_edge].to])) {
+      left = edges[left_edge].to;
+      left_edge = edges[left_edge ^ 1].previous;
+    } else if (right_edge != NO_EDGE && turns_left(g, l, g->points[edges[right_edge].to], r)) {
+      right = edges[right_edge].to;
+      right_edge = edges[right_edge ^ 1].next;
+    } else {
+      moves = 0;
+    }
+  }
+  const int base = make_edge(g, right, left);
+  if (right_edge != NO_EDGE) insert_before(g, base, right_edge);
+  if (left_edge != NO_EDGE) insert_after(g, base ^ 1, left_edge);
+  g->vertex_edge[left] = base ^ 1;
+  return base;
+}
+
+// Merges two triangulations that a cut separates, named as if it were vertical. left: the left one's last vertex along
+// the axis; right: the right one's first.
+static inline void merge_triangulations(rings* g, int left, int right) {
+  global const ring_edge* edges = g->edges;
+  int base = lower_tangent(g, left, right);
+  left = edges[base].to;
+  right = edges[base ^ 1].to;
+  double2 left_point = g->points[left], right_point = g->points[right];
+  for (int rises = 1; rises;) {
+    // Either side's candidate: the next edge that rises above the base, but for those that its circle rules out.
+    int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
+    double2 left_apex = g->points[edges[left_edge].to], right_apex = g->points[edges[right_edge].to];
+    const int left_rises = turns_left(g, left_apex, left_point, right_point);
+    const int right_rises = turns_left(g, right_apex, left_point, right_point);
+    rises = left_rises || right_rises;
+    if (!rises) break;
+    if (left_rises) {
+      for (int then = edges[left_edge].next; then != (base ^ 1); then = edges[left_edge].next) {
+        const double2 beyond = g->points[edges[then].to];
+        if (!in_circle(g, left_point, right_point, left_apex, beyond)) break;
+        remove_edge(g, left_edge);
+        left_edge = then;
+        left_apex = beyond;
+      }
+    }
+    if (right_rises) {
+      for (int then = edges[right_edge].previous; then != base; then = edges[right_edge].previous) {
+        const double2 beyond = g->points[edges[then].to];
+        if (!in_circle(g, left_point, right_point, right_apex, beyond)) break;
+        remove_edge(g, right_edge);
+        right_edge = then;
+        right_apex = beyond;
+      }
+    }
+    if (!left_rises || (right_rises && in_circle(g, left_point, right_point, left_apex, right_apex))) {
+      right = edges[right_edge].to;
+      right_point = right_apex;
+      const int crossing = make_edge(g, right, left);
+      insert_before(g, crossing, right_edge ^ 1);
+      insert_after(g, crossing ^ 1, base ^ 1);
+      base = crossing;
+    } else {
+      left = edges[left_edge].to;
+      left_point = left_apex;
+      const int crossing = make_edge(g, right, left);
+      insert_before(g, crossing, base);
+      insert_after(g, crossing ^ 1, left_edge ^ 1);
+      base = crossing;
+    }
+  }
+  g->vertex_edge[right] = base;
+}
+
+// Four vertices from v on, in the order of axis 0.
+static inline void make_four(rings* g, int v) {
+  const double2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2], d = g->points[v + 3];
+  // Sides of the line from a to d, on which b and c are: 1 is below.
+  const int b_below = side_of(g, a, b, d), c_below = side_of(g, a, c, d);
+  int straight = !b_below || !c_below;
+  int4 q = (int4)(v, v + 1, v + 3, v + 2);
+  int star = 0;
+  if (!straight && b_below != c_below) {
+    if (b_below < 0) q = (int4)(v, v + 2, v + 3, v + 1);
+  } else if (!straight) {
+    const int at_b = side_of(g, a, b, c), at_c = side_of(g, b, c, d);
+    straight = !at_b || !at_c;
+    if (at_b == b_below && at_c == b_below) {
+      q = b_below > 0 ? (int4)(v, v + 1, v + 2, v + 3) : (int4)(v, v + 3, v + 2, v + 1);
+    } else {
+      star = 1;
+      const int inside = at_b != b_below ? v + 1 : v + 2;
+      const int corner = at_b != b_below ? v + 2 : v + 1;
+      q = b_below > 0 ? (int4)(v, corner, v + 3, inside) : (int4)(v, v + 3, corner, inside);
+    }
+  }
+  if (straight) {
+    make_pair(g, v);
+    make_pair(g, v + 2);
+    merge_triangulations(g, v + 1, v + 2);
+  } else if (star) {
+    make_star(g, q);
+  } else {
+    if (in_circle(g, g->points[q.x], g->points[q.y], g->points[q.z], g->points[q.w])) q = q.yzwx;
+    make_quadrilateral(g, q);
+  }
+}
+
+// One to four vertices from v on, in the order of axis 0.
+static inline ends make_leaf(rings* g, int v, int size) {
+  if (size == 1) g->vertex_edge[v] = NO_EDGE;
+  if (size == 2) make_pair(g, v);
+  if (size == 3) make_three(g, v);
+  if (size == 4) make_four(g, v);
+  int first = v, last = v;
+  for (int w = v + 1; w < v + size; ++w) {
+    if (precedes(g->points[w], g->points[first], 1)) first = w;
+    if (precedes(g->points[last], g->points[w], 1)) last = w;
+  }
+  return (ends)(v, v + size - 1, first, last);
+}
+
+#endif

@@ -1,0 +1,223 @@
+#include <algorithm>
+
+#include "host/vector_operations.hpp"
+#include "hybrid/cut_tree.hpp"
+#include "hybrid/stages.hpp"
+
+namespace flaunay::hybrid {
+namespace {
+
+// As blocks.cl has it.
+struct Chunk {
+  cl_int first, last, depth, nodes, row, counts, number, chunks;
+};
+
+// Where a block begins: behind `first`, as many points as counts [set_count, count) say; count is -1 if none.
+struct BlockPlace {
+  cl_int first, count;
+};
+
+// What the host decides before points move.
+struct Plan {
+  std::vector<int> depths;  // by set
+  std::vector<CutNode> nodes;
+  std::vector<Chunk> chunks;
+  std::vector<cl_int> chunk_first;  // by chunk: the first point of its set
+  std::vector<BlockPlace> places;   // by block
+  std::vector<cl_int> set_counts;   // by block: its set's first count
+  std::size_t cursors = 0;
+  std::size_t counts = 0;
+};
+
+int depth_for(std::size_t n, std::size_t block_points) {
+  int depth = 0;
+  while (n > block_points << depth) ++depth;
+  return depth;
+}
+
+Scaling inspect(Workspace& work, const double* coordinates, std::size_t n, const Buffer<cl_double>& input) {
+  host::Runtime& runtime = work.runtime;
+  Magnitudes magnitudes;
+  const auto device_magnitudes = work.scratch().allocate<cl_int>(3);
+  runtime.write(device_magnitudes, 0, 3, &magnitudes.largest);
+  runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), input, device_magnitudes);
+  runtime.read(device_magnitudes, 0, 3, &magnitudes.largest);
+  return scaling_for(coordinates, n, magnitudes);
+}
+
+// The trees of all sets that are larger than a block.
+std::vector<CutTree> cut_trees(Workspace& work, const std::vector<std::size_t>& offsets,
+                               const std::vector<int>& depths, const Buffer<cl_double>& input) {
+  std::vector<cl_int> indices;
+  for (std::size_t s = 0; s < depths.size(); ++s) {
+    if (depths[s] == 0) continue;
+    for (const cl_int i : sample_indices(offsets[s + 1] - offsets[s], depths[s])) {
+      indices.push_back(static_cast<cl_int>(offsets[s]) + i);
+    }
+  }
+  std::vector<CutTree> trees(depths.size());
+  if (indices.empty()) return trees;
+  host::Runtime& runtime = work.runtime;
+  Arena::Scope scope(work.scratch());
+  const auto device_indices = work.scratch().allocate<cl_int>(indices.size());
+  const auto device_samples = work.scratch().allocate<cl_double2>(indices.size());
+  runtime.write(device_indices, 0, indices.size(), indices.data());
+  runtime.map("blocks", "gather_samples", indices.size(), device_indices, input, device_samples);
+  std::vector<cl_double2> all(indices.size());
+  runtime.read(device_samples, 0, all.size(), all.data());
+  auto first = all.begin();
+  for (std::size_t s = 0; s < depths.size(); ++s) {
+    if (depths[s] == 0) continue;
+    std::vector<cl_double2> samples(first, first + static_cast<std::ptrdiff_t>(samples_for(depths[s])));
+    first += static_cast<std::ptrdiff_t>(samples.size());
+    trees[s] = cut_tree(samples, depths[s]);
+  }
+  return trees;
+}
+
+void add_merges(const CutTree& tree, std::size_t first_block, std::vector<std::vector<Merge>>& levels) {
+  if (levels.size() < static_cast<std::size_t>(tree.depth)) levels.resize(tree.depth);
+  for (int level = 0; level < tree.depth; ++level) {
+    const int below = tree.depth - level;
+    for (std::size_t j = 0; j < std::size_t{1} << level; ++j) {
+      const auto low = static_cast<cl_int>(first_block + (j << below));
+      levels[level].push_back(
+          {low, low + (1 << (below - 1)), tree.nodes[(std::size_t{1} << level) + j].axis(), 0});
+    }
+  }
+}
+
+// Pieces of a set with a tree, each counted on its own.
+void add_chunks(std::size_t first, std::size_t last, const CutTree& tree, std::size_t nodes, std::size_t size,
+                Plan& plan) {
+  const std::size_t blocks = std::size_t{1} << tree.depth;
+  // No more counts than points.
+  size = std::max(size, blocks);
+  const std::size_t chunks = (last - first + size - 1) / size;
+  for (std::size_t k = 0; k < chunks; ++k) {
+    const std::size_t begin = first + k * size;
+    plan.chunks.push_back({static_cast<cl_int>(begin), static_cast<cl_int>(std::min(last, begin + size)),
+                           tree.depth, static_cast<cl_int>(nodes), static_cast<cl_int>(plan.cursors),
+                           static_cast<cl_int>(plan.counts), static_cast<cl_int>(k),
+                           static_cast<cl_int>(chunks)});
+    plan.chunk_first.push_back(static_cast<cl_int>(first));
+    plan.cursors += blocks;
+  }
+  for (std::size_t b = 0; b < blocks; ++b) {
+    plan.places.push_back({static_cast<cl_int>(first), static_cast<cl_int>(plan.counts + b * chunks)});
+    plan.set_counts.push_back(static_cast<cl_int>(plan.counts));
+  }
+  plan.counts += blocks * chunks;
+}
+
+// A set that is one block; neighbouring ones share chunks.
+void add_block(std::size_t first, std::size_t last, std::size_t size, Plan& plan) {
+  plan.places.push_back({static_cast<cl_int>(first), -1});
+  plan.set_counts.push_back(0);
+  if (first == last) return;
+  if (!plan.chunks.empty() && plan.chunks.back().depth == 0 &&
+      last - static_cast<std::size_t>(plan.chunks.back().first) <= size) {
+    plan.chunks.back().last = static_cast<cl_int>(last);
+    return;
+  }
+  plan.chunks.push_back({static_cast<cl_int>(first), static_cast<cl_int>(last), 0, 0, 0, 0, 0, 0});
+  plan.chunk_first.push_back(static_cast<cl_int>(first));
+}
+
+Plan make_plan(Workspace& work, const std::vector<std::size_t>& offsets, const Buffer<cl_double>& input,
+               Blocks& blocks) {
+  const host::Tuning& tuning = work.runtime.tuning();
+  Plan plan;
+  for (std::size_t s = 0; s < blocks.sets; ++s) {
+    plan.depths.push_back(depth_for(offsets[s + 1] - offsets[s], tuning.block_points));
+  }
+  const std::vector<CutTree> trees = cut_trees(work, offsets, plan.depths, input);
+  const std::size_t chunk = tuning.chunk(blocks.points);
+  std::vector<std::vector<Merge>> levels;
+  blocks.set_blocks.push_back(0);
+  for (std::size_t s = 0; s < blocks.sets; ++s) {
+    if (plan.depths[s] == 0) {
+      add_block(offsets[s], offsets[s + 1], chunk, plan);
+    } else {
+      const std::size_t nodes = plan.nodes.size();
+      plan.nodes.insert(plan.nodes.end(), trees[s].nodes.begin(), trees[s].nodes.end());
+      add_merges(trees[s], plan.places.size(), levels);
+      add_chunks(offsets[s], offsets[s + 1], trees[s], nodes, chunk, plan);
+    }
+    blocks.set_blocks.push_back(static_cast<cl_int>(plan.places.size()));
+  }
+  blocks.count = plan.places.size();
+  for (auto level = levels.rbegin(); level != levels.rend(); ++level) {
+    blocks.merges.insert(blocks.merges.end(), level->begin(), level->end());
+    blocks.level_ends.push_back(blocks.merges.size());
+  }
+  return plan;
+}
+
+// The values must stay until the next wait.
+template <typename T>
+Buffer<T> upload(Workspace& work, Arena& arena, const std::vector<T>& values) {
+  const auto buffer = arena.allocate<T>(values.size());
+  work.runtime.write_later(buffer, 0, values.size(), values.data());
+  return buffer;
+}
+
+void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, const Buffer<cl_double>& input,
+                    const Buffer<cl_int>& representatives, Blocks& blocks) {
+  host::Runtime& runtime = work.runtime;
+  Arena& scratch = work.scratch();
+  Arena::Scope scope(scratch);
+  const auto chunks = upload(work, scratch, plan.chunks);
+  const auto chunk_first = upload(work, scratch, plan.chunk_first);
+  const bool has_trees = plan.counts > 0;
+  const auto block_of_point = scratch.allocate<cl_int>(has_trees ? blocks.points : 0);
+  const auto cursors = scratch.allocate<cl_int>(plan.cursors);
+  const auto counts = scratch.allocate<cl_uint>(plan.counts + 1);
+  const std::size_t group = runtime.tuning().chunk_group;
+  const auto chunk_count = static_cast<cl_int>(plan.chunks.size());
+  if (has_trees) {
+    const auto nodes = upload(work, scratch, plan.nodes);
+    runtime.launch("blocks", "count_blocks", plan.chunks.size(), group, chunk_count, chunks, input, nodes,
+                   block_of_point, cursors, counts);
+    host::exclusive_scan(runtime, counts, plan.counts, counts);
+  }
+  const auto [s0, s1, s2] = scaling.powers();
+  runtime.launch("blocks", "move_points", plan.chunks.size(), group, chunk_count, chunks, chunk_first, input,
+                 s0, s1, s2, block_of_point, counts, cursors, blocks.vertices, blocks.source,
+                 representatives);
+  blocks.offsets.resize(blocks.count + 1);
+  if (has_trees) {
+    const auto places = upload(work, scratch, plan.places);
+    const auto set_counts = upload(work, scratch, plan.set_counts);
+    runtime.map("blocks", "block_offsets", blocks.count, places, set_counts, counts, blocks.device_offsets);
+    runtime.read(blocks.device_offsets, 0, blocks.count, blocks.offsets.data());
+  } else {
+    for (std::size_t b = 0; b < blocks.count; ++b) blocks.offsets[b] = plan.places[b].first;
+  }
+  blocks.offsets[blocks.count] = static_cast<cl_int>(blocks.points);
+  runtime.write(blocks.device_offsets, 0, blocks.count + 1, blocks.offsets.data());
+}
+
+}  // namespace
+
+Blocks make_blocks(Workspace& work, const double* coordinates, const std::vector<std::size_t>& offsets,
+                   const Buffer<cl_int>& representatives) {
+  Blocks blocks;
+  blocks.sets = offsets.size() - 1;
+  blocks.points = offsets.back();
+  Arena::Scope scope(work.scratch());
+  const auto input = work.runtime.view(coordinates, 2 * blocks.points);
+  const Scaling scaling = inspect(work, coordinates, blocks.points, input);
+  work.bounds = scaling.bounds;
+  const Plan plan = make_plan(work, offsets, input, blocks);
+  const host::Runtime::Settled settled(work.runtime);
+  blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
+  blocks.source = work.persistent.allocate<cl_int>(blocks.points);
+  blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
+  blocks.device_set_blocks = upload(work, work.persistent, blocks.set_blocks);
+  blocks.device_merges = upload(work, work.persistent, blocks.merges);
+  move_to_blocks(work, plan, scaling, input, representatives, blocks);
+  return blocks;
+}
+
+}  // namespace flaunay::hybrid
