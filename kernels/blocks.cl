@@ -1,10 +1,10 @@
 // Points to blocks: each set that is larger than a block is cut by a tree, whose leaves are its blocks.
 //
-// gather_samples fetches the points that the host makes the trees from. copy_points checks nothing and scales; of chunks
-// of sets that are one block each it brings the points to their places. Other chunks lie in one set: count_blocks finds
-// each point's block and counts them, a row of `cursors` a chunk; the counts, block by block and chunk by chunk, are
-// scanned; move_points brings points, scaled, and their indices to their blocks, in the order of the input. All are one
-// pass over the points. block_offsets tells where blocks begin.
+// gather_samples fetches the points that the host makes the trees from. Then all is done in chunks of points, a work-item
+// each. A chunk lies in one set with a tree, or in sets that are one block each. Of the former, count_blocks finds each
+// point's block and counts, in a row of `cursors` a chunk; the counts, block by block and chunk by chunk, are scanned.
+// move_points scales all points and brings them and their indices to their blocks, in the order of the input.
+// block_offsets tells where blocks begin. Two passes over the points, one where there is no tree.
 
 #include "shared/coordinates.h"
 

@@ -29,6 +29,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/hybrid_twins.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/same.hpp"
 
 namespace flaunay::hybrid {
 namespace {
@@ -43,6 +44,7 @@ using testing::HostRings;
 using testing::make_fixture;
 using testing::MeshTwin;
 using testing::RingCheck;
+using testing::same;
 using testing::TreeTwin;
 
 using Offsets = std::vector<std::size_t>;
@@ -132,32 +134,6 @@ class Call {
  public:
   Workspace work;
 };
-
-bool equal_elements(const cl_double2& a, const cl_double2& b) {
-  return a.s[0] == b.s[0] && a.s[1] == b.s[1] && std::signbit(a.s[0]) == std::signbit(b.s[0]) &&
-         std::signbit(a.s[1]) == std::signbit(b.s[1]);
-}
-bool equal_elements(const cl_uint2& a, const cl_uint2& b) { return a.s[0] == b.s[0] && a.s[1] == b.s[1]; }
-template <typename T>
-bool equal_elements(const T& a, const T& b) {
-  return a == b;
-}
-
-/// One line where whole vectors would fill the screen.
-template <typename T>
-::testing::AssertionResult same(const std::vector<T>& found, const std::vector<T>& expected) {
-  if (found.size() != expected.size()) {
-    return ::testing::AssertionFailure() << found.size() << " elements instead of " << expected.size();
-  }
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!equal_elements(found[i], expected[i])) {
-      auto result = ::testing::AssertionFailure() << "element " << i << " of " << found.size();
-      if constexpr (std::is_arithmetic_v<T>) result << " is " << +found[i] << " instead of " << +expected[i];
-      return result;
-    }
-  }
-  return ::testing::AssertionSuccess();
-}
 
 // -----------------------------------------------------------------------------------------------------------
 // Input

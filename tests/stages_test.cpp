@@ -27,6 +27,7 @@
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/same.hpp"
 #include "tests/support/stage_twins.hpp"
 
 namespace flaunay::flattened {
@@ -44,6 +45,7 @@ using testing::make_fixture;
 using testing::MergeCounts;
 using testing::Region;
 using testing::Regions;
+using testing::same;
 using testing::TriangleSet;
 
 constexpr bool kSmall[] = {false, true};
@@ -132,31 +134,6 @@ class Call {
  public:
   Workspace work;
 };
-
-bool equal_elements(const cl_double2& a, const cl_double2& b) {
-  return a.s[0] == b.s[0] && a.s[1] == b.s[1] && std::signbit(a.s[0]) == std::signbit(b.s[0]) &&
-         std::signbit(a.s[1]) == std::signbit(b.s[1]);
-}
-template <typename T>
-bool equal_elements(const T& a, const T& b) {
-  return a == b;
-}
-
-/// One line where whole vectors would fill the screen.
-template <typename T>
-::testing::AssertionResult same(const std::vector<T>& found, const std::vector<T>& expected) {
-  if (found.size() != expected.size()) {
-    return ::testing::AssertionFailure() << found.size() << " elements instead of " << expected.size();
-  }
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!equal_elements(found[i], expected[i])) {
-      auto result = ::testing::AssertionFailure() << "element " << i << " of " << found.size();
-      if constexpr (std::is_arithmetic_v<T>) result << " is " << +found[i] << " instead of " << +expected[i];
-      return result;
-    }
-  }
-  return ::testing::AssertionSuccess();
-}
 
 /// Corner triples and offsets as corners by region.
 std::vector<std::vector<Corner>> corners_by_region(const std::vector<cl_int>& ids,

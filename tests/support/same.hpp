@@ -1,0 +1,41 @@
+// Whether two arrays are the same, to the sign of each zero.
+#pragma once
+
+#include <CL/cl.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+namespace flaunay::testing {
+
+inline bool equal_elements(const cl_double2& a, const cl_double2& b) {
+  return a.s[0] == b.s[0] && a.s[1] == b.s[1] && std::signbit(a.s[0]) == std::signbit(b.s[0]) &&
+         std::signbit(a.s[1]) == std::signbit(b.s[1]);
+}
+inline bool equal_elements(const cl_uint2& a, const cl_uint2& b) {
+  return a.s[0] == b.s[0] && a.s[1] == b.s[1];
+}
+template <typename T>
+bool equal_elements(const T& a, const T& b) {
+  return a == b;
+}
+
+/// One line where whole vectors would fill the screen.
+template <typename T>
+::testing::AssertionResult same(const std::vector<T>& found, const std::vector<T>& expected) {
+  if (found.size() != expected.size()) {
+    return ::testing::AssertionFailure() << found.size() << " elements instead of " << expected.size();
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!equal_elements(found[i], expected[i])) {
+      auto result = ::testing::AssertionFailure() << "element " << i << " of " << found.size();
+      if constexpr (std::is_arithmetic_v<T>) result << " is " << +found[i] << " instead of " << +expected[i];
+      return result;
+    }
+  }
+  return ::testing::AssertionSuccess();
+}
+
+}  // namespace flaunay::testing
