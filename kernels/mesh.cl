@@ -45,8 +45,8 @@ kernel void mark_outside(int n, global const int* restrict set_blocks, global co
 // chance.
 static inline int owns(double2 v, int right, ring_edge e, global const ring_edge* edges,
                        global const double2* points) {
-  const double2 other = points[edges[max(e.next, 0)].to];
-  return !is_outside(e.next) & (precedes(v, other, 0) != right);
+  const int other = is_outside(e.next) ? e.to : edges[e.next].to;
+  return !is_outside(e.next) & (precedes(v, points[other], 0) != right);
 }
 
 // Writes the triangle left of edge e, which belongs to the edge's origin v; first_row: of v's rows, closed by the next
