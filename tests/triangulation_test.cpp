@@ -637,7 +637,8 @@ TEST_P(EveryTuning, SameInputSameBytes) {
     for (const std::size_t n : {3, 10, 100, 1500}) {
       SCOPED_TRACE(fixture.name + ", n = " + std::to_string(n));
       const Coordinates points = fixture.make(n, 11);
-      EXPECT_TRUE(same_bytes(tuned.triangulate(points.data(), size_of(points), defaults()), triangulate(points)));
+      EXPECT_TRUE(
+          same_bytes(tuned.triangulate(points.data(), size_of(points), defaults()), triangulate(points)));
     }
   }
   const Coordinates many = io::generate("kuzmin", 30000, 1).coordinates;
@@ -1108,6 +1109,31 @@ TEST(Statistics, DeviceMemory) {
     EXPECT_GT(result.statistics.device_bytes_peak, 0U) << name;
     EXPECT_LE(result.statistics.device_bytes_peak, most * 100000U) << name;
   }
+}
+
+/// The same call again takes no more memory, where kernels work in place and where everything is copied.
+TEST(Statistics, DeviceMemoryStaysWhatItWas) {
+  const Coordinates points = io::generate("uniform", 50000, 3).coordinates;
+  for (const char* tuning : {"cpu", "gpu"}) {
+    Triangulator tuned = make_tuned(tuning);
+    const std::size_t bytes =
+        tuned.triangulate(points.data(), 50000, defaults()).statistics.device_bytes_peak;
+    for (int again = 0; again < 30; ++again) {
+      ASSERT_EQ(tuned.triangulate(points.data(), 50000, defaults()).statistics.device_bytes_peak, bytes)
+          << tuning << ", call " << again;
+    }
+  }
+}
+
+/// One large block, of points that are all the same, does not make the scratch of thousands of work-items
+/// large.
+TEST(Statistics, DeviceMemoryWithOneLargeBlock) {
+  Sets sets;
+  for (int s = 0; s < 3000; ++s) sets.add({0.5, static_cast<double>(s % 3)});
+  sets.add(Coordinates(2 * 8192, 0.5));
+  Triangulator tuned = make_tuned("gpu");
+  const Triangulation result = tuned.triangulate(sets.points.data(), sets.offsets, defaults());
+  EXPECT_LE(result.statistics.device_bytes_peak, std::size_t{32} << 20);
 }
 
 }  // namespace

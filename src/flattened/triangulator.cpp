@@ -318,7 +318,7 @@ void Triangulator::Implementation::hybrid(const double* coordinates, const std::
   const std::size_t n = offsets.back();
   recursive::Phases phases(options);
   begin_accounts(options);
-  Arena::Scope scope(persistent);
+  Arena::Scope scope(persistent), scratch_scope(runtime.arena());
   persistent.reserve(n * kHybridBytesPerPoint);
   hybrid::Workspace work{runtime, persistent};
   result.statistics.points = n;

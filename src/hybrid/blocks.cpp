@@ -207,10 +207,11 @@ Blocks make_blocks(Workspace& work, const double* coordinates, const std::vector
   blocks.points = offsets.back();
   Arena::Scope scope(work.scratch());
   const auto input = work.runtime.view(coordinates, 2 * blocks.points);
+  Plan plan;
+  const host::Runtime::Settled settled(work.runtime);
   const Scaling scaling = inspect(work, coordinates, blocks.points, input);
   work.bounds = scaling.bounds;
-  const Plan plan = make_plan(work, offsets, input, blocks);
-  const host::Runtime::Settled settled(work.runtime);
+  plan = make_plan(work, offsets, input, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);

@@ -8,6 +8,8 @@ namespace {
 // Blocks so many times larger than they should be are left to one work-item, with scratch of its own: points
 // that all are the same cannot be cut.
 constexpr std::size_t kLargeBlocks = 4;
+// Work-items have scratch for so many times the points at most, together, whatever the sizes of blocks.
+constexpr std::size_t kScratchPerPoint = 2;
 
 // Solves the blocks of more than `larger` points and at most `capacity`.
 void solve(Workspace& work, const Blocks& blocks, std::size_t workers, std::size_t capacity,
@@ -50,8 +52,9 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
   }
   const host::Tuning& tuning = runtime.tuning();
   const std::size_t capacity = std::min(largest, kLargeBlocks * tuning.block_points);
-  solve(work, blocks, std::min(blocks.count, tuning.block_workers), capacity, -1, rings, free_lists,
-        representatives);
+  const std::size_t affordable = std::max<std::size_t>(1, kScratchPerPoint * blocks.points / capacity);
+  solve(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
+        free_lists, representatives);
   if (largest > capacity) {
     solve(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, free_lists,
           representatives);
