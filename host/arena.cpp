@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <utility>
 
 #include "host/error.hpp"
 
@@ -56,50 +57,66 @@ std::size_t Arena::held_bytes() const {
   return sum;
 }
 
-std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
-  if (bytes > largest_) {
-    throw DeviceError(
-        fmt::format("a buffer of {} bytes is more than the device allows in one piece ({} bytes); "
-                    "use fewer points, or another device (FLAUNAY_DEVICE)",
-                    bytes, largest_),
-        CL_INVALID_BUFFER_SIZE);
-  }
+std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, [[maybe_unused]] bool in_host_memory,
+                                                std::size_t bytes) {
 #ifdef __linux__
   // Kernels jump about in these blocks: with pages of 4 KiB the translation of addresses would cost more than
   // the loads.
-  if (in_host_memory_ && bytes >= kHugePage) {
+  if (in_host_memory && bytes >= kHugePage) {
     const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     if (void* pages = std::aligned_alloc(kHugePage, rounded)) {
       prefer_huge_pages(pages, rounded);
       cl_int code = CL_SUCCESS;
-      cl_mem memory =
-          clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
+      cl_mem memory = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
       // The pages go with the buffer, which lives on while work that uses it is enqueued.
       if (code == CL_SUCCESS) {
         code = clSetMemObjectDestructorCallback(
             memory, [](cl_mem, void* freed) { std::free(freed); }, pages);
-        if (code == CL_SUCCESS) {
-          ++block_allocations_;
-          return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
-        }
+        if (code == CL_SUCCESS) return own(memory);
         clReleaseMemObject(memory);
       }
       std::free(pages);
     }
   }
 #endif
-  std::shared_ptr<_cl_mem> memory = create_buffer(context_.get(), bytes);
+  return create_buffer(context, bytes);
+}
+
+void Arena::check_size(std::size_t bytes) const {
+  if (bytes <= largest_) return;
+  throw DeviceError(
+      fmt::format("a buffer of {} bytes is more than the device allows in one piece ({} bytes); "
+                  "use fewer points, or another device (FLAUNAY_DEVICE)",
+                  bytes, largest_),
+      CL_INVALID_BUFFER_SIZE);
+}
+
+std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
+  if (is_lent_) {
+    throw DeviceError(fmt::format("the memory that was lent lacks {} bytes", bytes), CL_INVALID_BUFFER_SIZE);
+  }
+  check_size(bytes);
+  std::shared_ptr<_cl_mem> memory = allocate_device_memory(context_.get(), in_host_memory_, bytes);
   ++block_allocations_;
   return memory;
 }
 
 void Arena::reserve(std::size_t bytes) {
-  if (separate_ || current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
+  if (separate_ || is_lent_ || current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
   bytes = std::min(std::max(bytes, kSmallestBlock), largest_);
-  blocks_.clear();
-  blocks_.resize(1);
+  blocks_.assign(1, {});
   blocks_[0].memory = allocate_block(bytes);
   blocks_[0].size = bytes;
+}
+
+void Arena::lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std::size_t bytes) {
+  if (is_lent_) blocks_ = std::move(own_blocks_);
+  is_lent_ = memory != nullptr;
+  if (!is_lent_) return;
+  own_blocks_ = std::exchange(blocks_, std::vector<Block>(1));
+  // Sub-buffers must begin at multiples of it.
+  const std::size_t begin = (offset + alignment_ - 1) / alignment_ * alignment_;
+  blocks_[0] = {memory, begin, offset + bytes < begin ? 0 : offset + bytes - begin, 0};
 }
 
 std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t size) {
@@ -109,7 +126,10 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
         CL_INVALID_BUFFER_SIZE);
   }
   const std::size_t bytes = count * size;
-  if (separate_) return create_buffer(context_.get(), std::max<std::size_t>(bytes, 1));
+  if (separate_ && !is_lent_) {
+    ++block_allocations_;
+    return create_buffer(context_.get(), std::max<std::size_t>(bytes, 1));
+  }
   // OpenCL has no empty buffers; an array of no elements still needs an address.
   const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
   while (blocks_[current_].used + rounded > blocks_[current_].size) {
@@ -128,7 +148,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
     ++current_;
   }
   Block& block = blocks_[current_];
-  cl_buffer_region region{block.used, rounded};
+  cl_buffer_region region{block.offset + block.used, rounded};
   cl_int code = CL_SUCCESS;
   cl_mem memory =
       clCreateSubBuffer(block.memory.get(), CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);

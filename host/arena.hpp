@@ -39,6 +39,10 @@ class Arena {
   /// the blocks hold less. Throws DeviceError if the device cannot give it.
   void reserve(std::size_t bytes);
 
+  /// From now on, `bytes` of that buffer from `offset` on take the place of the own blocks, and there are no
+  /// others: allocate throws DeviceError where they do not suffice. Null ends that. Nothing may be allocated.
+  void lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std::size_t bytes);
+
   /// From now on every allocation is an OpenCL buffer of its own and of its own size, so that a simulator
   /// sees every access beyond it. Slow.
   void separate_buffers() { separate_ = true; }
@@ -62,34 +66,43 @@ class Arena {
     std::size_t used_;
   };
 
+  /// Every array begins at a multiple of so many bytes.
+  std::size_t alignment() const { return alignment_; }
   /// Bytes in use at most since reset_peak, without gaps at the ends of blocks.
   std::size_t peak_bytes() const { return peak_; }
   /// Bytes of all blocks.
   std::size_t held_bytes() const;
-  /// Blocks made so far: no more of them for the same work done again.
+  /// Blocks, and separate buffers, made so far: no more blocks for the same work done again.
   std::size_t block_allocations() const { return block_allocations_; }
   void reset_peak() { peak_ = 0; }
 
  private:
   struct Block {
     std::shared_ptr<_cl_mem> memory;
+    std::size_t offset = 0;  // where it begins in that
     std::size_t size = 0;
     std::size_t used = 0;
   };
   std::shared_ptr<_cl_mem> allocate_bytes(std::size_t count, std::size_t size);
   std::shared_ptr<_cl_mem> allocate_block(std::size_t bytes);
+  void check_size(std::size_t bytes) const;
   void release(std::size_t block, std::size_t used);
 
   boost::compute::context context_;
   bool separate_ = false;
+  bool is_lent_ = false;
   bool in_host_memory_;
   std::size_t alignment_;
   std::size_t largest_;
   std::vector<Block> blocks_;
+  std::vector<Block> own_blocks_;  // while others are lent
   std::size_t current_ = 0;
   std::size_t peak_ = 0;
   std::size_t block_allocations_ = 0;
 };
+
+/// A buffer for kernels to read and write; a CPU's in huge pages where the system gives them.
+std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host_memory, std::size_t bytes);
 
 /// Asks the system for huge pages in [begin, begin + bytes), memory not yet touched.
 void prefer_huge_pages(void* begin, std::size_t bytes);

@@ -96,7 +96,8 @@ void check_call(cl_int code, const char* call, const std::string& kernel) {
   std::string message = fmt::format("{} ({}) from {}", error_name(code), code, call);
   if (!kernel.empty()) message += fmt::format(", kernel {}", kernel);
   if (const std::string advice = error_advice(code); !advice.empty()) message += "; " + advice;
-  throw DeviceError(message, code);
+  const std::string text = call;
+  throw DeviceError(message, code, text.substr(0, text.find('(')));
 }
 
 }  // namespace flaunay::host

@@ -11,12 +11,15 @@ namespace flaunay::host {
 /// An OpenCL call failed, or there is no usable device.
 class DeviceError : public std::runtime_error {
  public:
-  explicit DeviceError(const std::string& message, cl_int code = CL_SUCCESS)
-      : std::runtime_error(message), code_(code) {}
+  explicit DeviceError(const std::string& message, cl_int code = CL_SUCCESS, const std::string& call = {})
+      : std::runtime_error(message), code_(code), call_(call) {}
   cl_int code() const noexcept { return code_; }
+  /// The name of the OpenCL call; empty if none failed.
+  const std::string& call() const noexcept { return call_; }
 
  private:
   cl_int code_;
+  std::string call_;
 };
 
 /// "CL_OUT_OF_RESOURCES" for -5, and so on; "unknown OpenCL error -1234" otherwise.

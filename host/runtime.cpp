@@ -58,30 +58,62 @@ std::string kernel_source(const std::string& file) {
   return source;
 }
 
-Runtime::Runtime(const boost::compute::device& device)
+Runtime::Runtime(const boost::compute::device& device) : Runtime(boost::compute::context(device), device) {}
+
+Runtime::Runtime(const boost::compute::context& context, const boost::compute::device& device)
     : device_(device),
       tuning_(tuning_for(device)),
-      context_(device),
-      queue_(make_queue()),
+      context_(context),
+      own_queues_{make_queue(false), {}},
+      queue_(own_queues_[0]),
       arena_(context_, device) {
   if (tuning_.separate_buffers) arena_.separate_buffers();
 }
 
 Runtime::~Runtime() {
+  clFinish(queue_.get());
   for (const auto& [event, name] : events_) clReleaseEvent(event);
 }
 
 // In order. Time stamps are not free on every device, so there are none unless they are read.
-boost::compute::command_queue Runtime::make_queue() const {
-  return {context_, device_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0}};
+boost::compute::command_queue Runtime::make_queue(bool profiling) const {
+  return {context_, device_, profiling ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0}};
 }
 
-void Runtime::set_profiling(bool on) {
-  if (on == profiling_) return;
+void Runtime::use_queue(cl_command_queue wanted, bool profiling) {
+  if (wanted == nullptr || (wanted == own_queues_[0].get() && profiling)) {
+    if (profiling && own_queues_[1].get() == nullptr) own_queues_[1] = make_queue(true);
+    wanted = own_queues_[profiling].get();
+  }
   collect_times();
-  FLAUNAY_CL(clFinish(queue_.get()));
-  profiling_ = on;
-  queue_ = make_queue();
+  if (wanted != queue_.get()) {
+    const cl_event done = mark();
+    flush();
+    queue_ = boost::compute::command_queue(wanted);
+    const cl_int code = clEnqueueBarrierWithWaitList(queue_.get(), 1, &done, nullptr);
+    clReleaseEvent(done);
+    check_call(code, "clEnqueueBarrierWithWaitList");
+  }
+  profiling_ = profiling;
+  is_unordered_ = queue_.get_info<cl_command_queue_properties>(CL_QUEUE_PROPERTIES) &
+                  CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE;
+  keep_order();
+}
+
+void Runtime::wait_for(const std::vector<cl_event>& events) {
+  if (events.empty()) return;
+  FLAUNAY_CL(clEnqueueBarrierWithWaitList(queue_.get(), static_cast<cl_uint>(events.size()), events.data(),
+                                          nullptr));
+}
+
+cl_event Runtime::mark() {
+  cl_event event = nullptr;
+  FLAUNAY_CL(clEnqueueMarkerWithWaitList(queue_.get(), 0, nullptr, &event));
+  return event;
+}
+
+void Runtime::keep_order() {
+  if (is_unordered_) FLAUNAY_CL(clEnqueueBarrierWithWaitList(queue_.get(), 0, nullptr, nullptr));
 }
 
 void Runtime::set_tuning(const Tuning& tuning) {
@@ -115,7 +147,7 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
     clGetProgramBuildInfo(program.get(), id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
     throw DeviceError(fmt::format("{} ({}) from clBuildProgram of kernels/{}.cl; {}\n{}", error_name(code),
                                   code, file, error_advice(code), log.c_str()),
-                      code);
+                      code, "clBuildProgram");
   }
   build_seconds_ += now() - begin;
   return programs.emplace(file, std::move(program)).first->second;
@@ -163,17 +195,45 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
     group /= 2;
     kernel.largest_group = group;
   }
+  keep_order();
   if (profiling_) events_.emplace_back(event, &kernel.name);
   if (profiling_ && events_.size() >= 4096) collect_times();
 }
 
 void Runtime::enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait) {
   FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, wait, offset, bytes, to, 0, nullptr, nullptr));
+  bytes_to_host_ += bytes;
+  if (wait) {
+    ++waits_;
+    kept_.clear();
+  } else {
+    keep_order();
+  }
 }
 
 void Runtime::enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from,
                             cl_bool wait) {
   FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, wait, offset, bytes, from, 0, nullptr, nullptr));
+  bytes_to_device_ += bytes;
+  if (wait) {
+    ++waits_;
+    kept_.clear();
+  } else {
+    keep_order();
+  }
+}
+
+void Runtime::enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes, std::size_t bytes) {
+  ++launches_;
+  FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to, value, value_bytes, 0, bytes, 0, nullptr, nullptr));
+  keep_order();
+}
+
+void Runtime::enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
+                           std::size_t bytes) {
+  ++launches_;
+  FLAUNAY_CL(clEnqueueCopyBuffer(queue_.get(), from, to, from_offset, to_offset, bytes, 0, nullptr, nullptr));
+  keep_order();
 }
 
 std::shared_ptr<_cl_mem> Runtime::wrap(void* memory, std::size_t bytes, cl_mem_flags access) {
@@ -188,7 +248,9 @@ void Runtime::hand_over(cl_mem shared, std::size_t bytes) {
   void* mapped =
       clEnqueueMapBuffer(queue_.get(), shared, CL_FALSE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &code);
   check_call(code, "clEnqueueMapBuffer");
+  keep_order();
   FLAUNAY_CL(clEnqueueUnmapMemObject(queue_.get(), shared, mapped, 0, nullptr, nullptr));
+  keep_order();
 }
 
 void Runtime::flush() { FLAUNAY_CL(clFlush(queue_.get())); }
@@ -196,6 +258,7 @@ void Runtime::flush() { FLAUNAY_CL(clFlush(queue_.get())); }
 void Runtime::finish() {
   ++waits_;
   FLAUNAY_CL(clFinish(queue_.get()));
+  kept_.clear();
 }
 
 void Runtime::collect_times() {
@@ -225,6 +288,8 @@ void Runtime::reset_accounts() {
   times_.clear();
   launches_ = 0;
   waits_ = 0;
+  bytes_to_device_ = 0;
+  bytes_to_host_ = 0;
   build_seconds_ = 0;
   arena_.reset_peak();
 }

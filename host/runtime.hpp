@@ -28,6 +28,8 @@ struct KernelTime {
 class Runtime {
  public:
   explicit Runtime(const boost::compute::device& device);
+  /// In a context that the device belongs to.
+  Runtime(const boost::compute::context& context, const boost::compute::device& device);
   ~Runtime();
 
   const boost::compute::device& device() const { return device_; }
@@ -36,7 +38,19 @@ class Runtime {
   /// For tests of boundaries: results must not depend on it.
   void set_tuning(const Tuning& tuning);
   Arena& arena() { return arena_; }
+  const Arena& arena() const { return arena_; }
   cl_command_queue queue() const { return queue_.get(); }
+  cl_command_queue own_queue() const { return own_queues_[0].get(); }
+  /// From now on work goes to the caller's queue, which is retained, or with null to the runtime's own. Each
+  /// command begins when the one before has ended, also where the queue may reorder and across a change of
+  /// queues. profiling: whether kernels are timed, which the caller's queue must be made for.
+  void use_queue(cl_command_queue wanted, bool profiling);
+  /// The runtime's own queue, with or without.
+  void set_profiling(bool on) { use_queue(nullptr, on); }
+  /// What is enqueued from now on waits for the events.
+  void wait_for(const std::vector<cl_event>& events);
+  /// An event that is complete when all that was enqueued is; to be released.
+  cl_event mark();
 
   /// Launches a kernel with one work-item per element. file: "scan" for kernels/scan.cl; both names are
   /// literals, whose addresses kernels are found by. The kernel's first argument is the number of elements as
@@ -78,7 +92,6 @@ class Runtime {
   template <typename T>
   void read(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
-    ++waits_;
     enqueue_read(from.memory(), first * sizeof(T), count * sizeof(T), to, CL_TRUE);
   }
   template <typename T>
@@ -91,7 +104,6 @@ class Runtime {
   template <typename T>
   void write(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
-    ++waits_;
     enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_TRUE);
   }
   /// The same without waiting, for what is read together: `to` has the values after the next wait.
@@ -105,6 +117,13 @@ class Runtime {
   void write_later(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
     enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_FALSE);
+  }
+  /// The same, and the values are kept for as long as it takes.
+  template <typename T>
+  void write_kept(const Buffer<T>& to, std::vector<T> values) {
+    const auto kept = std::make_shared<std::vector<T>>(std::move(values));
+    write_later(to, 0, kept->size(), kept->data());
+    kept_.push_back(kept);
   }
   /// Host memory as kernels read it: in place on a device that works in host memory, else a copy, which comes
   /// from the arena. The memory must stay until the work is done.
@@ -137,25 +156,20 @@ class Runtime {
   }
   template <typename T>
   void fill(const Buffer<T>& to, std::size_t count, T value) {
-    if (count == 0) return;
-    ++launches_;
-    FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to.memory(), &value, sizeof(T), 0, count * sizeof(T), 0,
-                                   nullptr, nullptr));
+    if (count > 0) enqueue_fill(to.memory(), &value, sizeof(T), count * sizeof(T));
   }
   template <typename T>
   void copy(const Buffer<T>& from, std::size_t from_first, const Buffer<T>& to, std::size_t to_first,
             std::size_t count) {
     if (count == 0) return;
-    ++launches_;
-    FLAUNAY_CL(clEnqueueCopyBuffer(queue_.get(), from.memory(), to.memory(), from_first * sizeof(T),
-                                   to_first * sizeof(T), count * sizeof(T), 0, nullptr, nullptr));
+    enqueue_copy(from.memory(), from_first * sizeof(T), to.memory(), to_first * sizeof(T), count * sizeof(T));
   }
   void finish();
   /// Lets the device begin with what was enqueued.
   void flush();
 
-  /// Waits, if an exception ends its scope, for what was to be read or written later: the memory that is meant
-  /// must be declared before.
+  /// Waits, if an exception ends its scope, for what was to be read or written later: the memory that is
+  /// meant must be declared before.
   class Settled {
    public:
     explicit Settled(const Runtime& runtime) : runtime_(runtime), exceptions_(std::uncaught_exceptions()) {}
@@ -173,12 +187,12 @@ class Runtime {
   /// From now on kernels are built with FLAUNAY_COUNT, and those that count get these counters as their last
   /// argument; see kernels/shared/counting.h. An empty buffer ends that.
   void set_counters(const Buffer<cl_uint>& counters);
-  /// Waits if that changes something.
-  void set_profiling(bool on);
   /// Per kernel, since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();
   std::size_t launches() const { return launches_; }
   std::size_t waits() const { return waits_; }
+  std::size_t bytes_to_device() const { return bytes_to_device_; }
+  std::size_t bytes_to_host() const { return bytes_to_host_; }
   double build_seconds() const { return build_seconds_; }
   void reset_accounts();
 
@@ -200,7 +214,7 @@ class Runtime {
     FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(T), &value), kernel.name);
   }
 
-  boost::compute::command_queue make_queue() const;
+  boost::compute::command_queue make_queue(bool profiling) const;
   Kernel& find_kernel(const char* file, const char* name);
   const boost::compute::program& find_program(const std::string& file);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
@@ -208,13 +222,21 @@ class Runtime {
   std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access);
   void hand_over(cl_mem shared, std::size_t bytes);
   void enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, cl_bool wait);
+  void enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes, std::size_t bytes);
+  void enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
+                    std::size_t bytes);
+  /// After each command.
+  void keep_order();
   void collect_times();
 
   boost::compute::device device_;
   Tuning tuning_;
   boost::compute::context context_;
-  bool profiling_ = false;
+  boost::compute::command_queue own_queues_[2];  // the second times kernels; made when it is needed
   boost::compute::command_queue queue_;
+  bool profiling_ = false;
+  bool is_unordered_ = false;
+  std::vector<std::shared_ptr<void>> kept_;  // what is written later
   Arena arena_;
   // Two of each: kernels that count and kernels that do not.
   std::map<std::string, boost::compute::program> programs_[2];
@@ -225,6 +247,8 @@ class Runtime {
   std::map<std::string, KernelTime> times_;
   std::size_t launches_ = 0;
   std::size_t waits_ = 0;
+  std::size_t bytes_to_device_ = 0;
+  std::size_t bytes_to_host_ = 0;
   double build_seconds_ = 0;
 };
 

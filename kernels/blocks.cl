@@ -7,6 +7,7 @@
 // block_offsets tells where blocks begin. Two passes over the points, one where there is no tree.
 
 #include "shared/coordinates.h"
+#include "shared/cut_tree.h"
 
 kernel void gather_samples(int n, global const int* restrict indices, global const double* restrict input,
                            global double2* restrict samples) {
@@ -20,20 +21,6 @@ typedef struct {
   int first, last, depth, nodes, row, counts, number, chunks;
 } chunk_of_points;
 
-// A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
-// has all bits set; without branches, since each would be taken by chance.
-typedef struct {
-  ulong major, minor, turn;
-} cut_node;
-static inline int goes_high(ulong x, ulong y, cut_node cut) {
-  const ulong swapped = (x ^ y) & cut.turn;
-  const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;
-  return (major > cut.major) | ((major == cut.major) & (minor >= cut.minor));
-}
-
-// Points that go down a tree at the same time: each step waits for the one before.
-#define DESCENTS 16
-
 kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const double* restrict input,
                          global const cut_node* restrict nodes, global int* restrict block_of_point,
                          global int* restrict cursors, global uint* restrict counts) {
@@ -45,29 +32,15 @@ kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, g
     const int blocks = 1 << chunk.depth;
     for (int b = 0; b < blocks; ++b) cursor[b] = 0;
     for (int i = chunk.first; i < chunk.last; i += DESCENTS) {
-      ulong x[DESCENTS], y[DESCENTS];
-      int node[DESCENTS];
-      for (int k = 0; k < DESCENTS; ++k) {
-        const double2 p = vload2(min(i + k, chunk.last - 1), input);
-        x[k] = orderable(p.x);
-        y[k] = orderable(p.y);
-        node[k] = 1;
-      }
-      for (int d = 0; d < chunk.depth; ++d) {
-        for (int k = 0; k < DESCENTS; ++k) node[k] = 2 * node[k] + goes_high(x[k], y[k], tree[node[k]]);
-      }
+      int block[DESCENTS];
+      find_leaves(i, chunk.last, input, tree, chunk.depth, block);
       for (int k = 0; k < min(DESCENTS, chunk.last - i); ++k) {
-        block_of_point[i + k] = node[k] - blocks;
-        ++cursor[node[k] - blocks];
+        block_of_point[i + k] = block[k];
+        ++cursor[block[k]];
       }
     }
     for (int b = 0; b < blocks; ++b) counts[chunk.counts + b * chunk.chunks + chunk.number] = cursor[b];
   }
-}
-
-static inline double2 scaled_point(int i, global const double* input, double s0, double s1, double s2) {
-  const double2 p = vload2(i, input);
-  return (double2)(scaled(p.x, s0, s1, s2) + 0.0, scaled(p.y, s0, s1, s2) + 0.0);
 }
 
 kernel void move_points(int n, global const chunk_of_points* restrict chunks, global const int* restrict set_first,

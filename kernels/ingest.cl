@@ -1,6 +1,6 @@
 // From points as they come to points as the stages want them: checked, scaled, sorted, distinct, renumbered.
 //
-// inspect looks at every coordinate once; keys_* make the radix sort's keys; after the sort by y and then by x (and by
+// widen_points makes doubles of floats. inspect looks at every coordinate once; keys_* make the radix sort's keys; after the sort by y and then by x (and by
 // set), distinct_flags and distinct_write give each distinct point the id that is its rank in (set, x, y).
 // Each pass is over all points of all sets.
 
@@ -24,6 +24,12 @@ static inline int2 bit_range(double x) {
   }
   const int trailing = (int)popcount((mantissa & (~mantissa + 1)) - 1);
   return (int2)(unit + 63 - (int)clz(mantissa), unit + trailing);
+}
+
+// Points of single precision from `first` on.
+kernel void widen_points(int n, ulong first, global const float* restrict narrow, global double* restrict points) {
+  const int i = get_global_id(0);
+  if (i < n) vstore2(convert_double2(vload2(first + i, narrow)), i, points);
 }
 
 kernel void inspect(int n, int chunk, global const double* restrict input, global volatile int* restrict accounts) {

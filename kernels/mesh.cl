@@ -4,8 +4,8 @@
 // the one right above; on the lower hull it has the one above alone, on the upper hull the one below, and the ends of the
 // hull have none. So rows are counted without a look at the triangles: vertex_triangles, one pass over the vertices;
 // mark_outside, a work-item a set, which walks the hull, marks the edges whose left side is outside and takes their
-// vertices' rows away; a scan. write_triangles and write_neighbors are one pass over pairs of edges each. write_hulls
-// walks the hulls again.
+// vertices' rows away; a scan. write_triangles, write_neighbors and write_halfedges are one pass over pairs of edges
+// each. write_hulls walks the hulls again.
 
 #include "shared/rings.h"
 
@@ -129,6 +129,21 @@ kernel void write_neighbors(int n, global const ring_edge* restrict edges, globa
     const int right = is_outside(edges[2 * k + 1].next) ? -1 : corner_of_edge[2 * k + 1];
     if (left >= 0) neighbors[left] = right < 0 ? -1 : right / 3;
     if (right >= 0) neighbors[right] = left < 0 ? -1 : left / 3;
+  }
+}
+
+// The halfedge of a triangle that the corner is opposite of begins at the next corner.
+static inline int opposite_halfedge(int corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+
+// n pairs of edges.
+kernel void write_halfedges(int n, global const ring_edge* restrict edges, global const int* restrict corner_of_edge,
+                            global int* restrict halfedges) {
+  const int k = get_global_id(0);
+  if (k < n && edges[2 * k].to != NO_VERTEX) {
+    const int left = is_outside(edges[2 * k].next) ? -1 : opposite_halfedge(corner_of_edge[2 * k]);
+    const int right = is_outside(edges[2 * k + 1].next) ? -1 : opposite_halfedge(corner_of_edge[2 * k + 1]);
+    if (left >= 0) halfedges[left] = right;
+    if (right >= 0) halfedges[right] = left;
   }
 }
 

@@ -558,18 +558,46 @@ void check_rings(Call& call, const Coordinates& coordinates, const Offsets& offs
   for (std::size_t i = 0; i < n; ++i) met.duplicates += representatives[i] != static_cast<cl_int>(i);
 }
 
+// As callers do it.
+void run_mesh(Call& call, const Blocks& blocks, const Rings& rings, bool neighbors, Triangulation& result) {
+  Runtime& runtime = call.runtime;
+  host::Arena::Scope scope(runtime.arena());
+  MeshSizes sizes = count_mesh(call.work, blocks, rings);
+  const std::size_t rows = 3 * sizes.triangles();
+  result.triangles.assign(rows, -7);
+  result.neighbors.assign(neighbors ? rows : 0, -7);
+  result.halfedges.assign(neighbors ? rows : 0, -7);
+  result.hull.assign(sizes.hull_vertices(), -7);
+  MeshBuffers buffers;
+  buffers.triangles = runtime.output(result.triangles);
+  if (neighbors) buffers.neighbors = runtime.output(result.neighbors);
+  if (neighbors) buffers.halfedges = runtime.output(result.halfedges);
+  buffers.hull = runtime.output(result.hull);
+  write_mesh(call.work, blocks, rings, sizes, buffers);
+  runtime.fetch_later(buffers.triangles, result.triangles);
+  runtime.fetch_later(buffers.neighbors, result.neighbors);
+  runtime.fetch_later(buffers.halfedges, result.halfedges);
+  runtime.fetch_later(buffers.hull, result.hull);
+  runtime.finish();
+  result.triangle_offsets = sizes.triangle_offsets;
+  result.hull_offsets = sizes.hull_offsets;
+  result.statistics.duplicates = blocks.points - sizes.vertices;
+}
+
 void check_mesh(Call& call, const Blocks& blocks, const Rings& rings, bool neighbors, const HostRings& g,
                 Triangulation& result, Met& met) {
   SCOPED_TRACE(neighbors ? "mesh with neighbours" : "mesh without neighbours");
   const MeshTwin twin(g);
   call.runtime.write(rings.edges, 0, g.edges.size(), g.edges.data());
-  write_mesh(call.work, blocks, rings, neighbors, result);
+  run_mesh(call, blocks, rings, neighbors, result);
   EXPECT_TRUE(same(result.triangle_offsets, twin.triangle_offsets));
   EXPECT_TRUE(same(result.hull_offsets, twin.hull_offsets));
   EXPECT_TRUE(same(result.triangles, twin.triangles));
   EXPECT_TRUE(same(result.hull, twin.hull));
   EXPECT_TRUE(same(result.neighbors,
                    neighbors ? testing::reference_neighbors(twin.triangles) : std::vector<std::int32_t>()));
+  EXPECT_TRUE(same(result.halfedges,
+                   neighbors ? testing::reference_halfedges(twin.triangles) : std::vector<std::int32_t>()));
   EXPECT_EQ(result.statistics.duplicates, blocks.points - twin.vertices);
   // The rings stay as they are, but for what says that the outside is on an edge's left.
   const auto edges = call.read(rings.edges, g.edges.size());
@@ -591,7 +619,8 @@ Triangulation check_stages(Runtime& runtime, const Coordinates& coordinates, con
   // Not yet written, as the library's caller has it.
   result.representatives.assign(offsets.back(), -7);
   const auto representatives = runtime.output(result.representatives);
-  const Blocks blocks = make_blocks(call.work, coordinates.data(), offsets, representatives);
+  const Blocks blocks = make_blocks(call.work, call.runtime.view(coordinates.data(), coordinates.size()),
+                                    offsets, representatives);
   HostRings g;
   check_blocks(call, coordinates, offsets, blocks, representatives, g, met);
   if (::testing::Test::HasFatalFailure()) return result;
@@ -847,7 +876,8 @@ TEST(SmallStages, BadInputIsRefused) {
     std::vector<cl_int> representatives(coordinates.size() / 2);
     const auto output = runtime.output(representatives);
     try {
-      make_blocks(call.work, coordinates.data(), {0, coordinates.size() / 2}, output);
+      make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()),
+                  {0, coordinates.size() / 2}, output);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
       return std::string(error.what());
@@ -867,17 +897,18 @@ TEST(SmallStages, NumbersThatDoNotFitAreReported) {
   Triangulation result;
   result.representatives.resize(10);
   const auto representatives = runtime.output(result.representatives);
-  const Blocks blocks = make_blocks(call.work, coordinates.data(), {0, 10}, representatives);
+  const Blocks blocks =
+      make_blocks(call.work, runtime.view(coordinates.data(), 20), {0, 10}, representatives);
   Rings rings = divide(call.work, blocks, representatives);
   await_rings(call.work, blocks, rings);
   const auto edges = call.read(rings.edges, rings.edges.size());
-  write_mesh(call.work, blocks, rings, true, result);
+  run_mesh(call, blocks, rings, true, result);
   const cl_int right = rings.distinct[0];
   for (const cl_int wrong : {right - 1, right + 1}) {
     rings.distinct[0] = wrong;
     runtime.write(rings.edges, 0, edges.size(), edges.data());
     try {
-      write_mesh(call.work, blocks, rings, true, result);
+      run_mesh(call, blocks, rings, true, result);
       ADD_FAILURE() << "nothing was noticed";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::internal);

@@ -1642,6 +1642,26 @@ TEST(SmallTwins, PredicatesAreTheReferences) {
   for (const int some : circles) EXPECT_GT(some, 50);
 }
 
+void check_widening(Runtime& runtime, std::size_t first, std::size_t n) {
+  FixtureRandom random(first + n);
+  std::vector<float> narrow(2 * (first + n));
+  for (float& x : narrow)
+    x = static_cast<float>(std::ldexp(random.unit() - 0.5, static_cast<int>(random.integer(-140, 100))));
+  host::Arena::Scope scope(runtime.arena());
+  const auto wide = testing::guarded<double>(runtime, 2 * n);
+  runtime.map("ingest", "widen_points", n, cl_ulong{first}, testing::upload(runtime, narrow), wide);
+  EXPECT_EQ(testing::download(runtime, wide, 2 * n),
+            std::vector<double>(narrow.begin() + static_cast<std::ptrdiff_t>(2 * first), narrow.end()));
+}
+
+TEST(SmallIngest, FloatsAreTheSameNumbersAsDoubles) {
+  for (const bool small : kSmall) {
+    for (const std::size_t first : {0, 3}) {
+      for (const std::size_t n : {0, 1, 70}) check_widening(Runtimes::get(small), first, n);
+    }
+  }
+}
+
 /// Whatever a stage launches on ordinary and degenerate input is all there is: no kernel is left over, none
 /// untested.
 TEST(Kernels, AllAreLaunched) {
@@ -1659,6 +1679,7 @@ TEST(Kernels, AllAreLaunched) {
     check_cells(runtime, places, cells, {0, 0, 0}, random);
     check_output(runtime, testing::reference_delaunay(make_fixture("uniform", 10, 27)), random);
     check_restart(runtime);
+    check_widening(runtime, 1, 40);
     EXPECT_EQ(self_test_failure(runtime), "");
     for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
     runtime.set_profiling(false);

@@ -1,5 +1,5 @@
 #include "flattened/stages.hpp"
-#include "input/magnitudes.hpp"
+#include "input/inspect.hpp"
 
 namespace flaunay::flattened {
 
@@ -14,18 +14,13 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   Arena::Scope scope(work.scratch());
   Arena& scratch = work.scratch();
 
-  const auto input = scratch.allocate<cl_double2>(n);
-  runtime.write(input, 0, n, reinterpret_cast<const cl_double2*>(coordinates));
+  const auto input = scratch.allocate<cl_double>(2 * n);
+  runtime.write(input, 0, 2 * n, coordinates);
   std::vector<cl_int> input_offsets(offsets.begin(), offsets.end());
   const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
   runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
 
-  Magnitudes magnitudes;
-  const auto device_magnitudes = scratch.allocate<cl_int>(3);
-  runtime.write(device_magnitudes, 0, 3, &magnitudes.largest);
-  runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), input, device_magnitudes);
-  runtime.read(device_magnitudes, 0, 3, &magnitudes.largest);
-  const Scaling scaling = scaling_for(coordinates, n, magnitudes);
+  const Scaling scaling = inspect(runtime, input, n);
   work.bounds = scaling.bounds;
   const auto [s0, s1, s2] = scaling.powers();
 

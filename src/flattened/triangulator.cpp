@@ -4,14 +4,15 @@
 #include <utility>
 
 #include "flattened/device_info.hpp"
-#include "flattened/executions.hpp"
+#include "flattened/errors.hpp"
+#include "flattened/implementation.hpp"
 #include "flattened/partition.hpp"
 #include "flattened/self_test.hpp"
 #include "flattened/stages.hpp"
 #include "host/clock.hpp"
 #include "host/device.hpp"
-#include "hybrid/stages.hpp"
 #include "recursive/counter.hpp"
+#include "recursive/halfedges.hpp"
 #include "recursive/mesh.hpp"
 #include "recursive/phases.hpp"
 #include "recursive/regions.hpp"
@@ -31,38 +32,37 @@ constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // twice: of the level at work and of the next
 constexpr std::size_t kScratchBytesPerPoint = 118;
-// Mode::hybrid: vertices, their sources and edges, and what belongs to blocks.
-constexpr std::size_t kHybridBytesPerPoint = 97;
 // Shares of its time, for progress.
 constexpr double kBlocksMade = 0.15;
 constexpr double kTriangulated = 0.8;
 // The most that any input measured has needed, those made to be bad among them.
 constexpr std::size_t kBytesPerPoint = 320;
 
-// Every failure of OpenCL as an Error.
-template <typename Work>
-auto with_errors(const Work& work) {
-  try {
-    return work();
-  } catch (const host::DeviceError& error) {
-    throw Error(ErrorKind::device, error.what());
-  } catch (const boost::compute::opencl_error& error) {
-    throw Error(ErrorKind::device,
-                fmt::format("{} ({})", error.what(), host::error_name(error.error_code())));
-  }
+boost::compute::device checked_device(const boost::compute::device& device) {
+  if (host::has_fp64(device)) return device;
+  throw host::DeviceError(fmt::format(
+      "{} has no double precision (fp64), which exactness needs; flaunay devices lists the others",
+      device.name()));
 }
 
-host::Runtime make_runtime(const std::string& wanted) {
-  return with_errors([&] {
-    const boost::compute::device device = host::find_device(wanted);
-    if (!host::has_fp64(device)) {
-      throw host::DeviceError(
-          fmt::format("{} has no double precision (fp64), which exactness needs; "
-                      "flaunay devices lists the others",
-                      device.name()));
-    }
-    return host::Runtime(device);
-  });
+boost::compute::context context_of(const boost::compute::device& device) {
+  return boost::compute::context(checked_device(device));
+}
+
+// Memory for so many rows of three, for the time that the device is busy: page faults would cost more than
+// the writing.
+void reserve_rows(std::vector<std::int32_t>& values, std::size_t rows, bool is_wanted) {
+  if (!is_wanted) return;
+  values.reserve(3 * rows);
+  host::prefer_huge_pages(values.data(), 3 * rows * sizeof(std::int32_t));
+  values.resize(3 * rows);
+}
+
+// Touched memory that stays unused is given back if it is much.
+void cut_rows(std::vector<std::int32_t>& values, std::size_t rows, bool is_wanted) {
+  if (!is_wanted) return;
+  values.resize(3 * rows);
+  if (values.capacity() / 2 > 3 * rows) values.shrink_to_fit();
 }
 
 }  // namespace
@@ -88,56 +88,43 @@ void check_invariants(Workspace& work) {
 
 }  // namespace flattened
 
-struct Triangulator::Implementation {
-  explicit Implementation(const std::string& wanted)
-      : runtime(make_runtime(wanted)),
-        persistent(runtime.context(), runtime.device()),
-        even(runtime.context(), runtime.device()),
-        odd(runtime.context(), runtime.device()) {
-    if (runtime.tuning().separate_buffers) {
-      for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
-    }
-    const std::string failure = flattened::self_test_failure(runtime);
-    if (!failure.empty()) {
-      throw Error(ErrorKind::device,
-                  fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
-                              "another device (FLAUNAY_DEVICE)",
-                              runtime.device().name(), failure));
-    }
+Triangulator::Implementation::Implementation(const std::string& wanted)
+    : Implementation(boost::compute::context(), host::find_device(wanted)) {}
+
+Triangulator::Implementation::Implementation(const boost::compute::context& context,
+                                             const boost::compute::device& device)
+    : runtime(context.get() == nullptr ? context_of(device) : context, checked_device(device)),
+      persistent(runtime.context(), runtime.device()),
+      even(runtime.context(), runtime.device()),
+      odd(runtime.context(), runtime.device()) {
+  if (runtime.tuning().separate_buffers) {
+    for (Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
   }
-
-  std::size_t capacity() const {
-    const std::size_t by_memory = runtime.device().global_memory_size() / kBytesPerPoint;
-    // The arenas are made of blocks, but one array must be in one piece: at most the edges of rings.
-    const std::size_t by_buffer =
-        runtime.device().max_memory_alloc_size() / (hybrid::kEdgesPerVertex * sizeof(hybrid::RingEdge));
-    return std::min({kMostPoints, by_memory, by_buffer});
+  const std::string failure = flattened::self_test_failure(runtime);
+  if (!failure.empty()) {
+    throw Error(ErrorKind::device,
+                fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
+                            "another device (FLAUNAY_DEVICE)",
+                            runtime.device().name(), failure));
   }
+}
 
-  std::size_t held_bytes() {
-    return persistent.held_bytes() + even.held_bytes() + odd.held_bytes() + runtime.arena().held_bytes();
-  }
+std::size_t Triangulator::Implementation::capacity() const {
+  const std::size_t by_memory = runtime.device().global_memory_size() / kBytesPerPoint;
+  // The arenas are made of blocks, but one array must be in one piece: at most the edges of rings.
+  const std::size_t by_buffer =
+      runtime.device().max_memory_alloc_size() / (hybrid::kEdgesPerVertex * sizeof(hybrid::RingEdge));
+  return std::min({kMostPoints, by_memory, by_buffer});
+}
 
-  struct Call;
-  void begin_accounts(const Options& options);
-  /// What the device did since.
-  void write_accounts(Statistics& statistics);
-  /// Throws Error for what this device cannot do.
-  void check_request(std::size_t n, const Options& options) const;
-  Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
-                            const Options& options);
-  Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options);
-  /// Canonical form, neighbours, and everything to the host.
-  void write_result(Call& call, const Buffer<cl_int>& triangles, const flattened::Borders& borders,
-                    Triangulation& result);
-  void hybrid(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
-              Triangulation& result);
-  void finish_partition(Call& call, flattened::Recursion& recursion, const flattened::Borders& borders,
-                        Triangulation& result);
+std::size_t Triangulator::Implementation::held_bytes() {
+  return persistent.held_bytes() + even.held_bytes() + odd.held_bytes() + runtime.arena().held_bytes();
+}
 
-  host::Runtime runtime;
-  host::Arena persistent, even, odd;
-};
+std::size_t Triangulator::Implementation::allocations() {
+  return persistent.block_allocations() + even.block_allocations() + odd.block_allocations() +
+         runtime.arena().block_allocations() + buffer_allocations;
+}
 
 // One call: the accounts, the arenas' contents and the points, sorted.
 struct Triangulator::Implementation::Call {
@@ -176,7 +163,7 @@ Triangulator::Implementation::Call::Call(Implementation& owner_, const double* c
   const std::size_t n = offsets.back();
   host::Runtime& runtime = owner.runtime;
   Arena& persistent = owner.persistent;
-  owner.begin_accounts(options);
+  owner.begin_accounts(options.profile);
   persistent.reserve(n * kPersistentBytesPerPoint);
   owner.even.reserve(n * kStateBytesPerPoint);
   owner.odd.reserve(n * kStateBytesPerPoint);
@@ -232,21 +219,39 @@ void Triangulator::Implementation::Call::finish_statistics() {
   statistics.seconds = now() - begin;
 }
 
-void Triangulator::Implementation::begin_accounts(const Options& options) {
+void Triangulator::Implementation::begin_accounts(bool profile) {
+  own_memory().use_queue(nullptr, profile);
+  reset_accounts();
+}
+
+void Triangulator::Implementation::reset_accounts() {
   runtime.reset_accounts();
-  runtime.set_profiling(options.profile);
+  allocations_before = allocations();
 }
 
 void Triangulator::Implementation::write_accounts(Statistics& statistics) {
   statistics.device_bytes_peak = held_bytes();
   statistics.kernel_launches = runtime.launches();
   statistics.host_waits = runtime.waits();
+  statistics.bytes_to_device = runtime.bytes_to_device();
+  statistics.bytes_to_host = runtime.bytes_to_host();
+  statistics.device_allocations = allocations() - allocations_before;
   statistics.build_seconds = runtime.build_seconds();
   for (const auto& [name, time] : runtime.kernel_times()) {
     statistics.kernels.push_back({name, time.launches, time.seconds});
   }
   std::sort(statistics.kernels.begin(), statistics.kernels.end(),
             [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
+}
+
+void Triangulator::Implementation::check_size(std::size_t n) const {
+  if (n <= capacity()) return;
+  throw Error(
+      n > kMostPoints ? ErrorKind::input : ErrorKind::device,
+      fmt::format("{} points are too many: {} would fit on {} ({} bytes of memory, {} in one piece, {} "
+                  "bytes a point)",
+                  n, capacity(), runtime.device().name(), runtime.device().global_memory_size(),
+                  runtime.device().max_memory_alloc_size(), kBytesPerPoint));
 }
 
 void Triangulator::Implementation::check_request(std::size_t n, const Options& options) const {
@@ -256,38 +261,50 @@ void Triangulator::Implementation::check_request(std::size_t n, const Options& o
   if (options.count && options.mode == Mode::hybrid) {
     throw Error(ErrorKind::usage, "mode hybrid does not count operations; take flattened");
   }
-  if (n > capacity()) {
-    throw Error(
-        n > kMostPoints ? ErrorKind::input : ErrorKind::device,
-        fmt::format("{} points are too many: {} would fit on {} ({} bytes of memory, {} in one piece, {} "
-                    "bytes a point)",
-                    n, capacity(), runtime.device().name(), runtime.device().global_memory_size(),
-                    runtime.device().max_memory_alloc_size(), kBytesPerPoint));
-  }
+  check_size(n);
 }
 
-Triangulation Triangulator::Implementation::triangulate(const double* coordinates,
+Buffer<cl_double> Triangulator::Implementation::on_device(const HostPoints& points, std::size_t n) {
+  if (points.wide != nullptr) return runtime.view(points.wide, 2 * n);
+  const auto wide = runtime.arena().allocate<cl_double>(2 * n);
+  Arena::Scope scope(runtime.arena());
+  runtime.map("ingest", "widen_points", n, cl_ulong{0}, runtime.view(points.narrow, 2 * n), wide);
+  return wide;
+}
+
+Triangulation Triangulator::Implementation::triangulate(const HostPoints& points,
                                                         const std::vector<std::size_t>& offsets,
                                                         const Options& options) {
-  using namespace flattened;
+  check_offsets(offsets);
+  const std::size_t n = offsets.back();
+  if (n > 0 && points.wide == nullptr && points.narrow == nullptr) {
+    throw Error(ErrorKind::usage, fmt::format("{} points, but no coordinates: the pointer is null", n));
+  }
+  Triangulation result;
+  result.statistics.device = runtime.device().name();
+  result.triangle_offsets.assign(offsets.size(), 0);
+  result.hull_offsets.assign(offsets.size(), 0);
+  if (options.mode == Mode::hybrid) {
+    check_request(n, options);
+    if (n > 0) hybrid(points, offsets, options, result);
+    return result;
+  }
+  std::vector<double> widened;
+  if (points.narrow != nullptr) widened.assign(points.narrow, points.narrow + 2 * n);
+  const double* coordinates = points.narrow != nullptr ? widened.data() : points.wide;
   if (options.mode == Mode::recursive || options.mode == Mode::dwyer) {
     return triangulate_on_host(coordinates, offsets, options);
   }
-  check_offsets(offsets);
-  const std::size_t n = offsets.back();
-  const std::size_t sets = offsets.size() - 1;
   check_request(n, options);
-  Triangulation result;
-  Statistics& statistics = result.statistics;
-  statistics.device = runtime.device().name();
-  result.triangle_offsets.assign(sets + 1, 0);
-  result.hull_offsets.assign(sets + 1, 0);
-  if (n == 0) return result;
+  if (n > 0) level_by_level(coordinates, offsets, options, result);
+  return result;
+}
 
-  if (options.mode == Mode::hybrid) {
-    hybrid(coordinates, offsets, options, result);
-    return result;
-  }
+void Triangulator::Implementation::level_by_level(const double* coordinates,
+                                                  const std::vector<std::size_t>& offsets,
+                                                  const Options& options, Triangulation& result) {
+  using namespace flattened;
+  Statistics& statistics = result.statistics;
   Call call(*this, coordinates, offsets, options, statistics, result.representatives);
   Workspace& work = call.work;
   PointTable& table = call.table;
@@ -310,36 +327,62 @@ Triangulation Triangulator::Implementation::triangulate(const double* coordinate
   statistics.triangles = borders.triangles;
   statistics.hull_vertices = borders.size;
   call.finish_statistics();
-  return result;
 }
 
-void Triangulator::Implementation::hybrid(const double* coordinates, const std::vector<std::size_t>& offsets,
+void Triangulator::Implementation::hybrid(const HostPoints& points, const std::vector<std::size_t>& offsets,
                                           const Options& options, Triangulation& result) {
   const std::size_t n = offsets.back();
   recursive::Phases phases(options);
-  begin_accounts(options);
+  begin_accounts(options.profile);
+  share_workspace(n, offsets.size() - 1);
   Arena::Scope scope(persistent), scratch_scope(runtime.arena());
-  persistent.reserve(n * kHybridBytesPerPoint);
+  persistent.reserve(n * hybrid::kPersistentBytesPerPoint);
   hybrid::Workspace work{runtime, persistent};
   result.statistics.points = n;
+  hybrid::Rings rings;
+  const host::Runtime::Settled settled(runtime);
 
   phases.progress("blocks", 0);
   result.representatives.resize(n);
   const auto representatives = runtime.output(result.representatives);
-  const hybrid::Blocks blocks = make_blocks(work, coordinates, offsets, representatives);
+  const hybrid::Blocks blocks = [&] {
+    Arena::Scope input_scope(runtime.arena());
+    return make_blocks(work, on_device(points, n), offsets, representatives);
+  }();
   phases.end("blocks");
   phases.progress("triangulate", kBlocksMade);
-  hybrid::Rings rings;
-  const host::Runtime::Settled settled(runtime);
   rings = divide(work, blocks, representatives);
-  prepare_result(blocks, options.neighbors, result);
+  // A vertex is the middle one of two triangles at most.
+  reserve_rows(result.triangles, 2 * n, true);
+  reserve_rows(result.neighbors, 2 * n, options.neighbors);
+  reserve_rows(result.halfedges, 2 * n, options.halfedges);
   await_rings(work, blocks, rings);
   runtime.fetch_later(representatives, result.representatives);
   phases.end("triangulate");
   phases.progress("output", kTriangulated);
-  write_mesh(work, blocks, rings, options.neighbors, result);
+
+  hybrid::MeshSizes sizes = count_mesh(work, blocks, rings);
+  cut_rows(result.triangles, sizes.triangles(), true);
+  cut_rows(result.neighbors, sizes.triangles(), options.neighbors);
+  cut_rows(result.halfedges, sizes.triangles(), options.halfedges);
+  result.hull.resize(sizes.hull_vertices());
+  const auto output = [&](std::vector<std::int32_t>& values, bool is_wanted) {
+    return is_wanted ? runtime.output(values) : Buffer<cl_int>();
+  };
+  const hybrid::MeshBuffers buffers{output(result.triangles, true),
+                                    output(result.neighbors, options.neighbors),
+                                    output(result.halfedges, options.halfedges), output(result.hull, true)};
+  write_mesh(work, blocks, rings, sizes, buffers);
+  runtime.fetch_later(buffers.triangles, result.triangles);
+  runtime.fetch_later(buffers.neighbors, result.neighbors);
+  runtime.fetch_later(buffers.halfedges, result.halfedges);
+  runtime.fetch_later(buffers.hull, result.hull);
+  runtime.finish();
   phases.end("output");
 
+  result.triangle_offsets = std::move(sizes.triangle_offsets);
+  result.hull_offsets = std::move(sizes.hull_offsets);
+  result.statistics.duplicates = n - sizes.vertices;
   result.statistics.undecided = rings.undecided;
   result.statistics.triangles = result.triangle_offsets.back();
   result.statistics.hull_vertices = result.hull_offsets.back();
@@ -443,14 +486,16 @@ void Triangulator::Implementation::write_result(Call& call, const Buffer<cl_int>
 
     call.report("output", 0.95);
     const auto output = work.scratch().allocate<cl_int>(rows);
-    const auto neighbors = work.scratch().allocate<cl_int>(options.neighbors ? rows : 0);
-    runtime.map("output", "finish_rows", triangle_count, cl_int{options.neighbors}, triangles, twins,
+    const bool with_neighbors = options.neighbors || options.halfedges;
+    const auto neighbors = work.scratch().allocate<cl_int>(with_neighbors ? rows : 0);
+    runtime.map("output", "finish_rows", triangle_count, cl_int{with_neighbors}, triangles, twins,
                 table.source, output, neighbors);
     result.triangles.resize(rows);
     runtime.read(output, 0, rows, result.triangles.data());
-    if (options.neighbors) {
+    if (with_neighbors) {
       result.neighbors.resize(rows);
       runtime.read(neighbors, 0, rows, result.neighbors.data());
+      recursive::write_halfedges(options, result);
     }
     const auto hull = work.scratch().allocate<cl_int>(borders.size);
     runtime.map("output", "map_ids", borders.size, borders.hull, table.source, hull);
@@ -462,7 +507,7 @@ void Triangulator::Implementation::write_result(Call& call, const Buffer<cl_int>
 }
 
 Triangulator::Triangulator(const std::string& device)
-    : implementation_(std::make_unique<Implementation>(device)) {}
+    : implementation_(with_errors([&] { return std::make_shared<Implementation>(device); })) {}
 Triangulator::~Triangulator() = default;
 Triangulator::Triangulator(Triangulator&&) noexcept = default;
 Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
@@ -479,9 +524,18 @@ Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n
   return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
 }
 
+Triangulation Triangulator::triangulate(const float* coordinates, std::size_t n, const Options& options) {
+  return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
+}
+
 Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return with_errors([&] { return implementation_->triangulate(coordinates, offsets, options); });
+  return with_errors([&] { return implementation_->triangulate({coordinates, nullptr}, offsets, options); });
+}
+
+Triangulation Triangulator::triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
+                                        const Options& options) {
+  return with_errors([&] { return implementation_->triangulate({nullptr, coordinates}, offsets, options); });
 }
 
 Partition Triangulator::partition(const double* coordinates, std::size_t n, int levels,

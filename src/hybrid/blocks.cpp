@@ -3,6 +3,7 @@
 #include "host/vector_operations.hpp"
 #include "hybrid/cut_tree.hpp"
 #include "hybrid/stages.hpp"
+#include "input/inspect.hpp"
 
 namespace flaunay::hybrid {
 namespace {
@@ -33,16 +34,6 @@ int depth_for(std::size_t n, std::size_t block_points) {
   int depth = 0;
   while (n > block_points << depth) ++depth;
   return depth;
-}
-
-Scaling inspect(Workspace& work, const double* coordinates, std::size_t n, const Buffer<cl_double>& input) {
-  host::Runtime& runtime = work.runtime;
-  Magnitudes magnitudes;
-  const auto device_magnitudes = work.scratch().allocate<cl_int>(3);
-  runtime.write(device_magnitudes, 0, 3, &magnitudes.largest);
-  runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), input, device_magnitudes);
-  runtime.read(device_magnitudes, 0, 3, &magnitudes.largest);
-  return scaling_for(coordinates, n, magnitudes);
 }
 
 // The trees of all sets that are larger than a block.
@@ -200,16 +191,15 @@ void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, c
 
 }  // namespace
 
-Blocks make_blocks(Workspace& work, const double* coordinates, const std::vector<std::size_t>& offsets,
+Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
                    const Buffer<cl_int>& representatives) {
   Blocks blocks;
   blocks.sets = offsets.size() - 1;
   blocks.points = offsets.back();
   Arena::Scope scope(work.scratch());
-  const auto input = work.runtime.view(coordinates, 2 * blocks.points);
   Plan plan;
   const host::Runtime::Settled settled(work.runtime);
-  const Scaling scaling = inspect(work, coordinates, blocks.points, input);
+  const Scaling scaling = inspect(work.runtime, input, blocks.points);
   work.bounds = scaling.bounds;
   plan = make_plan(work, offsets, input, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);

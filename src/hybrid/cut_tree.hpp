@@ -27,8 +27,17 @@ struct CutTree {
 std::size_t samples_for(int depth);
 /// Indices below n of that many samples: one from each of equal parts, drawn by the same rule every time.
 std::vector<cl_int> sample_indices(std::size_t n, int depth);
+/// The same for any number of samples.
+std::vector<cl_int> spread_indices(std::size_t n, std::size_t count);
+/// A sample and what it is a sample of.
+struct NumberedSample {
+  cl_double2 point;
+  cl_int number;
+};
+
 /// A tree with 2^depth leaves that hold about as many samples each; cuts across the longer interquartile
-/// range of the samples. samples: changed. O(m log m).
+/// range of the samples. samples: brought to the order of the leaves. O(m log m).
 CutTree cut_tree(std::vector<cl_double2>& samples, int depth);
+CutTree cut_tree(std::vector<NumberedSample>& samples, int depth);
 
 }  // namespace flaunay::hybrid

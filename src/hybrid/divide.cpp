@@ -34,6 +34,13 @@ void solve(Workspace& work, const Blocks& blocks, std::size_t workers, std::size
 
 }  // namespace
 
+std::size_t solve_bytes(const host::Tuning& tuning, std::size_t n) {
+  constexpr std::size_t kBytes = sizeof(cl_double2) + sizeof(cl_int) + 3 * sizeof(cl_int2) + sizeof(cl_uchar);
+  // Many blocks at once, or all points in one.
+  return kBytes * std::max(n, std::min(kScratchPerPoint * n,
+                                       tuning.block_workers * kLargeBlocks * tuning.block_points));
+}
+
 Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives) {
   host::Runtime& runtime = work.runtime;
   Rings rings;

@@ -8,15 +8,10 @@
 namespace flaunay::hybrid {
 namespace {
 
-struct SetSizes {
-  std::vector<std::size_t> triangle_offsets, hull_offsets;  // sets + 1
-  std::size_t vertices = 0;
-};
-
 // By Euler's formula: d points, of which h are on the hull, make 2d - 2 - h triangles. Points on one line are
 // walked there and back, so h is 2d - 2.
-SetSizes set_sizes(const Blocks& blocks, const Rings& rings, const std::vector<cl_int>& walked) {
-  SetSizes sizes;
+MeshSizes set_sizes(const Blocks& blocks, const Rings& rings, const std::vector<cl_int>& walked) {
+  MeshSizes sizes;
   sizes.triangle_offsets.assign(1, 0);
   sizes.hull_offsets.assign(1, 0);
   for (std::size_t s = 0; s < blocks.sets; ++s) {
@@ -30,49 +25,24 @@ SetSizes set_sizes(const Blocks& blocks, const Rings& rings, const std::vector<c
   return sizes;
 }
 
-// Page faults would cost more than the writing.
-void touch(std::vector<std::int32_t>& values, std::size_t count) {
-  values.reserve(count);
-  host::prefer_huge_pages(values.data(), count * sizeof(std::int32_t));
-  values.resize(count);
-}
-
-// Touched memory that stays unused is given back if it is much.
-void cut(std::vector<std::int32_t>& values, std::size_t count) {
-  values.resize(count);
-  if (values.capacity() / 2 > count) values.shrink_to_fit();
-}
-
-// offsets must stay until the next wait.
-void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings,
-                 const std::vector<cl_int>& offsets, Triangulation& result) {
+void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
+                 const Buffer<cl_int>& hull) {
   host::Runtime& runtime = work.runtime;
-  const auto device_offsets = work.scratch().allocate<cl_int>(offsets.size());
-  runtime.write_later(device_offsets, 0, offsets.size(), offsets.data());
-  result.hull.resize(result.hull_offsets.back());
-  const auto hull = runtime.output(result.hull);
+  const auto offsets = work.scratch().allocate<cl_int>(blocks.sets + 1);
+  runtime.write_kept(offsets, std::vector<cl_int>(sizes.hull_offsets.begin(), sizes.hull_offsets.end()));
   runtime.map("mesh", "write_hulls", blocks.sets, blocks.device_set_blocks, rings.block_ends,
-              rings.vertex_edge, rings.edges, blocks.source, device_offsets, hull);
-  runtime.fetch_later(hull, result.hull);
+              rings.vertex_edge, rings.edges, blocks.source, offsets, hull);
 }
 
 }  // namespace
 
-void prepare_result(const Blocks& blocks, bool neighbors, Triangulation& result) {
-  // A vertex is the middle one of two triangles at most.
-  touch(result.triangles, 6 * blocks.points);
-  if (neighbors) touch(result.neighbors, 6 * blocks.points);
-}
-
-void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, bool neighbors,
-                Triangulation& result) {
+MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  Arena::Scope scope(scratch);
-  std::vector<cl_int> walked(blocks.sets), hull_offsets;
+  std::vector<cl_int> walked(blocks.sets);
   const host::Runtime::Settled settled(runtime);
-  const auto hull_sizes = scratch.allocate<cl_int>(blocks.sets);
   const auto rows = scratch.allocate<cl_uint>(blocks.points + 1);
+  const auto hull_sizes = scratch.allocate<cl_int>(blocks.sets);
   runtime.map("mesh", "vertex_triangles", blocks.points, rings.vertex_edge, rows);
   runtime.map("mesh", "mark_outside", blocks.sets, blocks.device_set_blocks, rings.block_ends,
               rings.vertex_edge, rings.edges, rows, hull_sizes);
@@ -80,32 +50,36 @@ void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, bool 
 
   runtime.read_later(hull_sizes, 0, blocks.sets, walked.data());
   const cl_uint counted = runtime.read_one(rows, blocks.points);
-  SetSizes sizes = set_sizes(blocks, rings, walked);
-  const std::size_t triangles = sizes.triangle_offsets.back();
-  if (counted != triangles) {
-    throw Error(ErrorKind::internal,
-                fmt::format("{} triangles instead of {}; please report the input", counted, triangles));
+  MeshSizes sizes = set_sizes(blocks, rings, walked);
+  if (counted != sizes.triangles()) {
+    throw Error(ErrorKind::internal, fmt::format("{} triangles instead of {}; please report the input",
+                                                 counted, sizes.triangles()));
   }
-  result.triangle_offsets = std::move(sizes.triangle_offsets);
-  result.hull_offsets = std::move(sizes.hull_offsets);
-  result.statistics.duplicates = blocks.points - sizes.vertices;
+  sizes.first_rows = rows;
+  return sizes;
+}
 
+void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
+                const MeshBuffers& buffers) {
+  host::Runtime& runtime = work.runtime;
+  Arena::Scope scope(work.scratch());
   const std::size_t pairs = rings.edges.size() / 2;
-  const auto corner_of_edge = scratch.allocate<cl_int>(neighbors ? rings.edges.size() : 0);
-  cut(result.triangles, 3 * triangles);
-  const auto device_triangles = runtime.output(result.triangles);
-  runtime.chunks("mesh", "write_triangles", pairs, runtime.tuning().chunk(pairs), cl_int{neighbors},
-                 blocks.vertices, blocks.source, rings.edges, rows, device_triangles, corner_of_edge);
-  runtime.fetch_later(device_triangles, result.triangles);
-  if (neighbors) {
-    cut(result.neighbors, 3 * triangles);
-    const auto device_neighbors = runtime.output(result.neighbors);
-    runtime.map("mesh", "write_neighbors", pairs, rings.edges, corner_of_edge, device_neighbors);
-    runtime.fetch_later(device_neighbors, result.neighbors);
+  const bool with_neighbors = buffers.neighbors.memory() != nullptr;
+  const bool with_halfedges = buffers.halfedges.memory() != nullptr;
+  const bool with_corners = with_neighbors || with_halfedges;
+  if (buffers.triangles.memory() != nullptr) {
+    const auto corner_of_edge = work.scratch().allocate<cl_int>(with_corners ? rings.edges.size() : 0);
+    runtime.chunks("mesh", "write_triangles", pairs, runtime.tuning().chunk(pairs), cl_int{with_corners},
+                   blocks.vertices, blocks.source, rings.edges, sizes.first_rows, buffers.triangles,
+                   corner_of_edge);
+    if (with_neighbors) {
+      runtime.map("mesh", "write_neighbors", pairs, rings.edges, corner_of_edge, buffers.neighbors);
+    }
+    if (with_halfedges) {
+      runtime.map("mesh", "write_halfedges", pairs, rings.edges, corner_of_edge, buffers.halfedges);
+    }
   }
-  hull_offsets.assign(result.hull_offsets.begin(), result.hull_offsets.end());
-  write_hulls(work, blocks, rings, hull_offsets, result);
-  runtime.finish();
+  if (buffers.hull.memory() != nullptr) write_hulls(work, blocks, rings, sizes, buffers.hull);
 }
 
 }  // namespace flaunay::hybrid

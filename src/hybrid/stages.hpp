@@ -16,6 +16,10 @@ namespace flaunay::hybrid {
 using host::Arena;
 using host::Buffer;
 
+/// What the persistent arena holds for each point: vertices, their sources and edges, and what belongs to
+/// blocks.
+constexpr std::size_t kPersistentBytesPerPoint = 97;
+
 /// What every stage works with.
 struct Workspace {
   host::Runtime& runtime;
@@ -60,22 +64,40 @@ struct Rings {
   std::size_t undecided = 0;     ///< predicates that were evaluated exactly
 };
 
-/// Checks and scales the points and brings them to blocks. representatives: one per point, each its own.
-/// Throws Error(input) for points that are not finite or beyond the range of magnitudes. O(n log n).
-Blocks make_blocks(Workspace& work, const double* coordinates, const std::vector<std::size_t>& offsets,
+/// Checks and scales the points, x0 y0 x1 y1..., and brings them to blocks. representatives: one per point,
+/// each its own. Throws Error(input) for points that are not finite or beyond the range of magnitudes. O(n
+/// log n).
+Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
                    const Buffer<cl_int>& representatives);
 
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: the numbers in
 /// Rings come with await_rings.
 Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives);
+/// The most scratch that it takes for n points, but for what belongs to blocks.
+std::size_t solve_bytes(const host::Tuning& tuning, std::size_t n);
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
 
-/// Memory for all triangles that there can be, for the time that the device is busy.
-void prepare_result(const Blocks& blocks, bool neighbors, Triangulation& result);
+/// How large a mesh is.
+struct MeshSizes {
+  std::vector<std::size_t> triangle_offsets, hull_offsets;  ///< sets + 1
+  std::size_t vertices = 0;
+  Buffer<cl_uint> first_rows{};  ///< of each vertex, and behind the last one's
 
-/// Triangles, neighbours if they are asked for, and hulls, into the result. Throws Error(internal) if their
-/// numbers do not fit together.
-void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, bool neighbors,
-                Triangulation& result);
+  std::size_t triangles() const { return triangle_offsets.back(); }
+  std::size_t hull_vertices() const { return hull_offsets.back(); }
+};
+
+/// Waits once. Throws Error(internal) if numbers do not fit together. first_rows come from the scratch arena
+/// and are for write_mesh; the outsides of edges are marked from now on.
+MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings);
+
+/// Where the parts of a mesh go, as flaunay.hpp describes them; without memory what is not wanted.
+struct MeshBuffers {
+  Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{};
+};
+
+/// Does not wait. Neighbours and halfedges need the triangles.
+void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
+                const MeshBuffers& buffers);
 
 }  // namespace flaunay::hybrid

@@ -14,6 +14,7 @@ namespace {
 // Coordinates below 2^250 that are multiples of 2^-255: no product of four overflows, and none underflows.
 constexpr int kLargestExponent = 249;
 constexpr int kLowestExponent = -255;
+constexpr int kMostBits = kLargestExponent - kLowestExponent + 1;
 // Coordinates of so many bits make the filters exact: 3k + 4, 2k + 3 and 4k + 8 bits within 53.
 constexpr int kCoarseHullBits = 16;
 constexpr int kCoarseOrientBits = 25;
@@ -24,6 +25,11 @@ constexpr double kRoundoff = 0x1p-53;
 constexpr double kHullBound = 10.0 * kRoundoff;
 constexpr double kOrientBound = (3.0 + 16.0 * kRoundoff) * kRoundoff;
 constexpr double kCircleBound = (10.0 + 96.0 * kRoundoff) * kRoundoff;
+
+// That the coordinates span; 0 if all are 0.
+int bits_of(const Magnitudes& magnitudes) {
+  return magnitudes.lowest <= magnitudes.largest ? magnitudes.largest - magnitudes.lowest + 1 : 0;
+}
 
 [[noreturn]] void throw_range(const double* coordinates, std::size_t n, const Magnitudes& magnitudes) {
   std::size_t largest = 0, finest = 0;
@@ -39,8 +45,7 @@ constexpr double kCircleBound = (10.0 + 96.0 * kRoundoff) * kRoundoff;
           "the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
           "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
           largest / 2, largest % 2 ? "y" : "x", coordinates[largest], finest / 2, finest % 2 ? "y" : "x",
-          coordinates[finest], magnitudes.largest - magnitudes.lowest + 1,
-          kLargestExponent - kLowestExponent + 1));
+          coordinates[finest], bits_of(magnitudes), kMostBits));
 }
 
 }  // namespace
@@ -57,6 +62,10 @@ int lowest_bit(double x) {
   return low;
 }
 
+bool can_be_exact(const Magnitudes& magnitudes, std::size_t n) {
+  return magnitudes.bad >= static_cast<int>(n) && bits_of(magnitudes) <= kMostBits;
+}
+
 Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& magnitudes) {
   if (magnitudes.bad < static_cast<int>(n)) {
     const double x = coordinates[2 * magnitudes.bad];
@@ -64,12 +73,11 @@ Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& 
     throw Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", magnitudes.bad, x, y));
   }
   Scaling scaling;
-  int bits = 0;
-  if (magnitudes.lowest <= magnitudes.largest) {
-    bits = magnitudes.largest - magnitudes.lowest + 1;
+  const int bits = bits_of(magnitudes);
+  if (bits > kMostBits) throw_range(coordinates, n, magnitudes);
+  if (bits > 0) {
     if (magnitudes.largest > kLargestExponent) scaling.shift = kLargestExponent - magnitudes.largest;
     if (magnitudes.lowest < kLowestExponent) scaling.shift = kLowestExponent - magnitudes.lowest;
-    if (bits > kLargestExponent - kLowestExponent + 1) throw_range(coordinates, n, magnitudes);
   }
   scaling.bounds.hull = bits <= kCoarseHullBits ? 0 : kHullBound;
   scaling.bounds.orient = bits <= kCoarseOrientBits ? 0 : kOrientBound;

@@ -35,7 +35,10 @@ struct Scaling {
 /// Exponent of the lowest set bit; x is finite and not 0.
 int lowest_bit(double x);
 
-/// Throws Error(input), naming the point, if one is not finite or if magnitudes differ too much.
+/// Whether n points of these magnitudes are accepted.
+bool can_be_exact(const Magnitudes& magnitudes, std::size_t n);
+
+/// Throws Error(input), naming the point, if they are not; the coordinates are needed for that alone.
 Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& magnitudes);
 
 /// Throws Error(usage) unless offsets begin with 0 and do not decrease.

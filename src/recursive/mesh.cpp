@@ -98,6 +98,23 @@ void canonicalize(const PointSets& sets, Mesh& mesh) {
 
 }  // namespace
 
+void write_halfedges(const Options& options, Triangulation& result) {
+  const std::vector<std::int32_t>& neighbors = result.neighbors;
+  if (options.halfedges) {
+    result.halfedges.assign(neighbors.size(), -1);
+    for (std::int32_t h = 0; h < static_cast<std::int32_t>(neighbors.size()); ++h) {
+      // Opposite of the vertex before it.
+      const std::int32_t beyond = neighbors[previous_halfedge(h)];
+      if (beyond < 0) continue;
+      for (std::int32_t k = 3 * beyond; k < 3 * beyond + 3; ++k) {
+        // Two triangles share one edge at most.
+        if (neighbors[k] == h / 3) result.halfedges[h] = next_halfedge(k);
+      }
+    }
+  }
+  if (!options.neighbors) result.neighbors.clear();
+}
+
 bool find_twins(const Ids& triangles, Ids& twins) {
   twins.assign(triangles.size(), -1);
   if (triangles.empty()) return true;
@@ -154,7 +171,8 @@ Triangulation finish(const PointSets& sets, Ids triangles, Ids twins, const Opti
 
   Triangulation result;
   const Ids places = places_by_set(sets, mesh.triangles, result.triangle_offsets);
-  write_rows(sets, mesh, places, options.neighbors, result);
+  write_rows(sets, mesh, places, options.neighbors || options.halfedges, result);
+  write_halfedges(options, result);
   write_hulls(sets, mesh, result);
   result.representatives = sets.representatives;
   Statistics& statistics = result.statistics;

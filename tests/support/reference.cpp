@@ -219,6 +219,20 @@ std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& t
   return neighbors;
 }
 
+std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> halfedge_of;
+  const auto next = [](std::size_t h) { return h % 3 == 2 ? h - 2 : h + 1; };
+  for (std::size_t h = 0; h < triangles.size(); ++h) {
+    halfedge_of[{triangles[h], triangles[next(h)]}] = static_cast<std::int32_t>(h);
+  }
+  std::vector<std::int32_t> halfedges;
+  for (std::size_t h = 0; h < triangles.size(); ++h) {
+    const auto back = halfedge_of.find({triangles[next(h)], triangles[h]});
+    halfedges.push_back(back == halfedge_of.end() ? -1 : back->second);
+  }
+  return halfedges;
+}
+
 int reference_orient2d(const double* a, const double* b, const double* c) {
   const double values[] = {a[0], a[1], b[0], b[1], c[0], c[1]};
   const auto z = scale_to_integers(values, 6);

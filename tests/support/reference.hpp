@@ -28,6 +28,8 @@ std::vector<std::int32_t> flat_triangles(const TriangleSet& triangles);
 /// For each triangle the triangles opposite to its corners, -1 for none: as Triangulation::neighbors.
 /// Every directed edge must occur at most once.
 std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles);
+/// Triangulation::halfedges, likewise.
+std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles);
 
 /// Exact signs for any finite doubles; points are pointers to x, y. +1: a, b, c turn left.
 int reference_orient2d(const double* a, const double* b, const double* c);

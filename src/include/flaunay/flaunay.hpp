@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/export.h"
+#include "flaunay/opencl.h"
+
 namespace flaunay {
 
 /// What went wrong, in the terms of the command's exit codes.
@@ -21,13 +24,21 @@ enum class ErrorKind {
 };
 
 /// The one exception type of the library.
-class Error : public std::runtime_error {
+class FLAUNAY_API Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  explicit Error(ErrorKind kind, const std::string& message, int code = 0, const std::string& call = {})
+      : std::runtime_error(message), kind_(kind), code_(code), call_(std::make_shared<std::string>(call)) {}
   ErrorKind kind() const noexcept { return kind_; }
+  /// What the OpenCL call returned, such as -5 for CL_OUT_OF_RESOURCES; 0 if none failed.
+  int code() const noexcept { return code_; }
+  /// The OpenCL call that failed, such as "clCreateBuffer"; empty if none did.
+  const std::string& call() const noexcept { return *call_; }
 
  private:
   ErrorKind kind_;
+  int code_;
+  // Exceptions are copied, and their copies must not throw.
+  std::shared_ptr<const std::string> call_;
 };
 
 /// Which way each region is cut.
@@ -55,8 +66,8 @@ enum class Hull {
 };
 
 /// As the command line names them: "recursive-device", "monotone-chain"...
-const char* to_string(Mode mode) noexcept;
-const char* to_string(Hull hull) noexcept;
+FLAUNAY_API const char* to_string(Mode mode) noexcept;
+FLAUNAY_API const char* to_string(Hull hull) noexcept;
 
 /// What a caller can ask of one triangulation.
 struct Options {
@@ -64,6 +75,7 @@ struct Options {
   Cut cut = Cut::interquartile;
   Hull hull = Hull::prune;
   bool neighbors = true;     ///< compute Triangulation::neighbors
+  bool halfedges = false;    ///< compute Triangulation::halfedges
   bool profile = false;      ///< time every kernel by events; costs a little
   bool count = false;        ///< count operations into Statistics::work; slow; not in Mode::hybrid
   int partition_levels = 0;  ///< Mode::partition: levels on the device; 0 chooses
@@ -93,12 +105,12 @@ struct OperationCounts {
   std::uint64_t critical_path = 0;
 
   /// What is done one after the other: critical paths add up too.
-  OperationCounts& operator+=(const OperationCounts& other) noexcept;
+  FLAUNAY_API OperationCounts& operator+=(const OperationCounts& other) noexcept;
   /// All as floating-point operations, arithmetic and comparisons: a predicate counts for the operations of
   /// its plain evaluation, without the error bound's.
-  std::uint64_t operations() const noexcept;
+  FLAUNAY_API std::uint64_t operations() const noexcept;
   /// The same with the operations that bound each predicate's error.
-  std::uint64_t operations_with_bounds() const noexcept;
+  FLAUNAY_API std::uint64_t operations_with_bounds() const noexcept;
 };
 
 /// Options::count: the work by component and level. Level 0 is the first cut (in Mode::dwyer the last merge);
@@ -149,9 +161,12 @@ struct Statistics {
   double seconds = 0;        ///< from points in host memory to results in host memory
   double build_seconds = 0;  ///< building programs, part of no other figure
   std::size_t kernel_launches = 0;
-  std::size_t host_waits = 0;         ///< times the host waited for the device
-  std::size_t device_bytes_peak = 0;  ///< most device memory held at once
-  std::size_t undecided = 0;          ///< predicates that needed exact evaluation
+  std::size_t host_waits = 0;          ///< times the host waited for the device
+  std::size_t bytes_to_device = 0;     ///< copied by the host; memory that is used in place is not
+  std::size_t bytes_to_host = 0;       ///< likewise
+  std::size_t device_allocations = 0;  ///< OpenCL buffers made, sub-buffers not counted
+  std::size_t device_bytes_peak = 0;   ///< most device memory held at once
+  std::size_t undecided = 0;           ///< predicates that needed exact evaluation
   std::vector<PhaseStatistics> phases;
   std::vector<LevelStatistics> levels;
   std::vector<KernelStatistics> kernels;
@@ -165,6 +180,10 @@ struct Triangulation {
   std::vector<std::int32_t> triangles;
   /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull. Empty if not asked for.
   std::vector<std::int32_t> neighbors;
+  /// 3 per triangle: halfedge 3t + k goes from vertex k of triangle t to the next one; here is the halfedge
+  /// that goes back, in the triangle beyond, or -1 on the hull. The convention of delaunator. Empty if not
+  /// asked for.
+  std::vector<std::int32_t> halfedges;
   /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
   /// point. Collinear sets: the distinct points in lexicographic order.
   std::vector<std::int32_t> hull;
@@ -197,12 +216,14 @@ struct Partition {
 /// positions in Region::points per triangle, in either orientation, what lies outside the border included.
 /// The result is that of triangulate. Throws Error(input) if a solution is not a triangulation of its
 /// region's points. Uses no device.
-Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
-                       const std::vector<std::vector<std::int32_t>>& solutions, const Options& options = {});
+FLAUNAY_API Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
+                                   const std::vector<std::vector<std::int32_t>>& solutions,
+                                   const Options& options = {});
 
 /// Mode::recursive and Mode::dwyer without a device. Throws Error(usage) for another mode.
-Triangulation triangulate_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
-                                  const Options& options);
+FLAUNAY_API Triangulation triangulate_on_host(const double* coordinates,
+                                              const std::vector<std::size_t>& offsets,
+                                              const Options& options);
 
 /// What the library says of an OpenCL device.
 struct DeviceInfo {
@@ -226,20 +247,122 @@ struct DeviceInfo {
 
 /// Every device of every platform, in the order that "#k" counts. Throws Error(device) if there is no OpenCL
 /// platform. With self_test, builds and runs the arithmetic self test on each device that has fp64.
-std::vector<DeviceInfo> list_devices(bool self_test = false);
+FLAUNAY_API std::vector<DeviceInfo> list_devices(bool self_test = false);
 
-/// Owns a device's context, queue, programs and memory; reusable, movable, one thread at a time.
-class Triangulator {
+/// What coordinates and values in device memory are made of.
+enum class Precision { float64, float32 };
+
+/// Points in device memory, in one or more sets.
+struct DevicePoints {
+  cl_mem memory = nullptr;  ///< x0 y0 x1 y1 ..., as arrays of double2 or float2 are
+  std::size_t count = 0;    ///< of points
+  Precision precision = Precision::float64;
+  std::size_t first = 0;  ///< points that precede them in the buffer
+  /// Set s has points [offsets[s], offsets[s + 1]), counted from `first`; begins with 0 and ends with count.
+  /// Empty: one set, or what device_offsets says.
+  std::vector<std::size_t> offsets;
+  /// The same in device memory, sets + 1 int32; 4 bytes a set cross to the host.
+  cl_mem device_offsets = nullptr;
+  std::size_t sets = 0;  ///< of device_offsets
+};
+
+/// How a call on device memory is enqueued.
+struct Enqueue {
+  /// Of the triangulator's context and device; in order or not. Null: the triangulator's own. It is retained
+  /// until the triangulator gets another or goes.
+  cl_command_queue queue = nullptr;
+  std::vector<cl_event> wait_for;  ///< what must be done before
+  /// If not null, gets an event that is complete when the results are there; the caller releases it.
+  cl_event* event = nullptr;
+  /// Time every kernel by events, for Statistics::kernels: waits for the end. The queue must have
+  /// CL_QUEUE_PROFILING_ENABLE, if one is given.
+  bool profile = false;
+};
+
+/// Results in device memory: in a buffer of the caller, or in one that flaunay makes when it is first needed,
+/// keeps for the next call, and replaces by a larger one where it is too small. A handle: copies refer to the
+/// same buffer.
+class FLAUNAY_API DeviceBuffer {
+ public:
+  DeviceBuffer() noexcept = default;
+  /// The caller's, which is retained and never replaced. Throws Error(usage) if it is no buffer.
+  explicit DeviceBuffer(cl_mem memory);
+  /// Null as long as there is none. Valid as long as this or a copy of it; clRetainMemObject makes it stay
+  /// longer.
+  cl_mem memory() const noexcept { return memory_.get(); }
+  std::size_t bytes() const noexcept { return bytes_; }
+  bool is_callers() const noexcept { return is_callers_; }
+
+ private:
+  friend struct DeviceBufferAccess;
+  std::shared_ptr<struct _cl_mem> memory_;
+  std::size_t bytes_ = 0;
+  bool is_callers_ = false;
+};
+
+/// Which parts of a triangulation to compute on the device. Neighbours and halfedges need the triangles.
+struct Parts {
+  bool triangles = true;
+  bool neighbors = false;
+  bool halfedges = false;
+  bool hull = false;
+  bool representatives = false;
+};
+
+/// A Triangulation in device memory, all arrays int32. Bytes for n points, at most: triangles, neighbors,
+/// halfedges 24 n each, hull and representatives 4 n each; flaunay makes its own buffers so large, and the
+/// caller's must be.
+struct DeviceTriangulation {
+  DeviceBuffer triangles, neighbors, halfedges, hull, representatives;
+  /// What the last call computed.
+  Parts parts{false, false, false, false, false};
+  std::size_t points = 0;
+  /// In host memory, known when the call returns: set s has triangles [triangle_offsets[s],
+  /// triangle_offsets[s + 1]), and likewise points and hull vertices.
+  std::vector<std::size_t> point_offsets, triangle_offsets, hull_offsets;
+  Statistics statistics;
+};
+
+/// The dual of a triangulation. Where more than three points are cocircular, circumcentres coincide.
+struct Voronoi {
+  /// 2 per triangle, rounded: exact predicates decide what is adjacent, not these.
+  std::vector<double> circumcentres;
+  /// The cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells. n + 1.
+  std::vector<std::int32_t> cell_offsets;
+  /// Triangles, whose circumcentres are the cells' corners, counter-clockwise around each point, from the
+  /// smallest index on. Of an unbounded cell: from the hull edge that leaves the point to the one that
+  /// arrives at it; a ray perpendicular to these edges goes outwards from the first and from the last corner.
+  /// None for a point that another represents, and for points on one line.
+  std::vector<std::int32_t> cells;
+  std::vector<std::uint8_t> unbounded;  ///< 1 for points on the hull, also for all of a set on one line; n
+};
+
+/// The same in device memory: circumcentres double2 (16 bytes a triangle), cell_offsets int32 (4 (n + 1)
+/// bytes), cells int32 (12 bytes a triangle), unbounded uchar (n bytes).
+struct DeviceVoronoi {
+  DeviceBuffer circumcentres, cell_offsets, cells, unbounded;
+};
+
+/// Owns a device's programs and memory, and its context and queue or the caller's; reusable, movable, one
+/// thread at a time. Triangulators on several threads may share a context and a device.
+class FLAUNAY_API Triangulator {
  public:
   /// device: "" (FLAUNAY_DEVICE if set, else the first GPU, else the first device with fp64),
   /// "#k" (the k-th of list_devices, from 0), or a part of a device's or platform's name, whatever its case.
   /// Throws Error(device) if there is none, or if its arithmetic fails the self test.
   explicit Triangulator(const std::string& device = "");
+  /// In the caller's context, which is retained. Throws Error(usage) if the device is not one of the context,
+  /// Error(device) as above.
+  Triangulator(cl_context context, cl_device_id device);
   ~Triangulator();
   Triangulator(Triangulator&&) noexcept;
   Triangulator& operator=(Triangulator&&) noexcept;
 
   DeviceInfo device() const;
+  /// For the caller's own buffers, kernels and queues; owned by the triangulator.
+  cl_context context() const noexcept;
+  cl_device_id device_id() const noexcept;
+  cl_command_queue queue() const noexcept;
 
   /// The largest number of points that one call can take on this device.
   std::size_t capacity() const;
@@ -248,22 +371,102 @@ class Triangulator {
   /// Throws Error(input) for a coordinate that is not finite, a range of magnitudes beyond what is exact, or
   /// too many points. O(n log n) work.
   Triangulation triangulate(const double* coordinates, std::size_t n, const Options& options = {});
+  /// The same of float; the result is that of the same numbers as double.
+  Triangulation triangulate(const float* coordinates, std::size_t n, const Options& options = {});
 
   /// Triangulates many sets at once: set s has points [offsets[s], offsets[s + 1]); offsets[0] is 0 and the
   /// last offset the number of points; sets may be empty.
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
+  Triangulation triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
+                            const Options& options = {});
+
+  /// Triangulates points in device memory into device memory (Mode::hybrid). No points and no results cross
+  /// to the host: only sizes do, some bytes for each block of 2,048 points, and the host waits some 9 times
+  /// in between (Statistics::host_waits). Returns when all is enqueued, with the numbers of triangles known;
+  /// the results are there when the event is complete, or for whatever is enqueued on the same in-order queue
+  /// later. The points and the results' buffers must not change until then. A second call of the same size
+  /// allocates no device memory. Throws Error(usage) for buffers that are too small or of another context, a
+  /// queue of another context or device or (where that shows) one that was released, offsets that decrease or
+  /// do not end with the number of points; Error(input) and Error(device) as above. Results are unspecified
+  /// after an error.
+  void triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts = {},
+                   const Enqueue& enqueue = {});
+
+  /// Bytes of device memory that calls on up to n points in device memory need besides points and results, at
+  /// most.
+  std::size_t workspace_bytes(std::size_t n, std::size_t sets = 1) const;
+  /// From now on that memory is the caller's buffer, which is retained; null: the triangulator's own again. A
+  /// call for which it is too small throws Error(usage) that says how much is needed. Waits for what was
+  /// enqueued.
+  void use_workspace(cl_mem workspace);
+
+  /// The dual, from triangles and neighbours. O(n) work; a point of degree d takes one work-item d steps.
+  Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
+  /// Needs the parts triangles, neighbors, hull and representatives.
+  void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
+               const Enqueue& enqueue = {});
 
   /// The regions after `levels` levels, up to 2^levels of them; O(levels n) work after sorting. Options::mode
   /// and count mean nothing here.
   Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options = {});
 
  private:
-  struct Implementation;
+  friend class Locator;
+  struct FLAUNAY_LOCAL Implementation;
+  // A Locator keeps it, too.
+  std::shared_ptr<Implementation> implementation_;
+};
+
+/// Finds where queries lie in a triangulation: by a tree down to a vertex nearby, and from there by exact
+/// steps from triangle to triangle. Queries are points, as many at once as wanted; of nested triangulations
+/// they come in as many sets, each for its own. Shares device and memory with the triangulator that made
+/// it, so both are for one thread at a time; it may outlive it. A query that is not finite, or so fine that
+/// exactness is beyond doubles, is an Error(input) that names it.
+class FLAUNAY_API Locator {
+ public:
+  /// Of a triangulation with neighbours. Copies what it needs: some 80 bytes of device memory a point. O(n
+  /// log n).
+  Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
+          const Triangulation& triangulation);
+  Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
+          const Triangulation& triangulation);
+  /// Needs the parts triangles, neighbors, hull and representatives.
+  Locator(Triangulator& triangulator, const DevicePoints& points, const DeviceTriangulation& triangulation,
+          const Enqueue& enqueue = {});
+  ~Locator();
+  Locator(Locator&&) noexcept;
+  Locator& operator=(Locator&&) noexcept;
+
+  /// For each query the triangle that it lies in, exactly; on an edge or a vertex the one of the smallest
+  /// index of those that it lies in; -1 outside of the hull. About O(log n) a query.
+  std::vector<std::int32_t> locate(const double* queries, std::size_t m);
+  std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
+  /// int32, 4 bytes a query.
+  void locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue = {});
+
+  /// For each query the index of the nearest point, by exact comparisons; of several the first in the order
+  /// of x, then y. -1 if the set is empty.
+  std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
+  std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
+  void nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue = {});
+
+  /// For each query the linear interpolation of its triangle's three values, rounded; at a vertex exactly its
+  /// value; NaN outside of the hull. values: one for each input point, of which those of duplicates'
+  /// representatives count.
+  std::vector<double> interpolate(const double* values, const double* queries, std::size_t m);
+  std::vector<double> interpolate(const double* values, const double* queries,
+                                  const std::vector<std::size_t>& offsets);
+  /// values and results: double.
+  void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
+                   const Enqueue& enqueue = {});
+
+ private:
+  struct FLAUNAY_LOCAL Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
 
 /// "0.1.0"
-const char* version() noexcept;
+FLAUNAY_API const char* version() noexcept;
 
 }  // namespace flaunay

@@ -1,0 +1,38 @@
+// Cut trees: how points go down to leaves.
+#ifndef FLAUNAY_CUT_TREE_H
+#define FLAUNAY_CUT_TREE_H
+
+#include "shared/coordinates.h"
+
+// A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
+// has all bits set; without branches, since each would be taken by chance. Nodes are in the order of a heap, from 1 on.
+typedef struct {
+  ulong major, minor, turn;
+} cut_node;
+static inline int goes_high(ulong x, ulong y, cut_node cut) {
+  const ulong swapped = (x ^ y) & cut.turn;
+  const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;
+  return (major > cut.major) | ((major == cut.major) & (minor >= cut.minor));
+}
+
+// Points that go down a tree at the same time: each step waits for the one before.
+#define DESCENTS 16
+
+// The leaves of points [first, last) of the input, DESCENTS at most, counted from 0.
+static inline void find_leaves(int first, int last, global const double* input, global const cut_node* tree, int depth,
+                               int* leaves) {
+  ulong x[DESCENTS], y[DESCENTS];
+  int node[DESCENTS];
+  for (int k = 0; k < DESCENTS; ++k) {
+    const double2 p = vload2(min(first + k, last - 1), input);
+    x[k] = orderable(p.x);
+    y[k] = orderable(p.y);
+    node[k] = 1;
+  }
+  for (int d = 0; d < depth; ++d) {
+    for (int k = 0; k < DESCENTS; ++k) node[k] = 2 * node[k] + goes_high(x[k], y[k], tree[node[k]]);
+  }
+  for (int k = 0; k < DESCENTS; ++k) leaves[k] = node[k] - (1 << depth);
+}
+
+#endif

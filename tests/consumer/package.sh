@@ -1,0 +1,183 @@
+#!/usr/bin/env bash
+# Tests of the package, each for one run of CTest (tests/CMakeLists.txt):
+#
+#   package.sh install | symbols | header | find_package | pkg_config | subdirectory | static
+#
+# In the environment: SOURCE, BUILD and VERSION of flaunay, WORK (a folder to work in), CMAKE, CC and CXX.
+# WORK/prefix is what install installs, the only thing that find_package and pkg_config know of flaunay; static tests
+# the installation that subdirectory leaves in WORK/static.
+set -euo pipefail
+
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+prefix="$WORK/prefix"
+static="$WORK/static"
+has_c=false
+[[ ! -e $SOURCE/src/include/flaunay/flaunay.h ]] || has_c=true
+
+fail() {
+  echo "package.sh: $*" >&2
+  exit 1
+}
+
+# consumers_of FOLDER: the consumers that are built there.
+consumers_of() {
+  echo "$1/consumer"
+  ! $has_c || echo "$1/consumer_c"
+}
+
+# run_consumers FOLDER: runs them; they need none of the libraries that flaunay is built from.
+run_consumers() {
+  local program
+  for program in $(consumers_of "$1"); do
+    "$program"
+    if ldd "$program" | grep -iE 'boost|fmt|not found'; then
+      fail "$program needs these"
+    fi
+  done
+}
+
+# uses_installed FOLDER: they load the library of the prefix.
+uses_installed() {
+  local program needed loaded
+  for program in $(consumers_of "$1"); do
+    # Into variables first: grep -q would end the pipe, and with pipefail the test, before they are through.
+    needed="$(readelf -d "$program")"
+    [[ $needed == *'[libflaunay.so.0]'* ]] || fail "$program does not ask for libflaunay.so.0"
+    loaded="$(ldd "$program" | grep libflaunay)"
+    [[ $loaded == *"=> $prefix/"*'/libflaunay.so.0 '* ]] || fail "$program loads another library: $loaded"
+  done
+}
+
+# configure FOLDER ARGUMENTS...: the project beside this script. Debug, since that compiles fastest.
+configure() {
+  local folder=$1
+  shift
+  "$CMAKE" -S "$here" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_COMPILER="$CC" \
+    -DCMAKE_CXX_COMPILER="$CXX" -DFLAUNAY_HAS_C=$has_c "$@"
+}
+
+# with_pkg_config FOLDER PREFIX [--static]: builds them without CMake.
+with_pkg_config() {
+  local folder=$1 flags libraries
+  PKG_CONFIG_PATH="$(dirname "$(find "$2" -name flaunay.pc)")"
+  export PKG_CONFIG_PATH
+  pkg-config --exact-version="$VERSION" flaunay
+  read -ra flags <<<"$(pkg-config --cflags flaunay)"
+  read -ra libraries <<<"$(pkg-config --libs "${@:3}" flaunay)"
+  mkdir -p "$folder"
+  "$CXX" -std=c++17 -Wall -Wextra -Werror "${flags[@]}" "$here/main.cpp" -o "$folder/consumer" "${libraries[@]}"
+  if $has_c; then
+    "$CC" -std=c99 -Wall -Wextra -Werror "${flags[@]}" "$here/main.c" -o "$folder/consumer_c" "${libraries[@]}"
+  fi
+}
+
+case "$1" in
+  install)
+    # And moved, which it is to withstand.
+    rm -rf "$prefix" "$prefix.first"
+    "$CMAKE" --install "$BUILD" --prefix "$prefix.first"
+    mv "$prefix.first" "$prefix"
+    [[ -x $prefix/bin/flaunay ]] || fail 'the command is not installed'
+    if grep -rIlF -e "$SOURCE" -e "$BUILD" -e "$prefix" "$prefix"; then
+      fail 'these name the folder of the source, of the build or of the installation'
+    fi
+    for binary in "$prefix"/bin/flaunay "$prefix"/lib*/libflaunay.so; do
+      if readelf -d "$binary" | grep -E 'R(UN)?PATH'; then
+        fail "$binary has a path"
+      fi
+    done
+    ;;
+
+  find_package)
+    rm -rf "$WORK/find_package"
+    # What only flaunay itself is built from might as well not be there.
+    configure "$WORK/find_package" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON \
+      -DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON
+    "$CMAKE" --build "$WORK/find_package"
+    run_consumers "$WORK/find_package"
+    uses_installed "$WORK/find_package"
+    ;;
+
+  pkg_config)
+    with_pkg_config "$WORK/pkg_config" "$prefix"
+    export LD_LIBRARY_PATH="${PKG_CONFIG_PATH%/pkgconfig}"
+    run_consumers "$WORK/pkg_config"
+    uses_installed "$WORK/pkg_config"
+    ;;
+
+  subdirectory)
+    configure "$WORK/subdirectory" -DFLAUNAY_SOURCE="$SOURCE" -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
+      -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
+    "$CMAKE" --build "$WORK/subdirectory" --parallel 2
+    run_consumers "$WORK/subdirectory"
+    rm -rf "$static"
+    "$CMAKE" --install "$WORK/subdirectory" --prefix "$static"
+    ;;
+
+  static)
+    rm -rf "$WORK/static_find_package"
+    configure "$WORK/static_find_package" -DCMAKE_PREFIX_PATH="$static" -DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON \
+      -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON
+    "$CMAKE" --build "$WORK/static_find_package"
+    run_consumers "$WORK/static_find_package"
+    with_pkg_config "$WORK/static_pkg_config" "$static" --static
+    run_consumers "$WORK/static_pkg_config"
+    ;;
+
+  symbols)
+    # Exported is what a header marks, and all of it.
+    library="$(find "$prefix" -name libflaunay.so)"
+    headers="$prefix/include/flaunay"
+    nm -D --defined-only -C "$library" | cut -d ' ' -f 3- | sed -E 's/^(typeinfo name|typeinfo|vtable) for //' |
+      sort -u >"$WORK/exported"
+    marked="$(sed -nE '/^#/d; s/^ *(class|struct) FLAUNAY_API ([A-Za-z_]+).*/\2/p; t
+      s/^ *FLAUNAY_API [^(]*[ *&]([A-Za-z_]+|operator[^(]+)\(.*/\1/p' "$headers"/*.h* | sort -u)"
+    [[ -n $marked ]] || fail 'no header marks anything'
+    failed=false
+    # flaunay::NAME(...), flaunay::CLASS::NAME(...) or, in C, flaunay_NAME.
+    while read -r symbol; do
+      name="${symbol%%(*}"
+      name="${name#flaunay::}"
+      owner="${name%%::*}" member="${name#*::}"
+      # A marked class or function, or a marked member of a class of the headers.
+      if [[ $symbol == flaunay[:_]* && $member != *::* ]] && { grep -qxF -e "$owner" <<<"$marked" ||
+        { grep -qhE "^ *(class|struct) $owner\b" "$headers"/*.hpp && grep -qxF -e "$member" <<<"$marked"; }; }; then
+        continue
+      fi
+      echo "exported, but not marked in a header: $symbol"
+      failed=true
+    done <"$WORK/exported"
+    while read -r name; do
+      if ! grep -qE "(^|::)${name//+/\\+}(\$|\(|::)" "$WORK/exported"; then
+        echo "marked in a header, but not exported: $name"
+        failed=true
+      fi
+    done <<<"$marked"
+    ! $failed || fail 'the library exports other symbols than its headers mark'
+    echo "$(wc -l <"$WORK/exported") symbols, all of them public"
+    ;;
+
+  header)
+    # Alone, strictly, and without what flaunay itself is built from.
+    mkdir -p "$WORK/header"
+    cd "$WORK/header"
+    echo '#include <flaunay/flaunay.hpp>' >header.cpp
+    echo '#include <flaunay/flaunay.h>' >header.c
+    compile=("$CXX" -std=c++17 -Wall -Wextra -Wpedantic -Werror -I "$prefix/include" -c header.cpp)
+    "${compile[@]}" -MD -MF header.d
+    "${compile[@]}" -DFLAUNAY_STATIC
+    if $has_c; then
+      "$CC" -std=c99 -Wall -Wextra -Wpedantic -Werror -I "$prefix/include" -c header.c -MD -MF header_c.d
+    fi
+    if grep -E '/(CL|boost|fmt)/' header*.d; then
+      fail 'the public headers include these'
+    fi
+    for _ in 1 2 3 4 5; do
+      begin="$(date +%s%N)"
+      "${compile[@]}"
+      echo $((($(date +%s%N) - begin) / 1000000))
+    done | sort -n | sed -n '3s/.*/flaunay.hpp alone compiles in & ms, median of 5/p'
+    ;;
+
+  *) fail "unknown test $1" ;;
+esac

@@ -1,0 +1,622 @@
+// What is derived from triangulations, against twins by brute force in exact arithmetic: Voronoi diagrams,
+// and queries for triangles, nearest points and interpolated values; under the device's own tuning and under
+// one of odd, small sizes.
+//
+// Suites named Small... have tiny inputs, for slow simulators: oclgrind test_derived --gtest_filter='Small*'
+#include <fmt/format.h>
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "derived/locator.hpp"
+#include "derived/voronoi.hpp"
+#include "host/device.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/reference.hpp"
+#include "tests/support/same.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::derived {
+namespace {
+
+using host::Runtime;
+using testing::Coordinates;
+using testing::download;
+using testing::FixtureRandom;
+using testing::guarded;
+using testing::make_fixture;
+using testing::reference_orient2d;
+using testing::same;
+using testing::upload;
+
+using Offsets = std::vector<std::size_t>;
+
+// -----------------------------------------------------------------------------------------------------------
+// Runtimes
+
+/// One runtime for each tuning, destroyed before the OpenCL implementation leaves. "own" is the device's or
+/// what the environment names.
+class Runtimes : public ::testing::Environment {
+ public:
+  void TearDown() override { all().clear(); }
+  static Runtime& get(const std::string& name) {
+    std::unique_ptr<Runtime>& runtime = all()[name];
+    if (!runtime) {
+      const char* const before = std::getenv("FLAUNAY_TUNING");
+      const testing::ScopedEnvironment kind("FLAUNAY_TUNING", name == "own" ? before : name.c_str());
+      runtime = std::make_unique<Runtime>(host::find_device(""));
+    }
+    return *runtime;
+  }
+
+ private:
+  static std::map<std::string, std::unique_ptr<Runtime>>& all() {
+    static std::map<std::string, std::unique_ptr<Runtime>> runtimes;
+    return runtimes;
+  }
+};
+[[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
+
+/// Under the tuning that the environment names alone, if it names one.
+std::vector<std::string> tunings() {
+  if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
+  return {"own", "small", "gpu"};
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// Input
+
+/// Sets of points, their triangulation, and queries for each.
+struct Case {
+  Coordinates points;
+  Offsets offsets{0};
+  Coordinates queries;
+  Offsets query_offsets{0};
+  Triangulation mesh;
+
+  std::size_t sets() const { return offsets.size() - 1; }
+  std::size_t size() const { return points.size() / 2; }
+  std::size_t query_count() const { return queries.size() / 2; }
+  const double* point(std::int32_t i) const { return &points[2 * static_cast<std::size_t>(i)]; }
+  const double* query(std::size_t i) const { return &queries[2 * i]; }
+  std::int32_t corner(std::size_t t, int k) const {
+    return mesh.triangles[3 * t + static_cast<std::size_t>(k)];
+  }
+
+  void add(const Coordinates& set, const Coordinates& asked) {
+    points.insert(points.end(), set.begin(), set.end());
+    offsets.push_back(points.size() / 2);
+    queries.insert(queries.end(), asked.begin(), asked.end());
+    query_offsets.push_back(queries.size() / 2);
+  }
+  void triangulate() { mesh = testing::triangulator().triangulate(points.data(), offsets); }
+};
+
+/// m queries of each kind: anywhere, on points, between two points, where three points' circle has its
+/// centre, and far away.
+Coordinates make_queries(const Coordinates& points, std::size_t m, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  const auto n = static_cast<std::int64_t>(points.size() / 2);
+  double low[2] = {0, 0}, high[2] = {1, 1};
+  for (std::int64_t i = 0; i < 2 * n; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    low[c % 2] = i < 2 ? points[c] : std::min(low[c % 2], points[c]);
+    high[c % 2] = i < 2 ? points[c] : std::max(high[c % 2], points[c]);
+  }
+  Coordinates queries;
+  for (std::size_t i = 0; i < 2 * m; ++i) {
+    queries.push_back(low[i % 2] + (1.2 * random.unit() - 0.1) * (high[i % 2] - low[i % 2]));
+  }
+  for (std::size_t i = 0; i < 4 * m && n > 0; ++i) {
+    const auto a = static_cast<std::size_t>(2 * random.integer(0, n - 1));
+    const auto b = static_cast<std::size_t>(
+        2 * std::min(n - 1, static_cast<std::int64_t>(a / 2) + random.integer(1, 3)));
+    const double x = (points[a] + points[b]) / 2, y = (points[a + 1] + points[b + 1]) / 2;
+    if (i < m) {
+      queries.insert(queries.end(), {points[a], points[a + 1]});
+    } else if (i < 2 * m) {
+      queries.insert(queries.end(), {x, y});
+    } else if (i < 3 * m) {
+      // Of integers that are neighbours in a grid, the middle of a cell.
+      queries.insert(queries.end(), {std::floor(points[a]) + 0.5, std::floor(points[a + 1]) + 0.5});
+    } else {
+      const double far = 1e7 * (1 + std::max(high[0] - low[0], high[1] - low[1]));
+      queries.insert(queries.end(), {far * (random.unit() - 0.5), far * (random.unit() - 0.5)});
+    }
+  }
+  return queries;
+}
+
+Case make_case(const Coordinates& points, std::size_t m, std::uint64_t seed) {
+  Case made;
+  made.add(points, make_queries(points, m, seed));
+  made.triangulate();
+  return made;
+}
+
+Case nested_case(std::size_t n, std::size_t m) {
+  Case made;
+  const auto add = [&](const Coordinates& points) { made.add(points, make_queries(points, m, made.sets())); };
+  add({});
+  add(make_fixture("uniform", n, 1));
+  add({2, 3});
+  made.add(make_fixture("grid", n, 2), {});
+  add({});
+  add({0, 0, 4, 0, 1, 3});
+  add(make_fixture("collinear", n, 3));
+  add({1, 1, 1, 1, 1, 1});
+  add(make_fixture("star", n, 4));
+  add(make_fixture("kuzmin", 3 * n, 5));
+  add({5, 5, 6, 7});
+  add({});
+  made.triangulate();
+  return made;
+}
+
+std::vector<double> values_for(std::size_t n) {
+  std::vector<double> values;
+  FixtureRandom random(n);
+  for (std::size_t i = 0; i < n; ++i) values.push_back(random.unit() * 2 - 1);
+  return values;
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// On the device
+
+Mesh upload_mesh(Runtime& runtime, const Case& input) {
+  Mesh mesh;
+  mesh.point_offsets = input.offsets;
+  mesh.triangle_offsets = input.mesh.triangle_offsets;
+  mesh.hull_offsets = input.mesh.hull_offsets;
+  mesh.coordinates = upload(runtime, input.points);
+  mesh.triangles = upload(runtime, input.mesh.triangles);
+  mesh.neighbors = upload(runtime, input.mesh.neighbors);
+  mesh.hull = upload(runtime, input.mesh.hull);
+  mesh.representatives = upload(runtime, input.mesh.representatives);
+  return mesh;
+}
+
+struct Answers {
+  std::vector<cl_int> triangles, nearest;
+  std::vector<double> values;
+};
+
+Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& values) {
+  Arena own(runtime.context(), runtime.device());
+  if (runtime.tuning().separate_buffers) own.separate_buffers();
+  Arena::Scope scope(runtime.arena());
+  const Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+  const std::size_t m = input.query_count();
+  const auto queries = upload(runtime, input.queries);
+  const auto triangles = guarded<cl_int>(runtime, m), points = guarded<cl_int>(runtime, m);
+  const auto results = guarded<cl_double>(runtime, m);
+  locate(runtime, locator, queries, m, input.query_offsets, triangles);
+  nearest(runtime, locator, queries, m, input.query_offsets, points);
+  interpolate(runtime, locator, upload(runtime, values), queries, m, input.query_offsets, results);
+  return {download(runtime, triangles, m), download(runtime, points, m), download(runtime, results, m)};
+}
+
+Voronoi dual(Runtime& runtime, const Case& input) {
+  Arena::Scope scope(runtime.arena());
+  const std::size_t n = input.size(), triangles = input.mesh.triangles.size() / 3;
+  const VoronoiBuffers result{guarded<cl_double>(runtime, 2 * triangles), guarded<cl_int>(runtime, n + 1),
+                              guarded<cl_int>(runtime, 3 * triangles), guarded<cl_uchar>(runtime, n)};
+  voronoi(runtime, upload_mesh(runtime, input), result);
+  return {download(runtime, result.circumcentres, 2 * triangles),
+          download(runtime, result.cell_offsets, n + 1), download(runtime, result.cells, 3 * triangles),
+          download(runtime, result.unbounded, n)};
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// Twins
+
+bool contains(const Case& input, std::size_t t, const double* q) {
+  for (int k = 0; k < 3; ++k) {
+    if (reference_orient2d(input.point(input.corner(t, k)), input.point(input.corner(t, (k + 1) % 3)), q) < 0)
+      return false;
+  }
+  return true;
+}
+
+mpq_class distance(const double* a, const double* b) {
+  const mpq_class x = mpq_class(a[0]) - mpq_class(b[0]), y = mpq_class(a[1]) - mpq_class(b[1]);
+  return x * x + y * y;
+}
+
+cl_int triangle_twin(const Case& input, std::size_t set, const double* q) {
+  for (std::size_t t = input.mesh.triangle_offsets[set]; t < input.mesh.triangle_offsets[set + 1]; ++t) {
+    if (contains(input, t, q)) return static_cast<cl_int>(t);
+  }
+  return -1;
+}
+
+cl_int nearest_twin(const Case& input, std::size_t set, const double* q) {
+  cl_int best = -1;
+  mpq_class least;
+  for (std::size_t i = input.offsets[set]; i < input.offsets[set + 1]; ++i) {
+    const auto index = static_cast<cl_int>(i);
+    const mpq_class d = distance(input.point(index), q);
+    const auto place = [&](cl_int p) { return std::make_pair(input.point(p)[0], input.point(p)[1]); };
+    if (best < 0 || d < least || (d == least && place(index) < place(best))) {
+      best = index;
+      least = d;
+    }
+  }
+  return best;
+}
+
+mpq_class area(const double* a, const double* b, const double* c) {
+  return (mpq_class(a[0]) - mpq_class(c[0])) * (mpq_class(b[1]) - mpq_class(c[1])) -
+         (mpq_class(a[1]) - mpq_class(c[1])) * (mpq_class(b[0]) - mpq_class(c[0]));
+}
+
+double value_twin(const Case& input, cl_int triangle, const std::vector<double>& values, const double* q) {
+  if (triangle < 0) return std::nan("");
+  mpq_class sum = 0, whole = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto t = static_cast<std::size_t>(triangle);
+    const mpq_class weight =
+        area(input.point(input.corner(t, (k + 1) % 3)), input.point(input.corner(t, (k + 2) % 3)), q);
+    whole += weight;
+    sum += weight * mpq_class(values[static_cast<std::size_t>(input.corner(t, k))]);
+  }
+  return mpq_class(sum / whole).get_d();
+}
+
+void check_answers(const Case& input, const std::vector<std::string>& names = tunings()) {
+  const std::vector<double> values = values_for(input.size());
+  std::vector<cl_int> triangles, points;
+  std::vector<double> results;
+  for (std::size_t s = 0; s < input.sets(); ++s) {
+    for (std::size_t i = input.query_offsets[s]; i < input.query_offsets[s + 1]; ++i) {
+      triangles.push_back(triangle_twin(input, s, input.query(i)));
+      points.push_back(nearest_twin(input, s, input.query(i)));
+      results.push_back(value_twin(input, triangles.back(), values, input.query(i)));
+    }
+  }
+  std::unique_ptr<Answers> first;
+  for (const std::string& name : names) {
+    SCOPED_TRACE("tuning " + name);
+    const Answers answers = ask(Runtimes::get(name), input, values);
+    EXPECT_TRUE(same(answers.triangles, triangles));
+    EXPECT_TRUE(same(answers.nearest, points));
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      ASSERT_EQ(std::isnan(answers.values[i]), std::isnan(results[i])) << i;
+      if (triangles[i] < 0) continue;
+      ASSERT_NEAR(answers.values[i], results[i], 0x1p-38) << i;
+      if (distance(input.point(points[i]), input.query(i)) == 0) {
+        ASSERT_EQ(answers.values[i], values[static_cast<std::size_t>(
+                                         input.mesh.representatives[static_cast<std::size_t>(points[i])])]);
+      }
+    }
+    if (first) {
+      EXPECT_EQ(std::memcmp(first->values.data(), answers.values.data(), 8 * results.size()), 0);
+    } else {
+      first = std::make_unique<Answers>(answers);
+    }
+  }
+}
+
+/// The triangles around each vertex, by looking at all of them.
+void check_cells(const Case& input, const Voronoi& found) {
+  std::vector<cl_int> offsets{0}, cells;
+  const auto& triangles = input.mesh.triangles;
+  std::map<std::int32_t, std::vector<std::size_t>> corners;
+  for (std::size_t c = 0; c < triangles.size(); ++c) corners[triangles[c]].push_back(c);
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const std::vector<std::size_t>& around = corners[static_cast<std::int32_t>(i)];
+    if (!around.empty()) {
+      std::size_t c = around.front();
+      for (const std::size_t other : around) {
+        // The edge that leaves the point is opposite to the corner before.
+        if (input.mesh.neighbors[other / 3 * 3 + (other + 2) % 3] < 0) c = other;
+      }
+      for (std::size_t steps = 0; steps < around.size(); ++steps) {
+        const std::size_t t = c / 3;
+        cells.push_back(static_cast<cl_int>(t));
+        const std::int32_t before = triangles[3 * t + (c % 3 + 2) % 3];
+        for (const std::size_t other : around) {
+          if (triangles[other / 3 * 3 + (other % 3 + 1) % 3] == before) c = other;
+        }
+      }
+    }
+    offsets.push_back(static_cast<cl_int>(cells.size()));
+  }
+  EXPECT_TRUE(same(found.cell_offsets, offsets));
+  EXPECT_TRUE(same(found.cells, cells));
+  std::vector<std::uint8_t> unbounded(input.size(), 0);
+  for (const std::int32_t v : input.mesh.hull) unbounded[static_cast<std::size_t>(v)] = 1;
+  EXPECT_TRUE(same(found.unbounded, unbounded));
+}
+
+/// The exact centre, relative to a.
+std::pair<mpq_class, mpq_class> centre_twin(const double* a, const double* b, const double* c) {
+  const mpq_class bx = mpq_class(b[0]) - mpq_class(a[0]), by = mpq_class(b[1]) - mpq_class(a[1]);
+  const mpq_class cx = mpq_class(c[0]) - mpq_class(a[0]), cy = mpq_class(c[1]) - mpq_class(a[1]);
+  const mpq_class whole = 2 * (bx * cy - by * cx), bb = bx * bx + by * by, cc = cx * cx + cy * cy;
+  return {(cy * bb - by * cc) / whole, (bx * cc - cx * bb) / whole};
+}
+
+void check_circumcentres(const Case& input, const std::vector<double>& centres) {
+  for (std::size_t t = 0; t < input.mesh.triangles.size() / 3; ++t) {
+    const double* const a = input.point(input.corner(t, 0));
+    const auto [x, y] = centre_twin(a, input.point(input.corner(t, 1)), input.point(input.corner(t, 2)));
+    const mpq_class expected[2] = {x + mpq_class(a[0]), y + mpq_class(a[1])};
+    const mpq_class radius = abs(x) + abs(y);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const mpq_class allowed =
+          radius * mpq_class(0x1p-36) + (abs(expected[k]) + abs(mpq_class(a[k]))) * mpq_class(0x1p-50);
+      // Too far for a double.
+      if (abs(expected[k]) > mpq_class(0x1p1022)) continue;
+      ASSERT_TRUE(std::isfinite(centres[2 * t + k])) << t;
+      ASSERT_LE(abs(mpq_class(centres[2 * t + k]) - expected[k]), allowed + mpq_class(0x1p-1070)) << t;
+    }
+  }
+}
+
+void check_dual(const Case& input, const std::vector<std::string>& names = tunings()) {
+  std::unique_ptr<Voronoi> first;
+  for (const std::string& name : names) {
+    SCOPED_TRACE("tuning " + name);
+    const Voronoi found = dual(Runtimes::get(name), input);
+    check_cells(input, found);
+    if (first) {
+      EXPECT_TRUE(same(found.circumcentres, first->circumcentres));
+    } else {
+      check_circumcentres(input, found.circumcentres);
+      first = std::make_unique<Voronoi>(found);
+    }
+  }
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// Tests
+
+TEST(SmallDerived, NestedSets) {
+  const Case input = nested_case(9, 2);
+  check_answers(input);
+  check_dual(input);
+}
+
+TEST(SmallDerived, ASetWithATree) {
+  const Case input = make_case(make_fixture("uniform", 300, 6), 3, 7);
+  check_answers(input);
+  check_dual(input);
+}
+
+TEST(SmallDerived, Grid) {
+  const Case input = make_case(make_fixture("grid", 25, 8), 8, 9);
+  check_answers(input);
+  check_dual(input);
+}
+
+TEST(SmallDerived, NothingAtAll) {
+  for (const Offsets& offsets : {Offsets{0}, Offsets{0, 0}, Offsets{0, 0, 0}}) {
+    Case input;
+    input.offsets = input.query_offsets = offsets;
+    input.triangulate();
+    check_answers(input);
+    check_dual(input);
+  }
+}
+
+TEST(Derived, EveryFixture) {
+  for (const testing::Fixture& fixture : testing::all_fixtures()) {
+    SCOPED_TRACE(fixture.name);
+    const Case input = make_case(fixture.make(330, 11), 30, 12);
+    check_answers(input);
+    check_dual(input);
+  }
+}
+
+TEST(Derived, ManySets) {
+  const Case input = nested_case(100, 12);
+  check_answers(input);
+  check_dual(input);
+}
+
+/// Three points, seen from everywhere.
+TEST(Derived, EveryQueryOfATriangle) {
+  Case input;
+  Coordinates queries;
+  for (int x = -4; x <= 16; ++x) {
+    for (int y = -4; y <= 16; ++y) queries.insert(queries.end(), {x * 0.5, y * 0.5});
+  }
+  input.add({0, 0, 4, 0, 0, 4}, queries);
+  input.triangulate();
+  check_answers(input);
+}
+
+/// Each cell's middle is as near to four points, and each edge's to two.
+TEST(Derived, EveryQueryOfAGrid) {
+  Case input;
+  Coordinates points, queries;
+  for (int x = 0; x < 7; ++x) {
+    for (int y = 0; y < 7; ++y) points.insert(points.end(), {x * 1.0, y * 1.0});
+  }
+  for (int x = -2; x <= 14; ++x) {
+    for (int y = -2; y <= 14; ++y) queries.insert(queries.end(), {x * 0.5, y * 0.5});
+  }
+  input.add(points, queries);
+  input.triangulate();
+  check_answers(input);
+  // Cocircular triangles have the same centre, to the last bit.
+  const Voronoi found = dual(Runtimes::get("own"), input);
+  for (const double c : found.circumcentres) EXPECT_EQ(c - std::floor(c), 0.5);
+}
+
+/// Magnitudes of all kinds, in which queries may be finer and farther than points.
+TEST(Derived, Magnitudes) {
+  const Coordinates points = make_fixture("uniform", 60, 13);
+  for (const double factor : {0x1p960, 0x1p-900, 0x1p300, 0x1p-300, 1.0}) {
+    SCOPED_TRACE(factor);
+    Case input = make_case(testing::scaled(points, factor), 6, 14);
+    if (factor == 1.0) {
+      for (const double q : {0x1p-450, 0x1p450, 0x1p508}) {
+        input.queries.insert(input.queries.end(), {0.5, q, -q, 0.5, q, q});
+        input.query_offsets.back() += 3;
+        check_answers(input);
+        input.queries.resize(input.queries.size() - 6);
+        input.query_offsets.back() -= 3;
+      }
+    }
+    check_answers(input);
+    check_dual(input);
+  }
+  Coordinates overflowing = points;
+  for (double& c : overflowing) c = (c - 0.5) * 0x1.fp1023 * 2;
+  check_dual(make_case(overflowing, 0, 15));
+}
+
+std::string message_of(const std::function<void()>& action, ErrorKind kind) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SmallErrors, QueriesThatCannotBeDecided) {
+  Runtime& runtime = Runtimes::get("own");
+  const auto message = [&](const Coordinates& queries, ErrorKind kind = ErrorKind::input,
+                           Offsets offsets = {}) {
+    Case input;
+    input.add({0, 0, 1, 0, 0, 1}, queries);
+    input.triangulate();
+    if (!offsets.empty()) input.query_offsets = offsets;
+    return message_of([&] { ask(runtime, input, {1, 2, 3}); }, kind);
+  };
+  EXPECT_EQ(message({0.5, 0.5, 0, std::nan("")}), "query 1 is not finite: (0, nan)");
+  EXPECT_EQ(message({HUGE_VAL, 0.5, 0, std::nan("")}), "query 0 is not finite: (inf, 0.5)");
+  EXPECT_NE(message({0.5, 0.5, 0, 0, 0.25, 0x1p-1070}).find("query 2 is too fine to be exact: it has y = "),
+            std::string::npos);
+  EXPECT_NE(message({0.5, 0.5, 0x1p1023, 0x1p-10}).find("query 1 is too far to be exact: it has x = "),
+            std::string::npos);
+  EXPECT_NE(message({0.5, 0.5}, ErrorKind::usage, {0, 2}).find("end with 2; there are 1 queries"),
+            std::string::npos);
+  EXPECT_NE(message({0.5, 0.5}, ErrorKind::usage, {0, 1, 1}).find("of 2 sets"), std::string::npos);
+}
+
+TEST(SmallErrors, MeshesThatAreNone) {
+  Runtime& runtime = Runtimes::get("own");
+  const Case whole = make_case(make_fixture("uniform", 20, 16), 3, 17);
+  const auto message = [&](const std::function<void(Triangulation&)>& change) {
+    Case input = whole;
+    change(input.mesh);
+    dual(runtime, input);
+    return message_of([&] { ask(runtime, input, values_for(input.size())); }, ErrorKind::input);
+  };
+  const std::string triangle = "triangle 3 is not that of a triangulation";
+  const auto starts = [&](const std::string& text, const std::string& with) {
+    return text.substr(0, with.size()) == with;
+  };
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.triangles[10] = 20; }), "triangle"));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.triangles[10] = -1; }), "triangle"));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.triangles[10] = m.triangles[9]; }), "triangle"));
+  EXPECT_TRUE(
+      starts(message([](Triangulation& m) { std::swap(m.neighbors[9], m.neighbors[10]); }), triangle));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.neighbors[9] = 3; }), triangle));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.neighbors[9] = 100000; }), triangle));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.neighbors[9] = -2; }), triangle));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.hull[2] = 20; }), "hull vertex 2"));
+  EXPECT_TRUE(starts(message([](Triangulation& m) { m.representatives[4] = -1; }), "representative 4"));
+  EXPECT_EQ(message([](Triangulation&) {}), "no error");
+  Case larger = whole;
+  larger.mesh.triangle_offsets.back() = 41;
+  EXPECT_TRUE(starts(message_of([&] { ask(runtime, larger, {}); }, ErrorKind::input),
+                     "20 points cannot have 41 triangles"));
+}
+
+/// Points at wrong places: answers mean nothing, but there are some.
+TEST(SmallErrors, WalksEndWhateverThePoints) {
+  Case input = make_case(make_fixture("uniform", 80, 18), 20, 19);
+  FixtureRandom random(20);
+  for (double& c : input.points) c = random.unit();
+  ask(Runtimes::get("own"), input, values_for(input.size()));
+  dual(Runtimes::get("own"), input);
+}
+
+/// A NaN at a corner does not show where that corner has no weight.
+TEST(SmallDerived, ValuesThatAreNotFinite) {
+  Case input;
+  input.add({0, 0, 4, 0, 0, 4}, {0, 0, 2, 2, 4, 0, 1, 1, 0, 4});
+  input.triangulate();
+  const Answers answers = ask(Runtimes::get("own"), input, {std::nan(""), 2, HUGE_VAL});
+  EXPECT_TRUE(std::isnan(answers.values[0]));
+  EXPECT_EQ(answers.values[1], HUGE_VAL);
+  EXPECT_EQ(answers.values[2], 2);
+  EXPECT_TRUE(std::isnan(answers.values[3]));
+  EXPECT_EQ(answers.values[4], HUGE_VAL);
+}
+
+/// Checked where it is checked without the twins, which would take too long.
+TEST(Derived, AMillionQueries) {
+  const std::size_t n = 1000000;
+  FixtureRandom random(21);
+  Case input;
+  Coordinates queries;
+  for (std::size_t i = 0; i < 2 * n; ++i) queries.push_back(random.unit() * 1.02 - 0.51);
+  const Coordinates points = make_fixture("uniform", n, 22);
+  double low = points[0], high = points[0];
+  for (const double c : points) low = std::min(low, c), high = std::max(high, c);
+  for (double& q : queries) q = (low + high) / 2 + q * (high - low);
+  for (std::size_t i = 0; i < 1000; ++i) queries[i] = points[i];
+  input.add(points, queries);
+  input.triangulate();
+  const Answers answers = ask(Runtimes::get("own"), input, values_for(n));
+  for (std::size_t i = 0; i < n; i += i < 500 ? 10 : 997) {
+    const cl_int t = answers.triangles[i];
+    const double* const q = input.query(i);
+    if (t < 0) {
+      EXPECT_TRUE(q[0] < low + 0.02 * (high - low) || q[0] > high - 0.02 * (high - low) ||
+                  q[1] < low + 0.02 * (high - low) || q[1] > high - 0.02 * (high - low));
+    } else {
+      EXPECT_TRUE(contains(input, static_cast<std::size_t>(t), q)) << i;
+    }
+    if (i >= 500 && i % 9970 != 500) continue;
+    double least = HUGE_VAL;
+    std::size_t nearest_point = 0;
+    for (std::size_t p = 0; p < n; ++p) {
+      const double d = std::hypot(points[2 * p] - q[0], points[2 * p + 1] - q[1]);
+      if (d < least) least = d, nearest_point = p;
+    }
+    EXPECT_EQ(answers.nearest[i], static_cast<cl_int>(nearest_point));
+  }
+}
+
+TEST(Kernels, AllAreLaunched) {
+  std::set<std::string> launched;
+  Runtime& runtime = Runtimes::get("own");
+  runtime.set_profiling(true);
+  const Case input = nested_case(100, 2);
+  ask(runtime, input, values_for(input.size()));
+  dual(runtime, input);
+  for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
+  runtime.set_profiling(false);
+  std::size_t kernels = 0;
+  for (const char* const file : {"locate", "voronoi"}) {
+    const std::string source = host::kernel_source(file);
+    const std::regex pattern("\nkernel void (\\w+)\\(");
+    for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
+      EXPECT_EQ(launched.count((*it)[1]), 1u) << (*it)[1] << " of " << file << ".cl";
+      ++kernels;
+    }
+  }
+  EXPECT_EQ(kernels, 15u);
+}
+
+}  // namespace
+}  // namespace flaunay::derived
