@@ -24,6 +24,8 @@ void add_targets(CLI::App& app, Action& action);
 void add_scaling(CLI::App& app, Action& action);
 void add_cliffs(CLI::App& app, Action& action);
 void add_small(CLI::App& app, Action& action);
+void add_batches(CLI::App& app, Action& action);
+void add_embedding(CLI::App& app, Action& action);
 void add_threads(CLI::App& app, Action& action);
 
 }  // namespace flaunay::bench

@@ -11,18 +11,12 @@ namespace {
 
 const std::string kOwn = "flaunay-";
 
-/// Runs again until the clock and a cold cache do not matter; the mean.
 double run_repeatedly(const Implementation& implementation, Entry& entry) {
-  constexpr double kEnoughSeconds = 0.05;
-  double seconds = 0;
-  int times = 0;
-  while (seconds < kEnoughSeconds) {
+  return mean_of_repeated([&] {
     const Outcome outcome = implementation.run(*entry.input);
     entry.triangles = outcome.triangles;
-    seconds += outcome.seconds;
-    ++times;
-  }
-  return seconds / times;
+    return outcome.seconds;
+  });
 }
 
 Job job_of(const Implementation& implementation, Entry& entry) {

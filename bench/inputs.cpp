@@ -24,8 +24,8 @@ Named<Value> with_names(std::initializer_list<Value> values) {
 }
 
 const Named<Mode>& named_modes() {
-  static const auto kModes = with_names({Mode::hybrid, Mode::flattened, Mode::recursive_device,
-                                         Mode::recursive, Mode::partition, Mode::dwyer});
+  static const auto kModes = with_names(
+      {Mode::hybrid, Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
   return kModes;
 }
 
@@ -49,9 +49,13 @@ Value find_named(const Named<Value>& all, const std::string& name, const char* k
   throw Error(ErrorKind::usage, fmt::format("no {} is called '{}'", kind, name));
 }
 
+constexpr const char* kAllEqual = "all-equal";
+
 /// Another set: appends n points of the distribution.
 void append_set(Input& input, const std::string& distribution, std::size_t n) {
-  const std::vector<double> set = io::generate(distribution, n, kSeed + input.offsets.size()).coordinates;
+  const std::vector<double> set =
+      distribution == kAllEqual ? std::vector<double>(2 * n, 0.5)
+                                : io::generate(distribution, n, kSeed + input.offsets.size()).coordinates;
   std::vector<double>& all = input.points.coordinates;
   all.insert(all.end(), set.begin(), set.end());
   input.n += n;
@@ -77,7 +81,8 @@ Input equal_sets(std::size_t sets, std::size_t size) {
 }
 
 Input heavy_tailed_sets(std::size_t n) {
-  static const std::vector<std::string> kKinds = {"collinear", "grid", "mostly-equal", "small-integers"};
+  static const std::vector<std::string> kKinds = {"collinear", "grid", kAllEqual, "mostly-equal",
+                                                  "small-integers"};
   constexpr std::size_t kOneInSets = 4;
   std::mt19937_64 random(kSeed);
   Input input{"", 0, {}, {0}};

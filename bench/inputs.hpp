@@ -33,7 +33,7 @@ Input make_input(const std::string& distribution, std::size_t n);
 Input equal_sets(std::size_t sets, std::size_t size);
 
 /// n points in sets whose sizes have a heavy tail, up to a tenth of all points. A ninth of the sets is empty,
-/// a quarter is degenerate: collinear, gridded, nearly all equal, or with many duplicates.
+/// a quarter is degenerate: collinear, gridded, all or nearly all equal, or with many duplicates.
 Input heavy_tailed_sets(std::size_t n);
 
 /// Every distribution at every size, sizes ascending.

@@ -28,8 +28,8 @@ int run(int argc, char** argv) {
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
-  for (const auto add : {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_threads,
-                         add_primitives, add_paper}) {
+  for (const auto add : {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_batches,
+                         add_embedding, add_threads, add_primitives, add_paper}) {
     add(app, action);
   }
   try {

@@ -13,6 +13,7 @@
 #include "options.hpp"
 #include "plot.hpp"
 #include "record.hpp"
+#include "target.hpp"
 
 namespace flaunay::bench {
 namespace {
@@ -36,31 +37,6 @@ Sizes sizes_of(const Request& request) { return request.quick ? Sizes{2000, 4000
 constexpr const char* kUniform = "uniform";
 
 // ---- Targets
-
-struct Target {
-  std::string what, implementation;
-  double at_least, goal;  // at most, where less is better: then the goal is less
-  std::optional<double> measured;
-
-  bool more_is_better() const { return goal > at_least; }
-  /// How far it is, as a share of what it must be at least.
-  double reached(double value) const { return more_is_better() ? value / at_least : at_least / value; }
-  const char* verdict() const {
-    if (!measured) return "not measured";
-    if (reached(*measured) >= reached(goal)) return "goal";
-    return reached(*measured) >= 1 ? "kept" : "MISSED";
-  }
-};
-
-std::optional<double> ratio(std::optional<double> a, std::optional<double> b) {
-  if (!a || !b) return {};
-  return *a / *b;
-}
-
-std::string thousands(std::size_t n) {
-  if (n % 1000000 == 0) return fmt::format("{}M", n / 1000000);
-  return n % 1000 == 0 ? fmt::format("{}k", n / 1000) : fmt::format("{}", n);
-}
 
 /// What was measured, and the targets of one implementation made of it.
 class Targets {
@@ -215,30 +191,6 @@ std::vector<Target> targets_of(const std::vector<Entry>& most, const std::vector
 }
 
 // ---- What is shown of it
-
-void print_targets(const std::vector<Target>& targets) {
-  fmt::print("\n{:<20} {:<46} {:>9} {:>8} {:>9}\n", "implementation", "what", "at least", "goal", "measured");
-  for (const Target& t : targets) {
-    const char* sign = t.more_is_better() ? ">=" : "<=";
-    fmt::print("{:<20} {:<46} {:>9} {:>8} {:>9}  {}\n", t.implementation, t.what,
-               fmt::format("{} {:g}", sign, t.at_least), fmt::format("{} {:g}", sign, t.goal),
-               t.measured ? fmt::format("{:.3g}", *t.measured) : "-", t.verdict());
-  }
-}
-
-nlohmann::json record_of(const std::vector<Target>& targets) {
-  nlohmann::json result = nlohmann::json::array();
-  for (const Target& t : targets) {
-    result.push_back({{"what", t.what},
-                      {"implementation", t.implementation},
-                      {"more_is_better", t.more_is_better()},
-                      {"at_least", t.at_least},
-                      {"goal", t.goal},
-                      {"measured", t.measured ? nlohmann::json(*t.measured) : nlohmann::json()},
-                      {"verdict", t.verdict()}});
-  }
-  return result;
-}
 
 plot::Figure figure_of(const std::vector<Target>& targets, const Request& request, const DeviceInfo& device) {
   plot::Bars panel;

@@ -79,6 +79,17 @@ void run_interleaved(std::vector<Job>& jobs, int runs, double limit) {
   }
 }
 
+double mean_of_repeated(const std::function<double()>& run) {
+  constexpr double kEnoughSeconds = 0.05;
+  double seconds = 0;
+  int times = 0;
+  while (seconds < kEnoughSeconds) {
+    seconds += run();
+    ++times;
+  }
+  return seconds / times;
+}
+
 Summary summary(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;

@@ -59,6 +59,9 @@ struct Job {
 /// after one whose uncounted run took longer than the limit in seconds (0: none).
 void run_interleaved(std::vector<Job>& jobs, int runs, double limit = 0);
 
+/// Runs what returns seconds again until the clock and a cold cache do not matter; the mean.
+double mean_of_repeated(const std::function<double()>& run);
+
 struct Summary {
   double median = 0, low = 0, high = 0;
 };

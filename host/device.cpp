@@ -36,7 +36,7 @@ std::vector<boost::compute::device> all_devices() {
         "pocl-opencl-icd; "
         "for a GPU: its vendor's OpenCL driver (nvidia-opencl-icd, rocm-opencl-icd, intel-opencl-icd). "
         "If one is installed, see that /etc/OpenCL/vendors (or OCL_ICD_VENDORS) names it",
-        code == CL_SUCCESS ? -1001 : code);
+        code == CL_SUCCESS ? -1001 : code, "clGetPlatformIDs");
   }
   std::vector<cl_platform_id> platforms(platform_count);
   FLAUNAY_CL(clGetPlatformIDs(platform_count, platforms.data(), nullptr));
@@ -52,21 +52,24 @@ std::vector<boost::compute::device> all_devices() {
 }
 
 bool has_fp64(const boost::compute::device& device) {
-  return device.get_info<cl_device_fp_config>(CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
+  // Before OpenCL 1.2, devices without it may answer CL_INVALID_VALUE.
+  cl_device_fp_config config = 0;
+  return clGetDeviceInfo(device.id(), CL_DEVICE_DOUBLE_FP_CONFIG, sizeof config, &config, nullptr) ==
+             CL_SUCCESS &&
+         config != 0;
 }
 
 boost::compute::device find_device(const std::string& requested) {
   const std::vector<boost::compute::device> devices = all_devices();
   if (devices.empty()) {
-    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo",
-                      CL_DEVICE_NOT_FOUND);
+    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo");
   }
   std::string wanted = requested;
-  std::string origin = "--device";
+  std::string origin;
   if (wanted.empty()) {
     const char* environment = std::getenv("FLAUNAY_DEVICE");
     if (environment != nullptr) wanted = environment;
-    origin = "FLAUNAY_DEVICE";
+    origin = " (FLAUNAY_DEVICE)";
   }
   if (wanted.empty()) {
     for (const bool gpu_only : {true, false}) {
@@ -93,9 +96,7 @@ boost::compute::device find_device(const std::string& requested) {
       }
     }
   }
-  throw DeviceError(
-      fmt::format("no device matches '{}' ({}); there are: {}", wanted, origin, listing(devices)),
-      CL_DEVICE_NOT_FOUND);
+  throw DeviceError(fmt::format("no device matches '{}'{}; there are: {}", wanted, origin, listing(devices)));
 }
 
 }  // namespace flaunay::host

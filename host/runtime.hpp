@@ -125,6 +125,13 @@ class Runtime {
     write_later(to, 0, kept->size(), kept->data());
     kept_.push_back(kept);
   }
+  /// A buffer of the arena with the values.
+  template <typename T>
+  Buffer<T> upload(Arena& arena, std::vector<T> values) {
+    const auto buffer = arena.allocate<T>(values.size());
+    write_kept(buffer, std::move(values));
+    return buffer;
+  }
   /// Host memory as kernels read it: in place on a device that works in host memory, else a copy, which comes
   /// from the arena. The memory must stay until the work is done.
   template <typename T>

@@ -1,19 +1,15 @@
-// Points to blocks: each set that is larger than a block is cut by a tree, whose leaves are its blocks.
+// Points to blocks: each set that is larger than a block is cut by a tree, whose leaves are its blocks; cut_tree.cl,
+// part of the same program, makes the trees.
 //
-// gather_samples fetches the points that the host makes the trees from. Then all is done in chunks of points, a work-item
-// each. A chunk lies in one set with a tree, or in sets that are one block each. Of the former, count_blocks finds each
-// point's block and counts, in a row of `cursors` a chunk; the counts, block by block and chunk by chunk, are scanned.
-// move_points scales all points and brings them and their indices to their blocks, in the order of the input.
-// block_offsets tells where blocks begin. Two passes over the points, one where there is no tree.
+// All is done in chunks of points, a work-item each. A chunk lies in one set with a tree, or in sets that are one
+// block each. Of the former, count_blocks finds each point's block and counts, in a row of `cursors` a chunk; the
+// counts, block by block and chunk by chunk, are scanned. move_points scales all points and brings them and their
+// indices to their blocks, in the order of the input. block_offsets tells where blocks begin. Two passes over the
+// points, one where there is no tree.
 
+#include "cut_tree.cl"
 #include "shared/coordinates.h"
 #include "shared/cut_tree.h"
-
-kernel void gather_samples(int n, global const int* restrict indices, global const double* restrict input,
-                           global double2* restrict samples) {
-  const int i = get_global_id(0);
-  if (i < n) samples[i] = vload2(indices[i], input);
-}
 
 // A chunk: points [first, last), and of a set with a tree: its depth, where its nodes begin, where the chunk's row of
 // cursors begins, the set's first count, the chunk's number in the set, and the set's number of chunks.

@@ -6,6 +6,7 @@
 // lies together. merge_blocks, one launch a level of the trees from the leaves up, a work-item a node, merges the two
 // triangulations on either side of the node's cut.
 
+#include "shared/cut_tree.h"
 #include "shared/rings.h"
 
 // Where a point stands in either order.
@@ -157,21 +158,22 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
   }
 }
 
-// A merge: the first blocks of either side, which have the sides' ends and free edges; the axis of the cut.
-kernel void merge_blocks(int n, int first_merge, global const int4* restrict merges, double orient_bound,
-                         double circle_bound, global const double2* points, global ring_edge* edges,
-                         global int* vertex_edge, global int4* block_ends, global int2* free_lists,
-                         global volatile uint* undecided) {
+// A merge: the first blocks of either side, which have the sides' ends and free edges; the node that cuts between them.
+kernel void merge_blocks(int n, int first_merge, global const int4* restrict merges,
+                         global const cut_node* restrict nodes, double orient_bound, double circle_bound,
+                         global const double2* points, global ring_edge* edges, global int* vertex_edge,
+                         global int4* block_ends, global int2* free_lists, global volatile uint* undecided) {
   const int m = get_global_id(0);
   if (m < n) {
     const int4 merge = merges[first_merge + m];
     const ends low = block_ends[merge.x], high = block_ends[merge.y];
+    const int axis = cut_axis(nodes[merge.z]);
     rings g = rings_on(edges, points, vertex_edge, orient_bound, circle_bound);
     join_free_lists(&g, free_lists[merge.x], free_lists[merge.y]);
     if (low.x != NO_VERTEX && high.x != NO_VERTEX) {
-      merge_triangulations(&g, last_along(low, merge.z), first_along(high, merge.z));
+      merge_triangulations(&g, last_along(low, axis), first_along(high, axis));
     }
-    block_ends[merge.x] = joined_ends(&g, low, high, merge.z);
+    block_ends[merge.x] = joined_ends(&g, low, high, axis);
     free_lists[merge.x] = free_list(&g);
     if (g.undecided > 0) atomic_add(undecided, g.undecided);
   }

@@ -171,14 +171,12 @@ kernel void check_representatives(int n, int sets, global const int* restrict po
   }
 }
 
-// On input a start is a point, or the complement of a triangle. last: the last triangle.
-kernel void start_triangles(int n, int last, global const int* restrict representatives,
-                            global const int* restrict incident, global int* restrict starts) {
+// by_leaf: each leaf's sample; drawn: the point that a sample is. last: the last triangle.
+kernel void start_triangles(int n, int last, global const int* restrict by_leaf, global const int* restrict drawn,
+                            global const int* restrict representatives, global const int* restrict incident,
+                            global int* restrict starts) {
   const int i = get_global_id(0);
-  if (i < n) {
-    const int start = starts[i];
-    starts[i] = start < 0 ? ~start : min(last, incident[representatives[start]]);
-  }
+  if (i < n) starts[i] = min(last, incident[representatives[drawn[by_leaf[i]]]]);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -263,7 +261,7 @@ kernel void find_triangles(int n, int chunk, int sets, int keep_outside, global 
       int start[DESCENTS];
       find_leaves(begin, end, queries, nodes + set.nodes, set.depth, start);
       for (int j = 0; j < DESCENTS; ++j) {
-        start[j] = starts[set.starts + start[j]];
+        start[j] = set.depth > 0 ? starts[set.starts + start[j]] : set.starts;
         fetch(&faces[start[j]]);
       }
       for (int j = 0; j < end - begin && set.triangles > 0; ++j) fetch(&points[faces[start[j]].corner[0]]);

@@ -25,7 +25,9 @@ peer_sizes=10000000
 mode_sizes=1024,16384,131072,1048576,4194304
 verify_size=200000
 runs=5
-device_tests=(test_predicates test_vector_operations test_stages test_hybrid_stages test_triangulation test_modes test_work test_cgal)
+embedding=() batches=()
+device_tests=(test_predicates test_vector_operations test_stages test_hybrid_stages test_derived test_embedding test_triangulation
+  test_modes test_work test_cgal)
 
 source="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 command_line="scripts/gpu.sh $*"
@@ -65,7 +67,8 @@ while (($# > 0)); do
 done
 if $quick; then
   peer_sizes=20000 mode_sizes=1024,4096 verify_size=5000 runs=1
-  device_tests=(test_vector_operations test_triangulation)
+  device_tests=(test_vector_operations test_embedding test_triangulation)
+  embedding=(--quick) batches=(--quick)
 fi
 
 work="$(mktemp -d)"
@@ -219,15 +222,19 @@ bench() {
   local name=$1
   shift
   local code=0
-  run "$programs/flaunay-bench" "$@" --distributions "$distributions" --modes "$modes" --runs "$runs" \
-    --json "$work/$name.json" || code=$?
+  run "$programs/flaunay-bench" "$@" --runs "$runs" --json "$work/$name.json" || code=$?
   ((code == 0)) || failures+=("flaunay-bench $name")
   [[ -s $work/$name.json ]] || echo "{\"error\": \"exit code $code\"}" >"$work/$name.json"
 }
+chosen=(--distributions "$distributions" --modes "$modes")
 say "Times beside others, $peer_sizes points"
-bench peers peers --sizes "$peer_sizes" --peers "$peers"
+bench peers peers --sizes "$peer_sizes" --peers "$peers" "${chosen[@]}"
 say 'Times by number of points'
-bench modes modes --sizes "$mode_sizes" --count-up-to 0
+bench modes modes --sizes "$mode_sizes" --count-up-to 0 "${chosen[@]}"
+say 'From device memory to device memory, and queries'
+bench embedding embedding ${embedding[@]+"${embedding[@]}"}
+say 'Thousands of sets in one call'
+bench batches batches ${batches[@]+"${batches[@]}"}
 
 say "CuPy's Delaunay triangulation (gDel2D)"
 cupy="$work/cupy.json"
@@ -285,7 +292,7 @@ record="$output/${file_name:-unknown-device}.json"
   echo "\"tests\": $(joined "${test_records[@]}"),"
   echo "\"verified\": $(joined "${verify_records[@]}"),"
   echo '"peers":' && cat "$work/peers.json"
-  echo ', "modes":' && cat "$work/modes.json"
+  for name in modes embedding batches; do echo ", \"$name\":" && cat "$work/$name.json"; done
   echo ', "cupy":' && cat "$cupy"
   echo ", \"cupy_verified\": [$cupy_verdicts]"
   echo '}'

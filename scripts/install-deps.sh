@@ -13,6 +13,10 @@ packages=(
   libgtest-dev libgmp-dev libcgal-dev oclgrind
   # benchmarks: those that flaunay is measured beside, with CGAL
   libqhull-dev libgts-dev
+  # the Python module and its tests
+  python3-dev python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-matplotlib python3-pytest
+  # the documentation
+  doxygen
   # the demonstration's picture
   librsvg2-bin
 )

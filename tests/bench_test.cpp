@@ -124,7 +124,9 @@ TEST_F(BenchTest, Usage) {
   EXPECT_EQ(run("primitives --sizes 0"), 2);
   EXPECT_EQ(run("scaling --least 8 --most 7"), 2);
   EXPECT_EQ(run("cliffs --distributions nothing"), 2);
-  EXPECT_EQ(run("small --batch-points 0"), 2);
+  EXPECT_EQ(run("small --sizes 0"), 2);
+  EXPECT_EQ(run("batches --points 0"), 2);
+  EXPECT_EQ(run("embedding --sizes 0"), 2);
   EXPECT_EQ(run("threads --counts 0"), 2);
   EXPECT_EQ(run("targets --modes nothing"), 2);
   EXPECT_EQ(run("paper --smallest 9 --largest 8"), 2);
@@ -288,15 +290,78 @@ TEST_F(BenchTest, SlowInputsEnd) {
   EXPECT_EQ(of_flaunay, 2u);  // the smaller size of both inputs
 }
 
-TEST_F(BenchTest, SmallSetsAreRecorded) {
-  const auto record = run_well("small --sizes 32,100 --batch-points 3000 --modes flattened");
+TEST_F(BenchTest, SmallCallsAreRecorded) {
+  const auto record = run_well("small --sizes 32,100 --modes flattened");
   const std::size_t implementations = expect_entries(record);
-  EXPECT_EQ(record["results"].size(), (2 + 4) * implementations);
-  ASSERT_EQ(record["batches"].size(), 3 * implementations);
-  for (const auto& batch : record["batches"]) {
-    expect_keys(batch, {"implementation", "batch", "sets", "n", "times_one_set"});
-    EXPECT_GT(batch.value("sets", 0), 1);
-    EXPECT_EQ(batch.value("n", 0), 3000);
+  EXPECT_EQ(record["results"].size(), 2 * implementations);
+}
+
+TEST_F(BenchTest, BatchesAreBesideLoops) {
+  const auto record = run_well("batches --quick");
+  const bool cgal = !without_cgal(contents(path("err")));
+  EXPECT_EQ(expect_entries(record), cgal ? 3u : 2u);
+  EXPECT_EQ(record["results"].size(), cgal ? 3u * 3 + 2 : 3u * 2 + 1);
+  ASSERT_EQ(record["ratios"].size(), 3u);
+  for (const auto& row : record["ratios"]) {
+    expect_keys(row, {"implementation", "batch", "cgal_loop_over_one_call", "cgal_loop_over_its_one_set"});
+    EXPECT_GT(row.value("sets", 0), 1);
+    EXPECT_EQ(row.value("n", 0), 3000);
+    EXPECT_EQ(row.value("loop_sets_measured", 0), row.value("sets", -1));
+    EXPECT_EQ(row["cgal_loop_over_one_call"].is_number(), cgal);
+    EXPECT_GT(row.value("own_loop_over_one_call", 0.0), 0);
+    EXPECT_GT(row.value("one_call_over_one_set", 0.0), 0);
+  }
+  ASSERT_EQ(record["targets"].size(), 1u);
+  EXPECT_EQ(record["targets"][0].value("goal", 0.0), 3);
+}
+
+// The numbers of triangles agree all the same.
+TEST_F(BenchTest, LongLoopsAreScaled) {
+  const auto record = run_well("batches --quick --loop-sets 7 --modes flattened");
+  expect_entries(record);
+  for (const auto& row : record["ratios"]) {
+    EXPECT_LE(row.value("loop_sets_measured", 0), 7);
+    EXPECT_GT(row.value("loop_sets_measured", 0), 0);
+  }
+  EXPECT_NE(contents(path("out")).find("scaled from"), std::string::npos);
+}
+
+TEST_F(BenchTest, EmbeddingIsMeasured) {
+  const auto record = run_well("embedding --quick --far-walks 100");
+  const bool cgal = !without_cgal(contents(path("err")));
+  EXPECT_TRUE(record.value("agrees", false));
+  std::map<std::string, int> of_operation;
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"operation", "implementation", "precision", "n", "count", "measured"});
+    expect_times(row);
+    ++of_operation[row.value("operation", "")];
+    EXPECT_EQ(row.value("measured", 0),
+              row.value("implementation", "") == "cgal: last face" ? 100 : row.value("n", 0))
+        << row;
+  }
+  const int ways = cgal ? 4 : 1, voronoi = cgal ? 2 : 1, sizes = 2;
+  const std::map<std::string, int> expected = {{"triangulate", sizes * 3 * 6}, {"locator", sizes},
+                                               {"locate", sizes * ways},       {"nearest", sizes * ways},
+                                               {"interpolate", sizes},         {"voronoi", sizes * voronoi}};
+  EXPECT_EQ(of_operation, expected);
+  ASSERT_EQ(record["ratios"].size(), 2u * 3 * 2);
+  for (const auto& row : record["ratios"]) {
+    expect_keys(row, {"parts", "precision", "n", "device_over_own_kernels", "device_over_host"});
+    EXPECT_GT(row.value("device_over_host_kernels", 0.0), 0);
+  }
+  EXPECT_EQ(record["targets"].size(), 3u);
+}
+
+TEST_F(BenchTest, SecondEmbeddedCallsAllocateNothing) {
+  const auto record = run_well("embedding --quick --far-walks 1");
+  ASSERT_EQ(record["calls"].size(), 2u * 3 * 2);
+  for (const auto& both : record["calls"]) {
+    for (const char* call : {"first", "second"}) {
+      expect_keys(both[call], {"host_waits", "kernel_launches", "bytes_to_host", "bytes_to_device"});
+      EXPECT_GT(both[call].value("kernel_launches", 0), 0);
+    }
+    EXPECT_GT(both["first"].value("device_allocations", 0), 0);
+    EXPECT_EQ(both["second"].value("device_allocations", -1), 0) << both;
   }
 }
 

@@ -25,6 +25,7 @@
 #include "host/runtime.hpp"
 #include "hybrid/cut_tree.hpp"
 #include "hybrid/stages.hpp"
+#include "tests/support/cut_tree_twin.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/hybrid_twins.hpp"
@@ -39,12 +40,17 @@ using host::Tuning;
 using testing::BlocksTwin;
 using testing::comes_first;
 using testing::Coordinates;
+using testing::cut_tree;
+using testing::CutTree;
 using testing::FixtureRandom;
 using testing::HostRings;
 using testing::make_fixture;
 using testing::MeshTwin;
 using testing::RingCheck;
 using testing::same;
+using testing::sample_indices;
+using testing::samples_for;
+using testing::spread_indices;
 using testing::TreeTwin;
 
 using Offsets = std::vector<std::size_t>;
@@ -310,6 +316,152 @@ TEST(SmallCutTree, SamplesComeFromEqualParts) {
   }
 }
 
+/// The points of each leaf of so many samples, sorted.
+using Leaf = std::vector<std::pair<double, double>>;
+std::vector<Leaf> leaves_of(const std::vector<cl_double2>& samples, std::size_t size) {
+  std::vector<Leaf> leaves(samples.size() / size);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    leaves[i / size].emplace_back(samples[i].s[0], samples[i].s[1]);
+  for (Leaf& leaf : leaves) std::sort(leaf.begin(), leaf.end());
+  return leaves;
+}
+
+/// What the device made of all sets.
+struct HostTrees {
+  std::vector<CutNode> nodes;
+  std::vector<cl_double2> samples;
+  std::vector<cl_int> orders;
+  std::size_t first_sample = 0, first_node = 0;  ///< of the set at hand
+};
+
+/// A set's tree against that which the host makes of the same samples.
+void check_device_tree(const Coordinates& coordinates, int depth, std::size_t samples_per_leaf,
+                       const HostTrees& found) {
+  std::vector<cl_double2> expected, samples;
+  for (const cl_int i : spread_indices(coordinates.size() / 2, samples_per_leaf << depth)) {
+    expected.push_back(point_of(coordinates, static_cast<std::size_t>(i)));
+    samples.push_back(found.samples[found.first_sample + samples.size()]);
+  }
+  EXPECT_TRUE(same(samples, expected));
+  const CutTree tree = cut_tree(expected, depth);  // and brings them to the order of leaves
+  for (std::size_t k = 1; k < tree.nodes.size(); ++k) {
+    const CutNode &node = found.nodes[found.first_node + k], &twin = tree.nodes[k];
+    ASSERT_TRUE(node.major == twin.major && node.minor == twin.minor && node.turn == twin.turn)
+        << "node " << k;
+  }
+  for (const std::size_t order : {std::size_t{0}, found.samples.size()}) {
+    std::vector<cl_double2> by_leaf;
+    std::set<std::size_t> members;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto sample = static_cast<std::size_t>(found.orders[order + found.first_sample + i]);
+      ASSERT_GE(sample, found.first_sample);
+      ASSERT_LT(sample, found.first_sample + samples.size());
+      ASSERT_TRUE(members.insert(sample).second) << "sample " << sample << " is there twice";
+      by_leaf.push_back(found.samples[sample]);
+    }
+    EXPECT_TRUE(leaves_of(by_leaf, samples_per_leaf) == leaves_of(expected, samples_per_leaf));
+  }
+}
+
+/// Returns the number of launches.
+std::size_t check_device_trees(Runtime& runtime, const std::vector<std::pair<Coordinates, int>>& sets,
+                               std::size_t samples_per_leaf) {
+  const Arena::Scope scope(runtime.arena());
+  // Points before and behind, which no tree is to see.
+  Coordinates all{NAN, NAN};
+  std::vector<SetToCut> to_cut;
+  for (const auto& [coordinates, depth] : sets) {
+    to_cut.push_back({depth, all.size() / 2, coordinates.size() / 2});
+    append(all, coordinates);
+    append(all, {NAN, NAN});
+  }
+  const auto input = testing::upload(runtime, all);
+  const CutTrees trees(runtime, to_cut, samples_per_leaf);
+  const auto nodes = testing::guarded<CutNode>(runtime, trees.nodes());
+  const std::size_t before = runtime.launches();
+  const auto samples = trees.draw(input);
+  const auto orders = trees.cut(samples.points, nodes);
+  const std::size_t launches = runtime.launches() - before;
+  HostTrees found{testing::download(runtime, nodes, trees.nodes()), std::vector<cl_double2>(trees.samples()),
+                  std::vector<cl_int>(2 * trees.samples())};
+  runtime.read(samples.points, 0, found.samples.size(), found.samples.data());
+  std::vector<cl_int> indices(trees.samples());
+  runtime.read(samples.indices, 0, indices.size(), indices.data());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const cl_double2 drawn = point_of(all, static_cast<std::size_t>(indices[i]));
+    EXPECT_TRUE(drawn.s[0] == found.samples[i].s[0] && drawn.s[1] == found.samples[i].s[1]) << i;
+  }
+  runtime.read(orders, 0, found.orders.size(), found.orders.data());
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    SCOPED_TRACE("set " + std::to_string(s));
+    const auto& [coordinates, depth] = sets[s];
+    check_device_tree(coordinates, depth, samples_per_leaf, found);
+    if (::testing::Test::HasFatalFailure()) return launches;
+    found.first_sample += samples_per_leaf << depth;
+    found.first_node += std::size_t{1} << depth;
+  }
+  EXPECT_EQ(found.first_sample, trees.samples());
+  EXPECT_EQ(found.first_node, trees.nodes());
+  return launches;
+}
+
+/// Sets of many kinds, depths in no order, some of a single leaf, of fewer points than samples and of more.
+std::vector<std::pair<Coordinates, int>> sets_of_all_depths(std::size_t points,
+                                                            const std::vector<int>& depths) {
+  std::vector<std::pair<Coordinates, int>> sets;
+  std::size_t k = 0;
+  for (const auto& [name, coordinates] : awkward(points, 31)) {
+    sets.emplace_back(coordinates, depths[k % depths.size()]);
+    sets.emplace_back(make_fixture("uniform", 1 + 3 * k, 32), 0);
+    sets.emplace_back(make_fixture("uniform", 5 * points, k), depths[(k + 1) % depths.size()]);
+    ++k;
+  }
+  return sets;
+}
+
+// Where no node is larger than a chunk: draw, sort, cut.
+constexpr std::size_t kLeastLaunches = 3;
+
+TEST(SmallCutTrees, AreThoseOfTheHost) {
+  under_each_tuning([](Runtime& runtime) {
+    for (const std::size_t samples_per_leaf : {1, 3, 16}) {
+      SCOPED_TRACE(std::to_string(samples_per_leaf) + " samples a leaf");
+      check_device_trees(runtime, {{make_fixture("uniform", 40, 1), 1}}, samples_per_leaf);
+      check_device_trees(runtime, sets_of_all_depths(9, {1, 4, 2}), samples_per_leaf);
+    }
+  });
+}
+
+TEST(CutTrees, AreThoseOfTheHost) {
+  under_each_tuning([](Runtime& runtime) {
+    for (const std::size_t samples_per_leaf : {1, 16}) {
+      SCOPED_TRACE(std::to_string(samples_per_leaf) + " samples a leaf");
+      check_device_trees(runtime, sets_of_all_depths(1000, {5, 1, 9, 0, 3}), samples_per_leaf);
+      for (const auto& [name, points] : awkward(30000, 33)) {
+        SCOPED_TRACE(name);
+        EXPECT_GT(check_device_trees(runtime, {{points, 12}}, samples_per_leaf), kLeastLaunches + 1);
+      }
+      for (const testing::Fixture& fixture : testing::all_fixtures()) {
+        SCOPED_TRACE(fixture.name);
+        check_device_trees(runtime, {{fixture.make(3000, 34), 7}}, samples_per_leaf);
+      }
+    }
+  });
+}
+
+TEST(CutTrees, ManySetsTakeNoMoreLaunchesThanOne) {
+  under_each_tuning([](Runtime& runtime) {
+    std::vector<std::pair<Coordinates, int>> sets;
+    for (std::size_t k = 0; k < 300; ++k) {
+      sets.emplace_back(make_fixture("uniform", 100 + k, k), k % 7 == 0 ? 0 : 2);
+    }
+    sets.emplace_back(make_fixture("uniform", 2000, 5), 6);
+    const std::size_t together = check_device_trees(runtime, sets, 16);
+    // But for the scans of more counts.
+    EXPECT_LE(together, 2 * check_device_trees(runtime, {sets.back()}, 16) + 20);
+  });
+}
+
 // -----------------------------------------------------------------------------------------------------------
 // Sorting
 
@@ -503,11 +655,13 @@ void check_blocks(Call& call, const Coordinates& coordinates, const Offsets& off
   std::vector<cl_int> identity(n);
   std::iota(identity.begin(), identity.end(), 0);
   EXPECT_TRUE(same(call.read(representatives, n), identity));
+  EXPECT_EQ(testing::broken_nodes(call.read(blocks.device_nodes, blocks.device_nodes.size()), twin.trees),
+            "");
   EXPECT_EQ(testing::broken_merges(blocks, twin.trees, g.spans), "");
   const auto merges = call.read(blocks.device_merges, blocks.merges.size());
   for (std::size_t m = 0; m < merges.size(); ++m) {
     EXPECT_TRUE(merges[m].low == blocks.merges[m].low && merges[m].high == blocks.merges[m].high &&
-                merges[m].axis == blocks.merges[m].axis)
+                merges[m].node == blocks.merges[m].node)
         << "merge " << m << " on the device";
   }
   EXPECT_EQ(call.work.bounds.orient == 0, ingest.bits <= 25);
@@ -818,8 +972,8 @@ TEST(Stages, OneLargeSet) {
     Met met;
     runtime.arena().reset_peak();
     check_stages(runtime, make_fixture("uniform", 20000, 16), met);
-    // However small blocks and chunks are; a table of both would be larger.
-    EXPECT_LT(runtime.arena().peak_bytes(), 20000u * 800);
+    // However small blocks and chunks are, with 16 samples for each; a table of both would be larger.
+    EXPECT_LT(runtime.arena().peak_bytes(), 20000u * 1600);
     EXPECT_GE(met.merges, 15u);
     check_stages(runtime, make_fixture("grid", 12000, 17), met);
   });
@@ -1028,7 +1182,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 11u);
+  EXPECT_EQ(kernels, 17u);
 }
 
 }  // namespace

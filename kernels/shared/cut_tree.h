@@ -9,6 +9,7 @@
 typedef struct {
   ulong major, minor, turn;
 } cut_node;
+static inline int cut_axis(cut_node cut) { return cut.turn != 0; }
 static inline int goes_high(ulong x, ulong y, cut_node cut) {
   const ulong swapped = (x ^ y) & cut.turn;
   const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "flaunay/flaunay.hpp"
 #include "host/vector_operations.hpp"
+#include "input/inspect.hpp"
 
 namespace flaunay::derived {
 namespace {
@@ -16,23 +18,11 @@ constexpr std::size_t kVerticesPerLeaf = 16;
 // Smaller trees save nothing.
 constexpr int kLeastDepth = 4;
 
-// What the host decides: of each set the tree, and where walks begin, as start_triangles reads it.
-struct Plan {
-  std::vector<MeshSet> records;
-  std::vector<hybrid::CutNode> nodes;
-  std::vector<cl_int> starts;
-};
+// One sample is a leaf.
+constexpr std::size_t kSamplesPerLeaf = 1;
 
 std::vector<cl_int> integers(const std::vector<std::size_t>& offsets) {
   return {offsets.begin(), offsets.end()};
-}
-
-// The values must stay until the next wait.
-template <typename T>
-Buffer<T> upload(host::Runtime& runtime, Arena& arena, const std::vector<T>& values) {
-  const auto buffer = arena.allocate<T>(values.size());
-  runtime.write_later(buffer, 0, values.size(), values.data());
-  return buffer;
 }
 
 void check_sizes(const Mesh& mesh) {
@@ -55,60 +45,39 @@ int depth_for(std::size_t triangles, std::size_t hull) {
   return depth < kLeastDepth ? 0 : depth;
 }
 
-std::vector<int> tree_depths(const Mesh& mesh) {
-  std::vector<int> depths;
+// The sets' records, and those sets that have trees; a tree has as many nodes as leaves.
+std::vector<MeshSet> make_records(const Mesh& mesh, std::vector<hybrid::SetToCut>& cut) {
+  std::vector<MeshSet> records;
+  std::size_t leaves = 0;
   for (std::size_t s = 0; s < mesh.sets(); ++s) {
-    depths.push_back(depth_for(mesh.triangle_offsets[s + 1] - mesh.triangle_offsets[s],
-                               mesh.hull_offsets[s + 1] - mesh.hull_offsets[s]));
+    const std::size_t triangle = mesh.triangle_offsets[s],
+                      triangles = mesh.triangle_offsets[s + 1] - triangle;
+    const std::size_t hull = mesh.hull_offsets[s], hull_end = mesh.hull_offsets[s + 1];
+    const int depth = depth_for(triangles, hull_end - hull);
+    const std::size_t start = depth == 0 ? triangle : leaves;
+    records.push_back({static_cast<cl_int>(leaves), depth, static_cast<cl_int>(start),
+                       static_cast<cl_int>(triangles), static_cast<cl_int>(hull),
+                       static_cast<cl_int>(hull_end)});
+    if (depth == 0) continue;
+    const std::size_t first = mesh.point_offsets[s];
+    cut.push_back({depth, first, mesh.point_offsets[s + 1] - first});
+    leaves += std::size_t{1} << depth;
   }
-  return depths;
+  return records;
 }
 
-// A sample for each leaf of each tree, set by set.
-std::vector<hybrid::NumberedSample> take_samples(host::Runtime& runtime, const Mesh& mesh,
-                                                 const std::vector<int>& depths) {
-  std::vector<cl_int> indices;
-  for (std::size_t s = 0; s < depths.size(); ++s) {
-    if (depths[s] == 0) continue;
-    const std::size_t first = mesh.point_offsets[s], size = mesh.point_offsets[s + 1] - first;
-    for (const cl_int i : hybrid::spread_indices(size, std::size_t{1} << depths[s])) {
-      indices.push_back(static_cast<cl_int>(first) + i);
-    }
-  }
-  std::vector<cl_double2> at(indices.size());
+// Trees of the points, and for each leaf a triangle at the sample in it.
+void make_trees(host::Runtime& runtime, Arena& own, const Mesh& mesh,
+                const std::vector<hybrid::SetToCut>& cut, const Buffer<cl_int>& incident, Locator& locator) {
   Arena::Scope scope(runtime.arena());
-  const auto device_indices = runtime.arena().allocate<cl_int>(indices.size());
-  const auto device_samples = runtime.arena().allocate<cl_double2>(indices.size());
-  runtime.write(device_indices, 0, indices.size(), indices.data());
-  runtime.map("blocks", "gather_samples", indices.size(), device_indices, mesh.coordinates, device_samples);
-  runtime.read(device_samples, 0, at.size(), at.data());
-  std::vector<hybrid::NumberedSample> samples(indices.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) samples[k] = {at[k], indices[k]};
-  return samples;
-}
-
-Plan make_plan(host::Runtime& runtime, const Mesh& mesh) {
-  Plan plan;
-  const std::vector<int> depths = tree_depths(mesh);
-  const std::vector<hybrid::NumberedSample> all = take_samples(runtime, mesh, depths);
-  auto first = all.begin();
-  for (std::size_t s = 0; s < mesh.sets(); ++s) {
-    const std::size_t triangle = mesh.triangle_offsets[s], end = mesh.triangle_offsets[s + 1];
-    plan.records.push_back({static_cast<cl_int>(plan.nodes.size()), depths[s],
-                            static_cast<cl_int>(plan.starts.size()), static_cast<cl_int>(end - triangle),
-                            static_cast<cl_int>(mesh.hull_offsets[s]),
-                            static_cast<cl_int>(mesh.hull_offsets[s + 1])});
-    if (depths[s] == 0) {
-      plan.starts.push_back(~static_cast<cl_int>(triangle == end ? 0 : triangle));
-      continue;
-    }
-    std::vector<hybrid::NumberedSample> samples(first, first + (std::ptrdiff_t{1} << depths[s]));
-    first += static_cast<std::ptrdiff_t>(samples.size());
-    const hybrid::CutTree tree = hybrid::cut_tree(samples, depths[s]);
-    plan.nodes.insert(plan.nodes.end(), tree.nodes.begin(), tree.nodes.end());
-    for (const hybrid::NumberedSample& sample : samples) plan.starts.push_back(sample.number);
-  }
-  return plan;
+  const hybrid::CutTrees trees(runtime, cut, kSamplesPerLeaf);
+  locator.nodes = own.allocate<hybrid::CutNode>(trees.nodes());
+  locator.starts = own.allocate<cl_int>(trees.samples());
+  if (cut.empty()) return;
+  const hybrid::CutTrees::Samples samples = trees.draw(mesh.coordinates);
+  const auto by_leaf = trees.cut(samples.points, locator.nodes);
+  runtime.map("locate", "start_triangles", trees.samples(), static_cast<cl_int>(mesh.triangle_count() - 1),
+              by_leaf, samples.indices, mesh.representatives, incident, locator.starts);
 }
 
 // What is wrong with the indices: the first place of each kind, or none.
@@ -127,18 +96,6 @@ void throw_faults(const Faults& faults) {
   check(faults.triangle, "triangle");
   check(faults.hull, "hull vertex");
   check(faults.representative, "representative");
-}
-
-// For points that could not be triangulated the same error as there.
-Scaling scaling_of(host::Runtime& runtime, const Mesh& mesh, const Magnitudes& magnitudes) {
-  std::vector<double> coordinates;
-  const std::size_t n = mesh.points();
-  constexpr int kMostBits = 505;
-  if (static_cast<std::size_t>(magnitudes.bad) < n || magnitudes.largest - magnitudes.lowest >= kMostBits) {
-    coordinates.resize(2 * n);
-    runtime.read(mesh.coordinates, 0, coordinates.size(), coordinates.data());
-  }
-  return scaling_for(coordinates.data(), n, magnitudes);
 }
 
 // Offsets as kernels read them.
@@ -198,8 +155,7 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
   pass.sets = static_cast<cl_int>(locator.sets);
   pass.query_offsets = runtime.arena().allocate<cl_int>(locator.sets + 1);
   if (locator.sets > 1) {
-    const std::vector<cl_int> offsets = integers(query_offsets);
-    runtime.write(pass.query_offsets, 0, offsets.size(), offsets.data());
+    runtime.write_kept(pass.query_offsets, integers(query_offsets));
   }
   return pass;
 }
@@ -222,7 +178,7 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const Mesh& mesh) {
   Locator locator;
   locator.sets = mesh.sets();
   locator.magnitudes = inspect(runtime, mesh.coordinates, n);
-  const Scaling scaling = scaling_of(runtime, mesh, locator.magnitudes);
+  const Scaling scaling = scaling_for(runtime, mesh.coordinates, n, locator.magnitudes);
   locator.shift = scaling.shift;
   locator.points = own.allocate<cl_double2>(n);
   locator.source = own.allocate<cl_int>(n);
@@ -233,32 +189,22 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const Mesh& mesh) {
   locator.hull = own.allocate<cl_int>(mesh.hull_offsets.back());
 
   Faults faults;
-  Plan plan;
-  const std::vector<cl_int> point_offsets = integers(mesh.point_offsets);
-  const std::vector<cl_int> triangle_offsets = integers(mesh.triangle_offsets);
-  const std::vector<cl_int> hull_offsets = integers(mesh.hull_offsets);
   const host::Runtime::Settled settled(runtime);
   const auto device_faults = scratch.allocate<cl_int>(3);
   runtime.write_later(device_faults, 0, 3, &faults.triangle);
   const auto incident = scratch.allocate<cl_int>(n);
-  const Offsets offsets{upload(runtime, scratch, point_offsets), upload(runtime, scratch, triangle_offsets),
-                        upload(runtime, scratch, hull_offsets)};
+  const Offsets offsets{runtime.upload(scratch, integers(mesh.point_offsets)),
+                        runtime.upload(scratch, integers(mesh.triangle_offsets)),
+                        runtime.upload(scratch, integers(mesh.hull_offsets))};
   fill_faces(runtime, mesh, scaling.powers(), offsets, device_faults, incident, locator);
   fill_hull(runtime, mesh, scaling.powers(), offsets, device_faults, locator);
   runtime.map("locate", "check_representatives", n, static_cast<cl_int>(mesh.sets()), offsets.points,
               mesh.representatives, device_faults);
-  // The device works while the host makes the trees.
-  runtime.flush();
-  plan = make_plan(runtime, mesh);
+  std::vector<hybrid::SetToCut> cut;
+  locator.records = runtime.upload(own, make_records(mesh, cut));
+  make_trees(runtime, own, mesh, cut, incident, locator);
   runtime.read(device_faults, 0, 3, &faults.triangle);
   throw_faults(faults);
-  locator.records = upload(runtime, own, plan.records);
-  locator.nodes = upload(runtime, own, plan.nodes);
-  locator.starts = upload(runtime, own, plan.starts);
-  runtime.map("locate", "start_triangles", plan.starts.size(),
-              static_cast<cl_int>(std::max<std::size_t>(triangles, 1) - 1), mesh.representatives, incident,
-              locator.starts);
-  runtime.finish();
   return locator;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "input/inspect.hpp"
 
 namespace flaunay::derived {
 namespace {
@@ -51,16 +52,6 @@ constexpr double kNearnessBound = 6.0 * kRoundoff;
 }
 
 }  // namespace
-
-Magnitudes inspect(host::Runtime& runtime, const Buffer<cl_double>& coordinates, std::size_t n) {
-  Magnitudes magnitudes;
-  Arena::Scope scope(runtime.arena());
-  const auto accounts = runtime.arena().allocate<cl_int>(3);
-  runtime.write(accounts, 0, 3, &magnitudes.largest);
-  runtime.chunks("ingest", "inspect", n, runtime.tuning().chunk(n), coordinates, accounts);
-  runtime.read(accounts, 0, 3, &magnitudes.largest);
-  return magnitudes;
-}
 
 QueryScaling query_scaling(host::Runtime& runtime, const Magnitudes& points, int point_shift,
                            const Buffer<cl_double>& queries, std::size_t m) {

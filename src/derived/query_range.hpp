@@ -24,7 +24,4 @@ struct QueryScaling {
 QueryScaling query_scaling(host::Runtime& runtime, const Magnitudes& points, int point_shift,
                            const Buffer<cl_double>& queries, std::size_t m);
 
-/// What the kernel `inspect` says of n points; waits once.
-Magnitudes inspect(host::Runtime& runtime, const Buffer<cl_double>& coordinates, std::size_t n);
-
 }  // namespace flaunay::derived

@@ -124,7 +124,7 @@ void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation
   with_errors([&] {
     host::Runtime& runtime = implementation_->own_memory();
     std::size_t& made = implementation_->buffer_allocations;
-    embedding::check_queue(runtime, enqueue);
+    embedding::check_enqueue(runtime, enqueue);
     embedding::check_points(runtime, points, "points");
     embedding::QueuedCall call(runtime, enqueue);
     Arena::Scope scope(runtime.arena());
@@ -174,7 +174,7 @@ struct Locator::Implementation {
               const Work& work) {
     with_errors([&] {
       host::Runtime& runtime = owner->own_memory();
-      embedding::check_queue(runtime, enqueue);
+      embedding::check_enqueue(runtime, enqueue);
       embedding::check_points(runtime, queries, "queries");
       embedding::QueuedCall call(runtime, enqueue);
       Arena::Scope scope(runtime.arena());
@@ -215,7 +215,7 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
     : implementation_(std::make_unique<Implementation>(triangulator.implementation_)) {
   with_errors([&] {
     host::Runtime& runtime = implementation_->owner->own_memory();
-    embedding::check_queue(runtime, enqueue);
+    embedding::check_enqueue(runtime, enqueue);
     embedding::check_points(runtime, points, "points");
     embedding::QueuedCall call(runtime, enqueue);
     Arena::Scope scope(runtime.arena());

@@ -18,6 +18,7 @@ namespace {
 
 // A vertex is the middle one of two triangles at most.
 constexpr std::size_t kMostTrianglesPerPoint = 2;
+constexpr std::size_t kMostSets = std::size_t{1} << 40;
 
 // The results' buffers for n points.
 struct Results {
@@ -42,8 +43,9 @@ Results make_results(host::Runtime& runtime, std::size_t n, const Parts& parts, 
 }
 
 // No two of them may be one.
-void check_distinct(const Results& results, cl_mem points) {
+void check_distinct(const Results& results, cl_mem points, cl_mem workspace) {
   std::vector<cl_mem> all{points};
+  if (workspace != nullptr) all.push_back(workspace);
   for (const Buffer<cl_int>* buffer :
        {&results.mesh.triangles, &results.mesh.neighbors, &results.mesh.halfedges, &results.mesh.hull,
         &results.representatives}) {
@@ -83,7 +85,7 @@ void Triangulator::Implementation::triangulate(const DevicePoints& points, Devic
   if ((parts.neighbors || parts.halfedges) && !parts.triangles) {
     throw Error(ErrorKind::usage, "neighbours and halfedges are computed with triangles only");
   }
-  embedding::check_queue(runtime, enqueue);
+  embedding::check_enqueue(runtime, enqueue);
   embedding::check_points(runtime, points, "points");
   check_size(points.count);
   embedding::QueuedCall call(runtime, enqueue);
@@ -93,7 +95,7 @@ void Triangulator::Implementation::triangulate(const DevicePoints& points, Devic
   const std::size_t n = points.count;
   const std::size_t sets = offsets.size() - 1;
   const Results results = make_results(runtime, n, parts, result, buffer_allocations);
-  check_distinct(results, points.memory);
+  check_distinct(results, points.memory, workspace.get());
   share_workspace(n, sets);
   Statistics statistics;
   statistics.device = runtime.device().name();
@@ -139,8 +141,13 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
 }
 
 std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {
-  const hybrid::WorkspaceBytes needed = hybrid::workspace_bytes(implementation_->runtime, n, sets);
-  return needed.persistent + needed.scratch;
+  return with_errors([&] {
+    implementation_->check_size(n);
+    // Sums of what is more could overflow.
+    if (sets > kMostSets) throw Error(ErrorKind::usage, "too many sets of points");
+    const hybrid::WorkspaceBytes needed = hybrid::workspace_bytes(implementation_->runtime, n, sets);
+    return needed.persistent + needed.scratch;
+  });
 }
 
 void Triangulator::use_workspace(cl_mem workspace) {

@@ -40,6 +40,46 @@ bool is_alive(host::Runtime& runtime, const void* handle) {
   return !is_shared || function_table(handle) == table;
 }
 
+void check_queue(host::Runtime& runtime, const Enqueue& enqueue) {
+  const cl_command_queue queue = enqueue.queue;
+  if (queue == nullptr || queue == runtime.own_queue()) return;
+  if (!is_alive(runtime, queue)) throw_usage(kReleased);
+  cl_context context = nullptr;
+  const cl_int code = clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, nullptr);
+  if (code != CL_SUCCESS) {
+    throw Error(ErrorKind::usage, fmt::format("the queue is no command queue: {}", host::error_name(code)),
+                code, "clGetCommandQueueInfo");
+  }
+  cl_device_id device = nullptr;
+  cl_uint references = 0;
+  cl_command_queue_properties properties = 0;
+  FLAUNAY_CL(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof device, &device, nullptr));
+  FLAUNAY_CL(clGetCommandQueueInfo(queue, CL_QUEUE_REFERENCE_COUNT, sizeof references, &references, nullptr));
+  FLAUNAY_CL(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr));
+  if (references == 0) throw_usage(kReleased);
+  if (context != runtime.context().get()) {
+    throw_usage("the queue is of another context than the triangulator");
+  }
+  if (device != runtime.device().id()) throw_usage("the queue is of another device than the triangulator");
+  if (enqueue.profile && !(properties & CL_QUEUE_PROFILING_ENABLE)) {
+    throw_usage("kernels can only be timed on a queue with CL_QUEUE_PROFILING_ENABLE");
+  }
+}
+
+void check_event(host::Runtime& runtime, cl_event event) {
+  cl_context context = nullptr;
+  const cl_int code = event == nullptr || !is_alive(runtime, event)
+                          ? CL_INVALID_EVENT
+                          : clGetEventInfo(event, CL_EVENT_CONTEXT, sizeof context, &context, nullptr);
+  if (code != CL_SUCCESS) {
+    throw Error(ErrorKind::usage, fmt::format("an event to wait for is none: {}", host::error_name(code)),
+                code);
+  }
+  if (context != runtime.context().get()) {
+    throw_usage("an event to wait for is of another context than the triangulator");
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<_cl_mem> retained(cl_mem memory) {
@@ -90,30 +130,10 @@ void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Acce
   }
 }
 
-void check_queue(host::Runtime& runtime, const Enqueue& enqueue) {
-  const cl_command_queue queue = enqueue.queue;
-  if (queue == nullptr || queue == runtime.own_queue()) return;
-  if (!is_alive(runtime, queue)) throw_usage(kReleased);
-  cl_context context = nullptr;
-  const cl_int code = clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, nullptr);
-  if (code != CL_SUCCESS) {
-    throw Error(ErrorKind::usage, fmt::format("the queue is no command queue: {}", host::error_name(code)),
-                code, "clGetCommandQueueInfo");
-  }
-  cl_device_id device = nullptr;
-  cl_uint references = 0;
-  cl_command_queue_properties properties = 0;
-  FLAUNAY_CL(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof device, &device, nullptr));
-  FLAUNAY_CL(clGetCommandQueueInfo(queue, CL_QUEUE_REFERENCE_COUNT, sizeof references, &references, nullptr));
-  FLAUNAY_CL(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr));
-  if (references == 0) throw_usage(kReleased);
-  if (context != runtime.context().get()) {
-    throw_usage("the queue is of another context than the triangulator");
-  }
-  if (device != runtime.device().id()) throw_usage("the queue is of another device than the triangulator");
-  if (enqueue.profile && !(properties & CL_QUEUE_PROFILING_ENABLE)) {
-    throw_usage("kernels can only be timed on a queue with CL_QUEUE_PROFILING_ENABLE");
-  }
+void check_enqueue(host::Runtime& runtime, const Enqueue& enqueue) {
+  if (enqueue.event != nullptr) *enqueue.event = nullptr;
+  check_queue(runtime, enqueue);
+  for (const cl_event event : enqueue.wait_for) check_event(runtime, event);
 }
 
 std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoints& points) {
@@ -128,11 +148,7 @@ std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoi
     offsets.assign(read.begin(), read.end());
   }
   if (offsets.empty()) offsets = {0, points.count};
-  check_offsets(offsets);
-  if (offsets.back() != points.count) {
-    throw_usage(fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(),
-                            points.count));
-  }
+  check_offsets(offsets, points.count);
   return offsets;
 }
 
@@ -140,6 +156,7 @@ void check_points(host::Runtime& runtime, const DevicePoints& points, const std:
   // Before products of these numbers, which could overflow.
   constexpr std::size_t kMost = std::size_t{1} << 40;
   if (points.count > kMost || points.first > kMost) throw_usage(fmt::format("too many {}", what));
+  if (points.sets > kMost) throw_usage(fmt::format("too many sets of {}", what));
   const std::size_t bytes = points.count == 0 ? 0 : (points.first + points.count) * bytes_per_point(points);
   check_buffer(runtime, points.memory, bytes, Access::read, what);
 }
@@ -175,7 +192,6 @@ void make_result(host::Runtime& runtime, DeviceBuffer& buffer, std::size_t bytes
 
 QueuedCall::QueuedCall(host::Runtime& runtime, const Enqueue& enqueue)
     : runtime_(runtime), enqueue_(enqueue), settled_(runtime) {
-  if (enqueue.event != nullptr) *enqueue.event = nullptr;
   runtime.use_queue(enqueue.queue, enqueue.profile);
   runtime.wait_for(enqueue.wait_for);
 }

@@ -33,9 +33,10 @@ std::shared_ptr<_cl_mem> retained(cl_mem memory);
 void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Access access,
                   const std::string& what);
 
-/// Throws Error(usage) unless the queue is null or one of the runtime's context and device, made for
-/// profiling if that is wanted. That it was released is noticed as a rule, not always.
-void check_queue(host::Runtime& runtime, const Enqueue& enqueue);
+/// Sets the caller's event to null. Throws Error(usage) unless the queue is null or one of the runtime's
+/// context and device, made for profiling if that is wanted, and events are of the context. That one was
+/// released is noticed as a rule, not always.
+void check_enqueue(host::Runtime& runtime, const Enqueue& enqueue);
 
 /// The sets' offsets, read from the device if they are there. Throws Error(usage) if they do not increase
 /// from 0 to the number of points.
@@ -70,7 +71,7 @@ host::Buffer<T> result_buffer(host::Runtime& runtime, DeviceBuffer& buffer, std:
 /// One call on the caller's queue: begins with what it is to wait for, and ends with its event.
 class QueuedCall {
  public:
-  /// The queue was checked.
+  /// It was checked.
   QueuedCall(host::Runtime& runtime, const Enqueue& enqueue);
   /// Lets the device begin; sets the event.
   void end();

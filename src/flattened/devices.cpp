@@ -3,6 +3,7 @@
 #include <boost/compute/platform.hpp>
 
 #include "flattened/device_info.hpp"
+#include "flattened/errors.hpp"
 #include "flattened/self_test.hpp"
 #include "host/device.hpp"
 
@@ -58,7 +59,7 @@ DeviceInfo describe(const boost::compute::device& device) {
 }  // namespace flattened
 
 std::vector<DeviceInfo> list_devices(bool self_test) {
-  try {
+  return with_errors([&] {
     std::vector<DeviceInfo> infos;
     for (const boost::compute::device& device : host::all_devices()) {
       DeviceInfo info = flattened::describe(device);
@@ -76,9 +77,7 @@ std::vector<DeviceInfo> list_devices(bool self_test) {
       infos.push_back(info);
     }
     return infos;
-  } catch (const host::DeviceError& error) {
-    throw Error(ErrorKind::device, error.what());
-  }
+  });
 }
 
 }  // namespace flaunay

@@ -20,7 +20,7 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
   runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
 
-  const Scaling scaling = inspect(runtime, input, n);
+  const Scaling scaling = scaling_for(runtime, input, n, inspect(runtime, input, n));
   work.bounds = scaling.bounds;
   const auto [s0, s1, s2] = scaling.powers();
 

@@ -277,9 +277,7 @@ Triangulation Triangulator::Implementation::triangulate(const HostPoints& points
                                                         const Options& options) {
   check_offsets(offsets);
   const std::size_t n = offsets.back();
-  if (n > 0 && points.wide == nullptr && points.narrow == nullptr) {
-    throw Error(ErrorKind::usage, fmt::format("{} points, but no coordinates: the pointer is null", n));
-  }
+  if (points.narrow == nullptr) check_coordinates(points.wide, n);
   Triangulation result;
   result.statistics.device = runtime.device().name();
   result.triangle_offsets.assign(offsets.size(), 0);
@@ -426,6 +424,7 @@ Partition Triangulator::Implementation::partition(const double* coordinates, std
   Options uncounted = options;
   uncounted.count = false;
   check_request(n, uncounted);
+  check_coordinates(coordinates, n);
   Partition result;
   result.statistics.device = runtime.device().name();
   if (n == 0) return result;
@@ -513,12 +512,16 @@ Triangulator::Triangulator(Triangulator&&) noexcept = default;
 Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
 
 DeviceInfo Triangulator::device() const {
-  DeviceInfo info = flattened::describe(implementation_->runtime.device());
-  info.self_test_passed = true;
-  return info;
+  return with_errors([&] {
+    DeviceInfo info = flattened::describe(implementation_->runtime.device());
+    info.self_test_passed = true;
+    return info;
+  });
 }
 
-std::size_t Triangulator::capacity() const { return implementation_->capacity(); }
+std::size_t Triangulator::capacity() const {
+  return with_errors([&] { return implementation_->capacity(); });
+}
 
 Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n, const Options& options) {
   return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);

@@ -20,12 +20,12 @@ struct BlockPlace {
 
 // What the host decides before points move.
 struct Plan {
-  std::vector<int> depths;  // by set
-  std::vector<CutNode> nodes;
+  std::vector<SetToCut> cut;  // the sets that are larger than a block
   std::vector<Chunk> chunks;
   std::vector<cl_int> chunk_first;  // by chunk: the first point of its set
   std::vector<BlockPlace> places;   // by block
   std::vector<cl_int> set_counts;   // by block: its set's first count
+  std::size_t nodes = 0;
   std::size_t cursors = 0;
   std::size_t counts = 0;
 };
@@ -36,59 +36,30 @@ int depth_for(std::size_t n, std::size_t block_points) {
   return depth;
 }
 
-// The trees of all sets that are larger than a block.
-std::vector<CutTree> cut_trees(Workspace& work, const std::vector<std::size_t>& offsets,
-                               const std::vector<int>& depths, const Buffer<cl_double>& input) {
-  std::vector<cl_int> indices;
-  for (std::size_t s = 0; s < depths.size(); ++s) {
-    if (depths[s] == 0) continue;
-    for (const cl_int i : sample_indices(offsets[s + 1] - offsets[s], depths[s])) {
-      indices.push_back(static_cast<cl_int>(offsets[s]) + i);
-    }
-  }
-  std::vector<CutTree> trees(depths.size());
-  if (indices.empty()) return trees;
-  host::Runtime& runtime = work.runtime;
-  Arena::Scope scope(work.scratch());
-  const auto device_indices = work.scratch().allocate<cl_int>(indices.size());
-  const auto device_samples = work.scratch().allocate<cl_double2>(indices.size());
-  runtime.write(device_indices, 0, indices.size(), indices.data());
-  runtime.map("blocks", "gather_samples", indices.size(), device_indices, input, device_samples);
-  std::vector<cl_double2> all(indices.size());
-  runtime.read(device_samples, 0, all.size(), all.data());
-  auto first = all.begin();
-  for (std::size_t s = 0; s < depths.size(); ++s) {
-    if (depths[s] == 0) continue;
-    std::vector<cl_double2> samples(first, first + static_cast<std::ptrdiff_t>(samples_for(depths[s])));
-    first += static_cast<std::ptrdiff_t>(samples.size());
-    trees[s] = cut_tree(samples, depths[s]);
-  }
-  return trees;
-}
-
-void add_merges(const CutTree& tree, std::size_t first_block, std::vector<std::vector<Merge>>& levels) {
-  if (levels.size() < static_cast<std::size_t>(tree.depth)) levels.resize(tree.depth);
-  for (int level = 0; level < tree.depth; ++level) {
-    const int below = tree.depth - level;
+// nodes: where those of the set's tree begin.
+void add_merges(int depth, std::size_t nodes, std::size_t first_block,
+                std::vector<std::vector<Merge>>& levels) {
+  if (levels.size() < static_cast<std::size_t>(depth)) levels.resize(depth);
+  for (int level = 0; level < depth; ++level) {
+    const int below = depth - level;
     for (std::size_t j = 0; j < std::size_t{1} << level; ++j) {
       const auto low = static_cast<cl_int>(first_block + (j << below));
-      levels[level].push_back(
-          {low, low + (1 << (below - 1)), tree.nodes[(std::size_t{1} << level) + j].axis(), 0});
+      const auto node = static_cast<cl_int>(nodes + (std::size_t{1} << level) + j);
+      levels[level].push_back({low, low + (1 << (below - 1)), node, 0});
     }
   }
 }
 
 // Pieces of a set with a tree, each counted on its own.
-void add_chunks(std::size_t first, std::size_t last, const CutTree& tree, std::size_t nodes, std::size_t size,
-                Plan& plan) {
-  const std::size_t blocks = std::size_t{1} << tree.depth;
+void add_chunks(std::size_t first, std::size_t last, int depth, std::size_t size, Plan& plan) {
+  const std::size_t blocks = std::size_t{1} << depth;
   // No more counts than points.
   size = std::max(size, blocks);
   const std::size_t chunks = (last - first + size - 1) / size;
   for (std::size_t k = 0; k < chunks; ++k) {
     const std::size_t begin = first + k * size;
     plan.chunks.push_back({static_cast<cl_int>(begin), static_cast<cl_int>(std::min(last, begin + size)),
-                           tree.depth, static_cast<cl_int>(nodes), static_cast<cl_int>(plan.cursors),
+                           depth, static_cast<cl_int>(plan.nodes), static_cast<cl_int>(plan.cursors),
                            static_cast<cl_int>(plan.counts), static_cast<cl_int>(k),
                            static_cast<cl_int>(chunks)});
     plan.chunk_first.push_back(static_cast<cl_int>(first));
@@ -99,6 +70,7 @@ void add_chunks(std::size_t first, std::size_t last, const CutTree& tree, std::s
     plan.set_counts.push_back(static_cast<cl_int>(plan.counts));
   }
   plan.counts += blocks * chunks;
+  plan.nodes += blocks;
 }
 
 // A set that is one block; neighbouring ones share chunks.
@@ -115,25 +87,20 @@ void add_block(std::size_t first, std::size_t last, std::size_t size, Plan& plan
   plan.chunk_first.push_back(static_cast<cl_int>(first));
 }
 
-Plan make_plan(Workspace& work, const std::vector<std::size_t>& offsets, const Buffer<cl_double>& input,
-               Blocks& blocks) {
-  const host::Tuning& tuning = work.runtime.tuning();
+Plan make_plan(const host::Tuning& tuning, const std::vector<std::size_t>& offsets, Blocks& blocks) {
   Plan plan;
-  for (std::size_t s = 0; s < blocks.sets; ++s) {
-    plan.depths.push_back(depth_for(offsets[s + 1] - offsets[s], tuning.block_points));
-  }
-  const std::vector<CutTree> trees = cut_trees(work, offsets, plan.depths, input);
   const std::size_t chunk = tuning.chunk(blocks.points);
   std::vector<std::vector<Merge>> levels;
   blocks.set_blocks.push_back(0);
   for (std::size_t s = 0; s < blocks.sets; ++s) {
-    if (plan.depths[s] == 0) {
-      add_block(offsets[s], offsets[s + 1], chunk, plan);
+    const std::size_t first = offsets[s], last = offsets[s + 1];
+    const int depth = depth_for(last - first, tuning.block_points);
+    if (depth == 0) {
+      add_block(first, last, chunk, plan);
     } else {
-      const std::size_t nodes = plan.nodes.size();
-      plan.nodes.insert(plan.nodes.end(), trees[s].nodes.begin(), trees[s].nodes.end());
-      add_merges(trees[s], plan.places.size(), levels);
-      add_chunks(offsets[s], offsets[s + 1], trees[s], nodes, chunk, plan);
+      plan.cut.push_back({depth, first, last - first});
+      add_merges(depth, plan.nodes, plan.places.size(), levels);
+      add_chunks(first, last, depth, chunk, plan);
     }
     blocks.set_blocks.push_back(static_cast<cl_int>(plan.places.size()));
   }
@@ -145,12 +112,13 @@ Plan make_plan(Workspace& work, const std::vector<std::size_t>& offsets, const B
   return plan;
 }
 
-// The values must stay until the next wait.
-template <typename T>
-Buffer<T> upload(Workspace& work, Arena& arena, const std::vector<T>& values) {
-  const auto buffer = arena.allocate<T>(values.size());
-  work.runtime.write_later(buffer, 0, values.size(), values.data());
-  return buffer;
+// The nodes of the trees, which the merges of blocks read too.
+void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& input, Blocks& blocks) {
+  if (plan.cut.empty()) return;
+  blocks.device_nodes = work.persistent.allocate<CutNode>(plan.nodes);
+  Arena::Scope scope(work.scratch());
+  const CutTrees trees(work.runtime, plan.cut, kSamplesPerBlock);
+  trees.cut(trees.draw(input).points, blocks.device_nodes);
 }
 
 void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, const Buffer<cl_double>& input,
@@ -158,8 +126,8 @@ void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, c
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
-  const auto chunks = upload(work, scratch, plan.chunks);
-  const auto chunk_first = upload(work, scratch, plan.chunk_first);
+  const auto chunks = runtime.upload(scratch, plan.chunks);
+  const auto chunk_first = runtime.upload(scratch, plan.chunk_first);
   const bool has_trees = plan.counts > 0;
   const auto block_of_point = scratch.allocate<cl_int>(has_trees ? blocks.points : 0);
   const auto cursors = scratch.allocate<cl_int>(plan.cursors);
@@ -167,9 +135,8 @@ void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, c
   const std::size_t group = runtime.tuning().chunk_group;
   const auto chunk_count = static_cast<cl_int>(plan.chunks.size());
   if (has_trees) {
-    const auto nodes = upload(work, scratch, plan.nodes);
-    runtime.launch("blocks", "count_blocks", plan.chunks.size(), group, chunk_count, chunks, input, nodes,
-                   block_of_point, cursors, counts);
+    runtime.launch("blocks", "count_blocks", plan.chunks.size(), group, chunk_count, chunks, input,
+                   blocks.device_nodes, block_of_point, cursors, counts);
     host::exclusive_scan(runtime, counts, plan.counts, counts);
   }
   const auto [s0, s1, s2] = scaling.powers();
@@ -178,8 +145,8 @@ void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, c
                  representatives);
   blocks.offsets.resize(blocks.count + 1);
   if (has_trees) {
-    const auto places = upload(work, scratch, plan.places);
-    const auto set_counts = upload(work, scratch, plan.set_counts);
+    const auto places = runtime.upload(scratch, plan.places);
+    const auto set_counts = runtime.upload(scratch, plan.set_counts);
     runtime.map("blocks", "block_offsets", blocks.count, places, set_counts, counts, blocks.device_offsets);
     runtime.read(blocks.device_offsets, 0, blocks.count, blocks.offsets.data());
   } else {
@@ -199,14 +166,16 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
   Arena::Scope scope(work.scratch());
   Plan plan;
   const host::Runtime::Settled settled(work.runtime);
-  const Scaling scaling = inspect(work.runtime, input, blocks.points);
+  const Scaling scaling =
+      scaling_for(work.runtime, input, blocks.points, inspect(work.runtime, input, blocks.points));
   work.bounds = scaling.bounds;
-  plan = make_plan(work, offsets, input, blocks);
+  plan = make_plan(work.runtime.tuning(), offsets, blocks);
+  make_trees(work, plan, input, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
-  blocks.device_set_blocks = upload(work, work.persistent, blocks.set_blocks);
-  blocks.device_merges = upload(work, work.persistent, blocks.merges);
+  blocks.device_set_blocks = work.runtime.upload(work.persistent, blocks.set_blocks);
+  blocks.device_merges = work.runtime.upload(work.persistent, blocks.merges);
   move_to_blocks(work, plan, scaling, input, representatives, blocks);
   return blocks;
 }

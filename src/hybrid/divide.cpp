@@ -70,8 +70,8 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
   for (const std::size_t end : blocks.level_ends) {
     runtime.launch("divide", "merge_blocks", end - first, tuning.block_group,
                    static_cast<cl_int>(end - first), static_cast<cl_int>(first), blocks.device_merges,
-                   work.bounds.orient, work.bounds.circle, blocks.vertices, rings.edges, rings.vertex_edge,
-                   rings.block_ends, free_lists, rings.device_undecided);
+                   blocks.device_nodes, work.bounds.orient, work.bounds.circle, blocks.vertices, rings.edges,
+                   rings.vertex_edge, rings.block_ends, free_lists, rings.device_undecided);
     first = end;
   }
   runtime.flush();

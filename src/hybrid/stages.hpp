@@ -8,6 +8,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
+#include "hybrid/cut_tree.hpp"
 #include "hybrid/ring_edge.hpp"
 #include "input/magnitudes.hpp"
 
@@ -29,10 +30,10 @@ struct Workspace {
   Arena& scratch() { return runtime.arena(); }
 };
 
-/// Two neighbouring parts of a set, by their first blocks, and the axis of the cut between them; as kernels
+/// Two neighbouring parts of a set, by their first blocks, and the node that cuts between them; as kernels
 /// read it.
 struct Merge {
-  cl_int low, high, axis, unused;
+  cl_int low, high, node, unused;
 };
 
 /// The leaves of all sets' cut trees.
@@ -47,6 +48,7 @@ struct Blocks {
   std::vector<std::size_t> level_ends;
   Buffer<cl_int> device_set_blocks{}, device_offsets{};
   Buffer<Merge> device_merges{};
+  Buffer<CutNode> device_nodes{};  ///< of all trees
   /// Scaled, block by block, and their indices in the input. Once blocks are solved, vertices: a block's
   /// distinct points come first.
   Buffer<cl_double2> vertices{};

@@ -96,4 +96,18 @@ void check_offsets(const std::vector<std::size_t>& offsets) {
   }
 }
 
+void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n) {
+  check_offsets(offsets);
+  if (offsets.back() != n) {
+    throw Error(ErrorKind::usage,
+                fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(), n));
+  }
+}
+
+void check_coordinates(const void* coordinates, std::size_t n) {
+  if (n > 0 && coordinates == nullptr) {
+    throw Error(ErrorKind::usage, fmt::format("{} points, but no coordinates: the pointer is null", n));
+  }
+}
+
 }  // namespace flaunay

@@ -43,5 +43,10 @@ Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& 
 
 /// Throws Error(usage) unless offsets begin with 0 and do not decrease.
 void check_offsets(const std::vector<std::size_t>& offsets);
+/// The same, and that they end with the number of points.
+void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n);
+
+/// Throws Error(usage) if there are points, but no coordinates.
+void check_coordinates(const void* coordinates, std::size_t n);
 
 }  // namespace flaunay

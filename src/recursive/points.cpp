@@ -102,6 +102,7 @@ class Order {
 PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offsets) {
   check_offsets(offsets);
   const std::size_t n = offsets.back();
+  check_coordinates(coordinates, n);
   check_size(n);
   const Scaling scaling = scaling_for(coordinates, n, inspect(coordinates, n));
   PointSets sets;

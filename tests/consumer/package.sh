@@ -130,8 +130,9 @@ case "$1" in
     headers="$prefix/include/flaunay"
     nm -D --defined-only -C "$library" | cut -d ' ' -f 3- | sed -E 's/^(typeinfo name|typeinfo|vtable) for //' |
       sort -u >"$WORK/exported"
-    marked="$(sed -nE '/^#/d; s/^ *(class|struct) FLAUNAY_API ([A-Za-z_]+).*/\2/p; t
-      s/^ *FLAUNAY_API [^(]*[ *&]([A-Za-z_]+|operator[^(]+)\(.*/\1/p' "$headers"/*.h* | sort -u)"
+    # A function's name may be on the line below its type.
+    marked="$(sed -E '/FLAUNAY_API [^(;{]*$/{N; s/\n */ /}' "$headers"/*.h* | sed -nE '/^#/d; s/^ *(class|struct) FLAUNAY_API ([A-Za-z_]+).*/\2/p; t
+      s/^ *FLAUNAY_API [^(]*[ *&]([A-Za-z_]+|operator[^(]+)\(.*/\1/p' | sort -u)"
     [[ -n $marked ]] || fail 'no header marks anything'
     failed=false
     # flaunay::NAME(...), flaunay::CLASS::NAME(...) or, in C, flaunay_NAME.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CL/cl.h>
-#include <gtest/gtest.h>
 
 #include <functional>
 #include <memory>

@@ -36,7 +36,7 @@ inline bool comes_first(const cl_double2& p, const cl_double2& q, int axis) {
 // -----------------------------------------------------------------------------------------------------------
 // Cut trees and blocks
 
-/// In the order of a heap, as hybrid::CutTree.
+/// In the order of a heap, as the nodes of hybrid::CutTrees.
 struct TreeTwin {
   struct Node {
     cl_double2 pivot;
@@ -90,7 +90,7 @@ inline double from_orderable(cl_ulong key) {
   return value;
 }
 
-/// A node of hybrid::CutTree as its twin has it.
+/// A hybrid::CutNode as its twin has it.
 inline TreeTwin::Node decoded(const hybrid::CutNode& node) {
   if (node.turn == 0) return {{{from_orderable(node.major), from_orderable(node.minor)}}, 0};
   if (node.turn != ~cl_ulong{0}) throw std::logic_error("a node that turns halfway");
@@ -138,14 +138,38 @@ struct BlocksTwin {
   }
 };
 
+/// What is wrong with the nodes of all sets' trees, one after the other, or "".
+inline std::string broken_nodes(const std::vector<hybrid::CutNode>& nodes,
+                                const std::vector<TreeTwin>& trees) {
+  std::size_t first = 0;
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    if (trees[t].depth == 0) continue;
+    for (std::size_t k = 1; k < trees[t].nodes.size(); ++k) {
+      if (first + k >= nodes.size()) return fmt::format("no node {} of tree {}", k, t);
+      const TreeTwin::Node found = decoded(nodes[first + k]), &expected = trees[t].nodes[k];
+      for (const std::size_t c : {0, 1}) {
+        if (found.pivot.s[c] != expected.pivot.s[c] ||
+            (found.pivot.s[c] == 0 && std::signbit(found.pivot.s[c])))
+          return fmt::format("node {} of tree {} is elsewhere", k, t);
+      }
+      if (found.axis != expected.axis) return fmt::format("node {} of tree {} is along the wrong axis", k, t);
+    }
+    first += trees[t].nodes.size();
+  }
+  return first == nodes.size() ? "" : "nodes of no tree";
+}
+
 /// What is wrong with the list of merges, or "": level by level, they join each set's blocks, neighbours all
-/// of them, along the cuts of its tree. spans[b]: behind the last block that b was joined with.
+/// of them, by the nodes of its tree, which stand after those of the trees before. spans[b]: behind the last
+/// block that b was joined with.
 inline std::string broken_merges(const hybrid::Blocks& blocks, const std::vector<TreeTwin>& trees,
                                  std::vector<cl_int>& spans) {
   // For each span its node in the set's tree; 0 if it is no span's first block.
   std::vector<int> node(blocks.count);
   std::vector<std::size_t> set(blocks.count);
+  std::vector<int> first_node(blocks.sets + 1);
   for (std::size_t s = 0; s < blocks.sets; ++s) {
+    first_node[s + 1] = first_node[s] + (trees[s].depth == 0 ? 0 : 1 << trees[s].depth);
     for (cl_int b = blocks.set_blocks[s]; b < blocks.set_blocks[s + 1]; ++b) {
       node[static_cast<std::size_t>(b)] = (1 << trees[s].depth) + b - blocks.set_blocks[s];
       set[static_cast<std::size_t>(b)] = s;
@@ -172,9 +196,7 @@ inline std::string broken_merges(const hybrid::Blocks& blocks, const std::vector
       node[low] /= 2;
       node[high] = 0;
       spans[low] = spans[high];
-      if (merge.axis != trees[set[low]].nodes[static_cast<std::size_t>(node[low])].axis) {
-        return fmt::format("merge {} is along the wrong axis", m);
-      }
+      if (merge.node != first_node[set[low]] + node[low]) return fmt::format("merge {} has another node", m);
     }
   }
   if (m != blocks.merges.size()) return "merges of no level";

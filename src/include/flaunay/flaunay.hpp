@@ -13,6 +13,7 @@
 #include "flaunay/export.h"
 #include "flaunay/opencl.h"
 
+/// Exact two-dimensional Delaunay triangulation on any OpenCL device. All that fails throws Error.
 namespace flaunay {
 
 /// What went wrong, in the terms of the command's exit codes.
@@ -26,8 +27,10 @@ enum class ErrorKind {
 /// The one exception type of the library.
 class FLAUNAY_API Error : public std::runtime_error {
  public:
+  /// code and call: of OpenCL, if it was one of its calls that failed.
   explicit Error(ErrorKind kind, const std::string& message, int code = 0, const std::string& call = {})
       : std::runtime_error(message), kind_(kind), code_(code), call_(std::make_shared<std::string>(call)) {}
+  /// For programs; what() is for people, and names the place.
   ErrorKind kind() const noexcept { return kind_; }
   /// What the OpenCL call returned, such as -5 for CL_OUT_OF_RESOURCES; 0 if none failed.
   int code() const noexcept { return code_; }
@@ -65,21 +68,22 @@ enum class Hull {
   monotone_chain,  ///< Andrew's scan over points sorted along the cut; Mode::recursive only
 };
 
-/// As the command line names them: "recursive-device", "monotone-chain"...
+/// As the command line names them: "recursive-device" and so on. The text is static.
 FLAUNAY_API const char* to_string(Mode mode) noexcept;
+/// Likewise: "monotone-chain" and so on.
 FLAUNAY_API const char* to_string(Hull hull) noexcept;
 
 /// What a caller can ask of one triangulation.
 struct Options {
-  Mode mode = Mode::hybrid;
-  Cut cut = Cut::interquartile;
-  Hull hull = Hull::prune;
-  bool neighbors = true;     ///< compute Triangulation::neighbors
-  bool halfedges = false;    ///< compute Triangulation::halfedges
-  bool profile = false;      ///< time every kernel by events; costs a little
-  bool count = false;        ///< count operations into Statistics::work; slow; not in Mode::hybrid
-  int partition_levels = 0;  ///< Mode::partition: levels on the device; 0 chooses
-  int threads = 0;           ///< Mode::partition: host threads; 0 takes one per core
+  Mode mode = Mode::hybrid;      ///< how; the triangles are the same, the order of rows is the mode's own
+  Cut cut = Cut::interquartile;  ///< not in Mode::hybrid and Mode::dwyer
+  Hull hull = Hull::prune;       ///< likewise
+  bool neighbors = true;         ///< compute Triangulation::neighbors
+  bool halfedges = false;        ///< compute Triangulation::halfedges
+  bool profile = false;          ///< time every kernel by events; costs a little
+  bool count = false;            ///< count operations into Statistics::work; slow; not in Mode::hybrid
+  int partition_levels = 0;      ///< Mode::partition: levels on the device; 0 chooses
+  int threads = 0;               ///< Mode::partition: host threads; 0 takes one per core
   /// Called between levels, on the calling thread; may be empty.
   /// done is the share of the points' work that is finished, 0 to 1.
   std::function<void(const std::string& stage, int level, double done)> progress;
@@ -93,16 +97,17 @@ enum class Component {
   split,    ///< points to either side
   endgame,  ///< triangles of regions without internal points
 };
+/// How many components there are.
 constexpr std::size_t kComponents = 5;
 
 /// What one component did: numbers of operations by kind, and the length of its critical path in operations.
 /// See docs/counting.md for what counts, and for how the depth of each vector operation is defined.
 struct OperationCounts {
-  std::uint64_t arithmetic = 0;    ///< additions, multiplications and comparisons outside of predicates
-  std::uint64_t depths = 0;        ///< evaluations of the depth below a chord
-  std::uint64_t orientations = 0;  ///< evaluations of the orientation of three points
-  std::uint64_t circles = 0;       ///< evaluations of the in-circle test
-  std::uint64_t critical_path = 0;
+  std::uint64_t arithmetic = 0;     ///< additions, multiplications and comparisons outside of predicates
+  std::uint64_t depths = 0;         ///< evaluations of the depth below a chord
+  std::uint64_t orientations = 0;   ///< evaluations of the orientation of three points
+  std::uint64_t circles = 0;        ///< evaluations of the in-circle test
+  std::uint64_t critical_path = 0;  ///< operations that have to be done one after the other
 
   /// What is done one after the other: critical paths add up too.
   FLAUNAY_API OperationCounts& operator+=(const OperationCounts& other) noexcept;
@@ -116,9 +121,10 @@ struct OperationCounts {
 /// Options::count: the work by component and level. Level 0 is the first cut (in Mode::dwyer the last merge);
 /// start is what precedes it: sorting and the first hulls.
 struct Work {
+  /// By Component.
   using Components = std::array<OperationCounts, kComponents>;
-  Components start{};
-  std::vector<Components> levels;
+  Components start{};              ///< what precedes the first cut
+  std::vector<Components> levels;  ///< level by level
   /// Corners of each region that the end game triangulated: histogram[k] regions of k corners. Regions of
   /// more than 1023 corners count as such of 1023; there are no zeros at the end.
   std::vector<std::uint64_t> endgame_sizes;
@@ -135,42 +141,42 @@ struct LevelStatistics {
   std::size_t path_vertices = 0;    ///< vertices of the dividing paths, all together
   int candidate_rounds = 0;         ///< quickhull rounds on the candidates
   int hull_rounds = 0;              ///< quickhull rounds on the survivors
-  double seconds = 0;
+  double seconds = 0;               ///< wall time
 };
 
 /// Where one kernel's time went (Options::profile).
 struct KernelStatistics {
-  std::string name;
-  std::size_t launches = 0;
-  double seconds = 0;
+  std::string name;          ///< as in its file in kernels/
+  std::size_t launches = 0;  ///< how often it ran
+  double seconds = 0;        ///< on the device, all launches together
 };
 
 /// A named part of the work and its wall time.
 struct PhaseStatistics {
-  std::string name;
-  double seconds = 0;
+  std::string name;    ///< "blocks", "triangulate", "output" and others, by mode
+  double seconds = 0;  ///< wall time on the host, waits included
 };
 
 /// How a result came about.
 struct Statistics {
-  std::string device;
-  std::size_t points = 0;      ///< input points
-  std::size_t duplicates = 0;  ///< input points that are not their own representative
-  std::size_t triangles = 0;
-  std::size_t hull_vertices = 0;
-  double seconds = 0;        ///< from points in host memory to results in host memory
-  double build_seconds = 0;  ///< building programs, part of no other figure
-  std::size_t kernel_launches = 0;
-  std::size_t host_waits = 0;          ///< times the host waited for the device
-  std::size_t bytes_to_device = 0;     ///< copied by the host; memory that is used in place is not
-  std::size_t bytes_to_host = 0;       ///< likewise
-  std::size_t device_allocations = 0;  ///< OpenCL buffers made, sub-buffers not counted
-  std::size_t device_bytes_peak = 0;   ///< most device memory held at once
-  std::size_t undecided = 0;           ///< predicates that needed exact evaluation
-  std::vector<PhaseStatistics> phases;
-  std::vector<LevelStatistics> levels;
-  std::vector<KernelStatistics> kernels;
-  Work work;  ///< empty without Options::count
+  std::string device;                     ///< its name; "host" in modes of the host
+  std::size_t points = 0;                 ///< input points
+  std::size_t duplicates = 0;             ///< input points that are not their own representative
+  std::size_t triangles = 0;              ///< over all sets
+  std::size_t hull_vertices = 0;          ///< over all sets
+  double seconds = 0;                     ///< from points in host memory to results in host memory
+  double build_seconds = 0;               ///< building programs, part of no other figure
+  std::size_t kernel_launches = 0;        ///< enqueued on the device
+  std::size_t host_waits = 0;             ///< times the host waited for the device
+  std::size_t bytes_to_device = 0;        ///< copied by the host; memory that is used in place is not
+  std::size_t bytes_to_host = 0;          ///< likewise
+  std::size_t device_allocations = 0;     ///< OpenCL buffers made, sub-buffers not counted
+  std::size_t device_bytes_peak = 0;      ///< most device memory held at once
+  std::size_t undecided = 0;              ///< predicates that needed exact evaluation
+  std::vector<PhaseStatistics> phases;    ///< in the order of time
+  std::vector<LevelStatistics> levels;    ///< of the modes that go level by level
+  std::vector<KernelStatistics> kernels;  ///< the longest first; empty if not profiled
+  Work work;                              ///< empty without Options::count
 };
 
 /// The triangulations of one or more point sets. All indices are those of the input points, over all sets;
@@ -191,8 +197,8 @@ struct Triangulation {
   std::vector<std::int32_t> representatives;
   /// Set s has triangles [triangle_offsets[s], triangle_offsets[s + 1]) and likewise hull vertices.
   std::vector<std::size_t> triangle_offsets;
-  std::vector<std::size_t> hull_offsets;
-  Statistics statistics;
+  std::vector<std::size_t> hull_offsets;  ///< sets + 1, as triangle_offsets
+  Statistics statistics;                  ///< how it came about
 };
 
 /// A region of a partition: a part of the triangulation still to be computed. Its border is made of Delaunay
@@ -206,43 +212,44 @@ struct Region {
 
 /// A set of points cut into regions by some levels of the recursion.
 struct Partition {
-  std::vector<Region> regions;
+  std::vector<Region> regions;  ///< what is left to do
   /// Triangles that are final already, of regions that had no points inside: 3 indices of input points each.
   std::vector<std::int32_t> triangles;
-  Statistics statistics;
+  Statistics statistics;  ///< how it came about
 };
 
 /// Puts a partition together again. solutions: for each region any Delaunay triangulation of its points, 3
 /// positions in Region::points per triangle, in either orientation, what lies outside the border included.
 /// The result is that of triangulate. Throws Error(input) if a solution is not a triangulation of its
-/// region's points. Uses no device.
+/// region's points. Uses no device. O(n log n) work, on the calling thread.
 FLAUNAY_API Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
                                    const std::vector<std::vector<std::int32_t>>& solutions,
                                    const Options& options = {});
 
-/// Mode::recursive and Mode::dwyer without a device. Throws Error(usage) for another mode.
+/// Mode::recursive and Mode::dwyer without a device, on the calling thread. Points, offsets and result as of
+/// Triangulator::triangulate. Throws Error(usage) for another mode, and what that throws. O(n log n) work.
 FLAUNAY_API Triangulation triangulate_on_host(const double* coordinates,
                                               const std::vector<std::size_t>& offsets,
                                               const Options& options);
 
 /// What the library says of an OpenCL device.
 struct DeviceInfo {
-  std::string name;  ///< as FLAUNAY_DEVICE matches it
-  std::string platform;
-  std::string vendor;
-  std::string driver;
-  std::string version;
-  std::string type;  ///< "CPU", "GPU", "accelerator"
-  unsigned compute_units = 0;
-  unsigned clock_mhz = 0;
-  std::size_t memory_bytes = 0;
-  std::size_t largest_buffer_bytes = 0;
-  std::size_t local_memory_bytes = 0;
-  std::size_t work_group_size = 0;
-  bool fp64 = false;
+  std::string name;                      ///< as FLAUNAY_DEVICE matches it
+  std::string platform;                  ///< CL_PLATFORM_NAME
+  std::string vendor;                    ///< CL_DEVICE_VENDOR
+  std::string driver;                    ///< CL_DRIVER_VERSION
+  std::string version;                   ///< CL_DEVICE_VERSION
+  std::string type;                      ///< "CPU", "GPU", "accelerator"
+  unsigned compute_units = 0;            ///< CL_DEVICE_MAX_COMPUTE_UNITS
+  unsigned clock_mhz = 0;                ///< CL_DEVICE_MAX_CLOCK_FREQUENCY
+  std::size_t memory_bytes = 0;          ///< CL_DEVICE_GLOBAL_MEM_SIZE
+  std::size_t largest_buffer_bytes = 0;  ///< CL_DEVICE_MAX_MEM_ALLOC_SIZE
+  std::size_t local_memory_bytes = 0;    ///< CL_DEVICE_LOCAL_MEM_SIZE
+  std::size_t work_group_size = 0;       ///< CL_DEVICE_MAX_WORK_GROUP_SIZE
+  bool fp64 = false;                     ///< double precision, without which flaunay refuses the device
   /// Empty if the arithmetic self test passed, else what failed. Only filled if it was asked for.
   std::string self_test_failure;
-  bool self_test_passed = false;
+  bool self_test_passed = false;  ///< it was asked for, and passed
 };
 
 /// Every device of every platform, in the order that "#k" counts. Throws Error(device) if there is no OpenCL
@@ -250,14 +257,17 @@ struct DeviceInfo {
 FLAUNAY_API std::vector<DeviceInfo> list_devices(bool self_test = false);
 
 /// What coordinates and values in device memory are made of.
-enum class Precision { float64, float32 };
+enum class Precision {
+  float64,  ///< double, 16 bytes a point
+  float32,  ///< float, 8 bytes a point; each is taken as the double of the same value
+};
 
 /// Points in device memory, in one or more sets.
 struct DevicePoints {
-  cl_mem memory = nullptr;  ///< x0 y0 x1 y1 ..., as arrays of double2 or float2 are
-  std::size_t count = 0;    ///< of points
-  Precision precision = Precision::float64;
-  std::size_t first = 0;  ///< points that precede them in the buffer
+  cl_mem memory = nullptr;                   ///< x0 y0 x1 y1 ..., as arrays of double2 or float2 are
+  std::size_t count = 0;                     ///< of points
+  Precision precision = Precision::float64;  ///< of the coordinates
+  std::size_t first = 0;                     ///< points that precede them in the buffer
   /// Set s has points [offsets[s], offsets[s + 1]), counted from `first`; begins with 0 and ends with count.
   /// Empty: one set, or what device_offsets says.
   std::vector<std::size_t> offsets;
@@ -269,7 +279,8 @@ struct DevicePoints {
 /// How a call on device memory is enqueued.
 struct Enqueue {
   /// Of the triangulator's context and device; in order or not. Null: the triangulator's own. It is retained
-  /// until the triangulator gets another or goes.
+  /// until the triangulator gets another or goes; with one that its owner has released by then, a call works
+  /// or throws Error(usage), as far as OpenCL lets it be seen.
   cl_command_queue queue = nullptr;
   std::vector<cl_event> wait_for;  ///< what must be done before
   /// If not null, gets an event that is complete when the results are there; the caller releases it.
@@ -290,7 +301,9 @@ class FLAUNAY_API DeviceBuffer {
   /// Null as long as there is none. Valid as long as this or a copy of it; clRetainMemObject makes it stay
   /// longer.
   cl_mem memory() const noexcept { return memory_.get(); }
+  /// The buffer's size, which may be more than its contents need.
   std::size_t bytes() const noexcept { return bytes_; }
+  /// Whether it was made from a buffer of the caller.
   bool is_callers() const noexcept { return is_callers_; }
 
  private:
@@ -302,24 +315,31 @@ class FLAUNAY_API DeviceBuffer {
 
 /// Which parts of a triangulation to compute on the device. Neighbours and halfedges need the triangles.
 struct Parts {
-  bool triangles = true;
-  bool neighbors = false;
-  bool halfedges = false;
-  bool hull = false;
-  bool representatives = false;
+  bool triangles = true;         ///< Triangulation::triangles
+  bool neighbors = false;        ///< Triangulation::neighbors
+  bool halfedges = false;        ///< Triangulation::halfedges
+  bool hull = false;             ///< Triangulation::hull
+  bool representatives = false;  ///< Triangulation::representatives
 };
 
 /// A Triangulation in device memory, all arrays int32. Bytes for n points, at most: triangles, neighbors,
 /// halfedges 24 n each, hull and representatives 4 n each; flaunay makes its own buffers so large, and the
 /// caller's must be.
 struct DeviceTriangulation {
-  DeviceBuffer triangles, neighbors, halfedges, hull, representatives;
+  DeviceBuffer triangles;        ///< 3 per triangle
+  DeviceBuffer neighbors;        ///< 3 per triangle
+  DeviceBuffer halfedges;        ///< 3 per triangle
+  DeviceBuffer hull;             ///< 1 per hull vertex
+  DeviceBuffer representatives;  ///< 1 per point
   /// What the last call computed.
   Parts parts{false, false, false, false, false};
-  std::size_t points = 0;
-  /// In host memory, known when the call returns: set s has triangles [triangle_offsets[s],
-  /// triangle_offsets[s + 1]), and likewise points and hull vertices.
-  std::vector<std::size_t> point_offsets, triangle_offsets, hull_offsets;
+  std::size_t points = 0;  ///< over all sets
+  /// In host memory, sets + 1, known when the call returns: set s has points [point_offsets[s],
+  /// point_offsets[s + 1]).
+  std::vector<std::size_t> point_offsets;
+  std::vector<std::size_t> triangle_offsets;  ///< likewise its triangles, whatever the parts
+  std::vector<std::size_t> hull_offsets;      ///< likewise its hull vertices, whatever the parts
+  /// How it came about; seconds: until all was enqueued.
   Statistics statistics;
 };
 
@@ -337,10 +357,12 @@ struct Voronoi {
   std::vector<std::uint8_t> unbounded;  ///< 1 for points on the hull, also for all of a set on one line; n
 };
 
-/// The same in device memory: circumcentres double2 (16 bytes a triangle), cell_offsets int32 (4 (n + 1)
-/// bytes), cells int32 (12 bytes a triangle), unbounded uchar (n bytes).
+/// A Voronoi diagram in device memory, of n points.
 struct DeviceVoronoi {
-  DeviceBuffer circumcentres, cell_offsets, cells, unbounded;
+  DeviceBuffer circumcentres;  ///< Voronoi::circumcentres, double2, 16 bytes a triangle
+  DeviceBuffer cell_offsets;   ///< Voronoi::cell_offsets, int32, 4 (n + 1) bytes
+  DeviceBuffer cells;          ///< Voronoi::cells, int32, 12 bytes a triangle
+  DeviceBuffer unbounded;      ///< Voronoi::unbounded, uchar, n bytes
 };
 
 /// Owns a device's programs and memory, and its context and queue or the caller's; reusable, movable, one
@@ -354,30 +376,39 @@ class FLAUNAY_API Triangulator {
   /// In the caller's context, which is retained. Throws Error(usage) if the device is not one of the context,
   /// Error(device) as above.
   Triangulator(cl_context context, cl_device_id device);
+  /// Results stay, and so do Locators.
   ~Triangulator();
+  /// What was moved from can only be destroyed or assigned to.
   Triangulator(Triangulator&&) noexcept;
+  /// Likewise.
   Triangulator& operator=(Triangulator&&) noexcept;
 
+  /// Its device, which passed the self test.
   DeviceInfo device() const;
   /// For the caller's own buffers, kernels and queues; owned by the triangulator.
   cl_context context() const noexcept;
+  /// The same device for OpenCL; owned by the triangulator.
   cl_device_id device_id() const noexcept;
+  /// Its own queue, in order; owned by the triangulator.
   cl_command_queue queue() const noexcept;
 
   /// The largest number of points that one call can take on this device.
   std::size_t capacity() const;
 
   /// Triangulates one set of points. coordinates: x0 y0 x1 y1 ..., n points.
-  /// Throws Error(input) for a coordinate that is not finite, a range of magnitudes beyond what is exact, or
-  /// too many points. O(n log n) work.
+  /// The result is the caller's, in host memory, complete when the call returns. Throws Error(input) for a
+  /// coordinate that is not finite, a range of magnitudes beyond what is exact, or too many points;
+  /// Error(usage) for options that do not go together; Error(device) if an OpenCL call fails. O(n log n)
+  /// work.
   Triangulation triangulate(const double* coordinates, std::size_t n, const Options& options = {});
   /// The same of float; the result is that of the same numbers as double.
   Triangulation triangulate(const float* coordinates, std::size_t n, const Options& options = {});
 
   /// Triangulates many sets at once: set s has points [offsets[s], offsets[s + 1]); offsets[0] is 0 and the
-  /// last offset the number of points; sets may be empty.
+  /// last offset the number of points; sets may be empty. Throws Error(usage) too if they decrease.
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
+  /// Many sets of float.
   Triangulation triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
 
@@ -393,22 +424,25 @@ class FLAUNAY_API Triangulator {
   void triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts = {},
                    const Enqueue& enqueue = {});
 
-  /// Bytes of device memory that calls on up to n points in device memory need besides points and results, at
+  /// Bytes of device memory that calls in Mode::hybrid on up to n points need besides points and results, at
   /// most.
   std::size_t workspace_bytes(std::size_t n, std::size_t sets = 1) const;
   /// From now on that memory is the caller's buffer, which is retained; null: the triangulator's own again. A
-  /// call for which it is too small throws Error(usage) that says how much is needed. Waits for what was
-  /// enqueued.
+  /// call for which it is too small throws Error(usage) that says how much is needed. Other modes have memory
+  /// of their own. Waits for what was enqueued.
   void use_workspace(cl_mem workspace);
 
-  /// The dual, from triangles and neighbours. O(n) work; a point of degree d takes one work-item d steps.
+  /// The dual, from triangles and neighbours, of one or more sets. Throws Error(usage) for a triangulation
+  /// without neighbours or of another number of points. O(n) work; a point of degree d takes one work-item d
+  /// steps.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
-  /// Needs the parts triangles, neighbors, hull and representatives.
+  /// The same in device memory, enqueued as triangulate is. Needs the parts triangles, neighbors, hull and
+  /// representatives.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
                const Enqueue& enqueue = {});
 
   /// The regions after `levels` levels, up to 2^levels of them; O(levels n) work after sorting. Options::mode
-  /// and count mean nothing here.
+  /// and count mean nothing here. Throws Error(usage) if levels is negative, and what triangulate throws.
   Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options = {});
 
  private:
@@ -429,35 +463,44 @@ class FLAUNAY_API Locator {
   /// log n).
   Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
           const Triangulation& triangulation);
+  /// The same of several sets.
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
-  /// Needs the parts triangles, neighbors, hull and representatives.
+  /// The same of points in device memory, enqueued as Triangulator::triangulate is. Needs the parts
+  /// triangles, neighbors, hull and representatives.
   Locator(Triangulator& triangulator, const DevicePoints& points, const DeviceTriangulation& triangulation,
           const Enqueue& enqueue = {});
+  /// Releases its memory.
   ~Locator();
+  /// What was moved from can only be destroyed or assigned to.
   Locator(Locator&&) noexcept;
+  /// Likewise.
   Locator& operator=(Locator&&) noexcept;
 
-  /// For each query the triangle that it lies in, exactly; on an edge or a vertex the one of the smallest
-  /// index of those that it lies in; -1 outside of the hull. About O(log n) a query.
+  /// For each of m queries, x0 y0 x1 y1 ..., the triangle that it lies in, exactly; on an edge or a vertex
+  /// the one of the smallest index of those that it lies in; -1 outside of the hull. About O(log n) a query.
   std::vector<std::int32_t> locate(const double* queries, std::size_t m);
+  /// Of several sets: as many sets of queries, their offsets as those of points.
   std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
-  /// int32, 4 bytes a query.
+  /// In device memory, enqueued as Triangulator::triangulate is; triangles: int32, 4 bytes a query.
   void locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue = {});
 
   /// For each query the index of the nearest point, by exact comparisons; of several the first in the order
   /// of x, then y. -1 if the set is empty.
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
+  /// Of several sets, as locate.
   std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
+  /// In device memory, as locate; points: int32, 4 bytes a query.
   void nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue = {});
 
   /// For each query the linear interpolation of its triangle's three values, rounded; at a vertex exactly its
   /// value; NaN outside of the hull. values: one for each input point, of which those of duplicates'
   /// representatives count.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m);
+  /// Of several sets, as locate; values over all sets.
   std::vector<double> interpolate(const double* values, const double* queries,
                                   const std::vector<std::size_t>& offsets);
-  /// values and results: double.
+  /// In device memory, as locate; values and results: double, 8 bytes a point and a query.
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                    const Enqueue& enqueue = {});
 
@@ -466,7 +509,7 @@ class FLAUNAY_API Locator {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// "0.1.0"
+/// Of the library, not of the header: "0.1.0". The text is static.
 FLAUNAY_API const char* version() noexcept;
 
 }  // namespace flaunay

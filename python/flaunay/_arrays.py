@@ -1,0 +1,68 @@
+"""What users hand over, as arrays that the library takes as they are."""
+
+from __future__ import annotations
+
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._errors import UsageError
+
+FloatArray = Union[npt.NDArray[np.float32], npt.NDArray[np.float64]]
+
+# From this size on, numbers of another type may have more digits than a double.
+_BYTES_OF_DOUBLE = 8
+
+
+def _as_doubles(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.float64]:
+    """Other numbers as doubles; UsageError if they are none, or none of the same value."""
+    if given.dtype.kind not in "biuf":
+        raise UsageError(f"{name} must be real numbers, not {given.dtype}")
+    with np.errstate(over="ignore", invalid="ignore"):
+        doubles = given.astype(np.float64)
+        if given.dtype.kind == "b" or given.dtype.itemsize < _BYTES_OF_DOUBLE:
+            return doubles
+        changed = (doubles.astype(given.dtype) != given) & ~np.isnan(doubles)
+    if changed.any():
+        place = tuple(int(i) for i in np.argwhere(changed)[0])
+        raise UsageError(
+            f"{name}{list(place)} = {given[place]} is not a float64: it would be rounded"
+        )
+    return doubles
+
+
+def as_floats(given: npt.ArrayLike, name: str) -> FloatArray:
+    """A C-contiguous, aligned array of float32 or float64, copied only if it is none already.
+
+    Numbers of any other type become float64; those that are not exactly one are an error, and so is
+    what is no real number, an array of objects included.
+    """
+    if isinstance(given, np.ma.MaskedArray):
+        raise UsageError(f"{name} cannot be a masked array")
+    array = np.asarray(given)
+    if array.size == 0 and array.dtype.kind == "O":
+        array = array.astype(np.float64)
+    if array.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
+        array = _as_doubles(array, name)
+    return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
+
+
+def as_points(given: npt.ArrayLike) -> FloatArray:
+    """Points of shape (n, 2); UsageError for any other shape."""
+    points = as_floats(given, "points")
+    if points.ndim != 2:
+        raise UsageError(f"points must have the shape (n, 2), not {points.shape}")
+    if points.shape[1] != 2:
+        raise UsageError(f"points must be two-dimensional, but have {points.shape[1]} coordinates")
+    return points
+
+
+def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
+    """Offsets of sets; UsageError unless they are a list of integers."""
+    array = np.asarray(given)
+    if array.ndim != 1 or array.dtype.kind not in "iu":
+        raise UsageError(
+            f"segments must be integers in one dimension, not {array.dtype} of shape {array.shape}"
+        )
+    return np.ascontiguousarray(array, dtype=np.int64)

@@ -1,0 +1,109 @@
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import FloatArray
+
+_Indices = npt.NDArray[np.int32]
+_Offsets = npt.NDArray[np.int64]
+
+__version__: str
+
+def devices() -> list[dict[str, Any]]: ...
+def triangulate_without_device(
+    points: npt.NDArray[np.float64],
+    segments: Optional[_Offsets],
+    mode: str,
+    neighbors: bool,
+    halfedges: bool,
+) -> dict[str, Any]: ...
+def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indices, _Indices]: ...
+def first_triangles(triangles: _Indices, n: int) -> _Indices: ...
+
+class Triangulator:
+    def __init__(self, device: str) -> None: ...
+    @staticmethod
+    def from_handles(context: int, device: int) -> Triangulator: ...
+    @property
+    def context(self) -> int: ...
+    @property
+    def device(self) -> int: ...
+    @property
+    def queue(self) -> int: ...
+    def capacity(self) -> int: ...
+    def triangulate(
+        self,
+        points: FloatArray,
+        segments: Optional[_Offsets],
+        mode: str,
+        neighbors: bool,
+        halfedges: bool,
+    ) -> dict[str, Any]: ...
+
+class DevicePoints:
+    def __init__(
+        self,
+        memory: int,
+        count: int,
+        single: bool,
+        first: int,
+        segments: Optional[_Offsets] = ...,
+        device_segments: int = ...,
+        sets: int = ...,
+    ) -> None: ...
+
+class Parts:
+    def __init__(
+        self, neighbors: bool, halfedges: bool, hull: bool, representatives: bool
+    ) -> None: ...
+
+class DeviceResult:
+    @property
+    def triangles(self) -> int: ...
+    @property
+    def neighbors(self) -> int: ...
+    @property
+    def halfedges(self) -> int: ...
+    @property
+    def hull(self) -> int: ...
+    @property
+    def representatives(self) -> int: ...
+    @property
+    def triangle_offsets(self) -> _Offsets: ...
+    @property
+    def hull_offsets(self) -> _Offsets: ...
+    @property
+    def statistics(self) -> dict[str, Any]: ...
+
+def triangulate_device(
+    triangulator: Triangulator,
+    points: DevicePoints,
+    parts: Parts,
+    queue: int,
+    wait_for: list[int],
+) -> tuple[DeviceResult, int]: ...
+def voronoi(
+    triangulator: Triangulator,
+    points: npt.NDArray[np.float64],
+    triangles: _Indices,
+    neighbors: _Indices,
+    hull: _Indices,
+    representatives: _Indices,
+) -> tuple[npt.NDArray[np.float64], _Indices, _Indices, npt.NDArray[np.uint8]]: ...
+
+class Locator:
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: npt.NDArray[np.float64],
+        triangles: _Indices,
+        neighbors: _Indices,
+        hull: _Indices,
+        representatives: _Indices,
+    ) -> None: ...
+    def locate(self, queries: npt.NDArray[np.float64]) -> _Indices: ...
+    def nearest(self, queries: npt.NDArray[np.float64]) -> _Indices: ...
+    def interpolate(
+        self, values: npt.NDArray[np.float64], queries: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64]: ...

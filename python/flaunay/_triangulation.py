@@ -1,0 +1,133 @@
+"""Triangulations of points in host memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _flaunay, _triangulators
+from flaunay._arrays import as_points, as_segments
+from flaunay._errors import UsageError
+
+# They run on the host; no device needs to be there.
+_MODES_OF_THE_HOST = ("recursive", "dwyer")
+
+
+@dataclass(frozen=True)
+class Triangulation:
+    """The triangulations of one or more sets of points.
+
+    All indices of points are those of the input, over all sets; indices of triangles count over all
+    sets too.
+
+    Attributes
+    ----------
+    triangles : ndarray of int32, shape (m, 3)
+        Three points each, counter-clockwise, the smallest index first.
+    neighbors : ndarray of int32, shape (m, 3), or None
+        The triangle opposite to each corner, -1 beyond the hull; None if not asked for.
+    halfedges : ndarray of int32, shape (3 m,), or None
+        Halfedge ``3 t + k`` goes from corner k of triangle t to the next one; here is the halfedge
+        that goes back, in the triangle beyond, or -1 on the hull. None if not asked for.
+    hull : ndarray of int32, shape (h,)
+        The convex hull with the points on its edges, counter-clockwise from the lexicographically
+        smallest point. Of collinear points all distinct ones, in lexicographic order.
+    representatives : ndarray of int32, shape (n,)
+        For each point the smallest index of an equal point of its set. Only those are in triangles.
+    triangle_offsets, hull_offsets : ndarray of int64, shape (sets + 1,)
+        Set s has the triangles ``triangle_offsets[s]`` to ``triangle_offsets[s + 1]``, and likewise
+        hull vertices.
+    statistics : dict
+        How it came about: ``device``, ``seconds``, ``device_bytes_peak`` and others.
+    """
+
+    triangles: npt.NDArray[np.int32]
+    neighbors: Optional[npt.NDArray[np.int32]]
+    halfedges: Optional[npt.NDArray[np.int32]]
+    hull: npt.NDArray[np.int32]
+    representatives: npt.NDArray[np.int32]
+    triangle_offsets: npt.NDArray[np.int64]
+    hull_offsets: npt.NDArray[np.int64]
+    statistics: dict[str, Any]
+
+
+def triangulate(
+    points: npt.ArrayLike,
+    segments: Optional[npt.ArrayLike] = None,
+    device: Optional[str] = None,
+    neighbors: bool = True,
+    halfedges: bool = False,
+    mode: str = "hybrid",
+) -> Triangulation:
+    """Triangulates one set of points, or many sets in one call.
+
+    Every triangle is exact, whatever the points: grids, duplicates, points on one line. Fewer than
+    three distinct points, and points on one line, have no triangles; that is no error.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Coordinates. C-contiguous arrays of float64 and float32 are taken as they are; other numbers
+        become float64, and must be one exactly.
+    segments : array_like of int, shape (sets + 1,), optional
+        Set s has the points ``segments[s]`` to ``segments[s + 1]``. Begins with 0, does not decrease
+        and ends with n. Without it, there is one set.
+    device : str, optional
+        A part of a device's or platform's name, or ``"#k"``, the k-th of `devices`. Without it, the
+        one that the environment variable FLAUNAY_DEVICE names, else the first GPU, else the first
+        device with fp64.
+    neighbors, halfedges : bool
+        Which of these to compute.
+    mode : str
+        How to divide and conquer: ``"hybrid"``, ``"flattened"``, ``"recursive-device"`` or
+        ``"partition"``; ``"recursive"`` and ``"dwyer"`` run on the host and need no device. The
+        triangles are the same in each; the order of the rows is the mode's own.
+
+    Returns
+    -------
+    Triangulation
+
+    Raises
+    ------
+    UsageError
+        For a wrong shape, what is no number, segments that are none, an unknown mode.
+    InputError
+        For a point that is not finite, magnitudes too different to be exact, or too many points.
+    DeviceError
+        If there is no such device, or a call of OpenCL failed.
+
+    Notes
+    -----
+    O(n log n) work. The interpreter's lock is released meanwhile.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> mesh = flaunay.triangulate([[0, 0], [4, 0], [4, 3], [0, 4]])
+    >>> mesh.triangles
+    array([[0, 2, 3],
+           [0, 1, 2]], dtype=int32)
+    >>> mesh.neighbors
+    array([[-1, -1,  1],
+           [-1,  0, -1]], dtype=int32)
+
+    Two sets at once, the second of them without triangles:
+
+    >>> meshes = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5], [6, 6]], segments=[0, 3, 5])
+    >>> meshes.triangle_offsets
+    array([0, 1, 1])
+    """
+    coordinates = as_points(points)
+    offsets = None if segments is None else as_segments(segments)
+    if mode in _MODES_OF_THE_HOST:
+        if device is not None:
+            raise UsageError(f"mode {mode} runs on the host and takes no device")
+        doubles = np.asarray(coordinates, dtype=np.float64)
+        result = _flaunay.triangulate_without_device(doubles, offsets, mode, neighbors, halfedges)
+    else:
+        triangulator = _triangulators.of_device(device)
+        result = triangulator.triangulate(coordinates, offsets, mode, neighbors, halfedges)
+    return Triangulation(**result)

@@ -1,0 +1,105 @@
+"""The triangulators, one for each device, kept from call to call."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Any, Optional
+
+from flaunay import _flaunay
+from flaunay._errors import DeviceError
+
+if TYPE_CHECKING:
+    import pyopencl
+
+# Contexts of the caller whose triangulators are kept: enough for a machine's devices, few enough
+# that contexts made again and again do not pile up.
+_MOST_CONTEXTS = 8
+
+_lock = threading.Lock()
+_by_name: dict[str, _flaunay.Triangulator] = {}
+_by_handles: OrderedDict[tuple[int, int], _flaunay.Triangulator] = OrderedDict()
+_used = False
+_forked = False
+
+
+def _after_fork() -> None:
+    global _forked, _lock
+    _lock = threading.Lock()
+    _forked = _used
+
+
+os.register_at_fork(after_in_child=_after_fork)
+
+
+def check_process() -> None:
+    """DeviceError in a child of a process that used OpenCL, where calls would never return."""
+    global _used
+    if _forked:
+        raise DeviceError(
+            "OpenCL was in use when this process was forked, and does not survive that: "
+            "start it by multiprocessing's 'spawn' or 'forkserver'"
+        )
+    _used = True
+
+
+def of_device(device: Optional[str]) -> _flaunay.Triangulator:
+    """The triangulator of a device, as FLAUNAY_DEVICE names it."""
+    if device is not None and not isinstance(device, str):
+        raise TypeError(f"device must be a string or None, not {type(device).__name__}")
+    check_process()
+    name = device or os.environ.get("FLAUNAY_DEVICE", "")
+    with _lock:
+        found = _by_name.get(name)
+        if found is None:
+            # Which reads the environment itself, and names it in its error.
+            found = _flaunay.Triangulator(device or "")
+            # A device has more than one name; what it holds, it should hold once.
+            for other in _by_name.values():
+                if other.device == found.device:
+                    found = other
+                    break
+            _by_name[name] = found
+        return found
+
+
+def of_queue(queue: pyopencl.CommandQueue) -> _flaunay.Triangulator:
+    """The triangulator in a queue's context."""
+    check_process()
+    handles = (queue.context.int_ptr, queue.device.int_ptr)
+    with _lock:
+        found = _by_handles.get(handles)
+        if found is None:
+            found = _flaunay.Triangulator.from_handles(*handles)
+            _by_handles[handles] = found
+            if len(_by_handles) > _MOST_CONTEXTS:
+                _by_handles.popitem(last=False)
+        _by_handles.move_to_end(handles)
+        return found
+
+
+def devices() -> list[dict[str, Any]]:
+    """Every OpenCL device, in the order in which ``"#k"`` names them.
+
+    Returns
+    -------
+    list of dict
+        Of each its ``name``, ``platform``, ``vendor``, ``driver``, ``version``, ``type`` (``"CPU"``,
+        ``"GPU"``, ``"accelerator"``), ``compute_units``, ``clock_mhz``, ``memory_bytes``,
+        ``largest_buffer_bytes``, ``local_memory_bytes``, ``work_group_size`` and ``fp64``: without
+        the last, a device cannot be used.
+
+    Raises
+    ------
+    DeviceError
+        If there is no OpenCL platform.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> {"name", "type", "fp64"} <= flaunay.devices()[0].keys()
+    True
+    """
+    check_process()
+    return _flaunay.devices()

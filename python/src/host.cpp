@@ -1,0 +1,136 @@
+// Triangulations of points in host memory, and what is derived from them there.
+#include <algorithm>
+
+#include "bindings.hpp"
+
+namespace flaunay::python {
+namespace {
+
+constexpr Mode kModes[] = {Mode::hybrid,    Mode::flattened, Mode::recursive_device,
+                           Mode::recursive, Mode::partition, Mode::dwyer};
+
+Mode find_mode(const std::string& name) {
+  std::string names;
+  for (const Mode mode : kModes) {
+    if (name == to_string(mode)) return mode;
+    names += std::string(names.empty() ? "" : ", ") + to_string(mode);
+  }
+  throw Error(ErrorKind::usage, "there is no mode '" + name + "'; there are " + names);
+}
+
+Options make_options(const std::string& mode, bool neighbors, bool halfedges) {
+  Options options;
+  options.mode = find_mode(mode);
+  options.neighbors = neighbors;
+  options.halfedges = halfedges;
+  return options;
+}
+
+py::dict arrays_of(Triangulation&& triangulation, const Options& options) {
+  py::dict result;
+  result["triangles"] = to_rows(std::move(triangulation.triangles), 3);
+  result["neighbors"] =
+      options.neighbors ? py::object(to_rows(std::move(triangulation.neighbors), 3)) : py::none();
+  result["halfedges"] =
+      options.halfedges ? py::object(to_array(std::move(triangulation.halfedges))) : py::none();
+  result["hull"] = to_array(std::move(triangulation.hull));
+  result["representatives"] = to_array(std::move(triangulation.representatives));
+  result["triangle_offsets"] = to_offsets(std::move(triangulation.triangle_offsets));
+  result["hull_offsets"] = to_offsets(std::move(triangulation.hull_offsets));
+  result["statistics"] = to_dict(triangulation.statistics);
+  return result;
+}
+
+template <typename Points>
+py::dict triangulate(SharedTriangulator& shared, const Points& points, const std::optional<Offsets>& segments,
+                     const std::string& mode, bool neighbors, bool halfedges) {
+  const Options options = make_options(mode, neighbors, halfedges);
+  const auto* const coordinates = points.data();
+  const std::vector<std::size_t> offsets = to_offsets(segments, count_points(points));
+  return arrays_of(shared.run([&](Triangulator& triangulator) {
+    return triangulator.triangulate(coordinates, offsets, options);
+  }),
+                   options);
+}
+
+py::dict triangulate_without_device(const Points64& points, const std::optional<Offsets>& segments,
+                                    const std::string& mode, bool neighbors, bool halfedges) {
+  const Options options = make_options(mode, neighbors, halfedges);
+  const double* const coordinates = points.data();
+  const std::vector<std::size_t> offsets = to_offsets(segments, count_points(points));
+  Triangulation triangulation = [&] {
+    const py::gil_scoped_release release;
+    return triangulate_on_host(coordinates, offsets, options);
+  }();
+  return arrays_of(std::move(triangulation), options);
+}
+
+// For each point its neighbours in the mesh, in increasing order: those of point i are
+// indices[starts[i]] to indices[starts[i + 1]].
+py::tuple vertex_neighbors(const Indices& triangles, const Indices& hull, std::size_t n) {
+  const std::int32_t* const corners = triangles.data();
+  const std::int32_t* const ring = hull.data();
+  const auto corner_count = static_cast<std::size_t>(triangles.size());
+  const std::size_t ring_size = corner_count == 0 ? 0 : static_cast<std::size_t>(hull.size());
+  std::vector<std::int32_t> starts(n + 1), neighbors(corner_count + ring_size);
+  {
+    const py::gil_scoped_release release;
+    // Each edge from each of its ends: a triangle has its edges one way round, and what has no triangle
+    // beyond is on the hull.
+    const auto for_each_edge = [&](const auto& visit) {
+      for (std::size_t t = 0; t < corner_count; t += 3) {
+        for (std::size_t k = 0; k < 3; ++k) visit(corners[t + k], corners[t + (k + 1) % 3]);
+      }
+      for (std::size_t i = 0; i < ring_size; ++i) visit(ring[(i + 1) % ring_size], ring[i]);
+    };
+    for_each_edge([&](std::int32_t from, std::int32_t) { ++starts[from + 1]; });
+    for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
+    std::vector<std::int32_t> next(starts.begin(), starts.end() - 1);
+    for_each_edge([&](std::int32_t from, std::int32_t to) { neighbors[next[from]++] = to; });
+    for (std::size_t i = 0; i < n; ++i) {
+      std::sort(neighbors.begin() + starts[i], neighbors.begin() + starts[i + 1]);
+    }
+  }
+  return py::make_tuple(to_array(std::move(starts)), to_array(std::move(neighbors)));
+}
+
+// For each point the first triangle that has it, -1 where there is none.
+py::array_t<std::int32_t> first_triangles(const Indices& triangles, std::size_t n) {
+  std::vector<std::int32_t> first(n, -1);
+  for (py::ssize_t i = triangles.size(); i-- > 0;) {
+    first[triangles.data()[i]] = static_cast<std::int32_t>(i / 3);
+  }
+  return to_array(std::move(first));
+}
+
+}  // namespace
+
+void bind_host(py::module_& module) {
+  py::class_<SharedTriangulator, std::shared_ptr<SharedTriangulator>>(module, "Triangulator")
+      .def(py::init<const std::string&>(), py::arg("device"), py::call_guard<py::gil_scoped_release>())
+      .def_static(
+          "from_handles",
+          [](std::uintptr_t context, std::uintptr_t device) {
+            const py::gil_scoped_release release;
+            return std::make_shared<SharedTriangulator>(reinterpret_cast<cl_context>(context),
+                                                        reinterpret_cast<cl_device_id>(device));
+          },
+          py::arg("context"), py::arg("device"))
+      .def_property_readonly("context", &SharedTriangulator::context)
+      .def_property_readonly("device", &SharedTriangulator::device)
+      .def_property_readonly("queue", &SharedTriangulator::queue)
+      .def("capacity",
+           [](SharedTriangulator& shared) {
+             return shared.run([](Triangulator& triangulator) { return triangulator.capacity(); });
+           })
+      .def("triangulate", &triangulate<Points64>, py::arg("points").noconvert(), py::arg("segments"),
+           py::arg("mode"), py::arg("neighbors"), py::arg("halfedges"))
+      .def("triangulate", &triangulate<Points32>, py::arg("points").noconvert(), py::arg("segments"),
+           py::arg("mode"), py::arg("neighbors"), py::arg("halfedges"));
+  module.def("triangulate_without_device", triangulate_without_device, py::arg("points").noconvert(),
+             py::arg("segments"), py::arg("mode"), py::arg("neighbors"), py::arg("halfedges"));
+  module.def("vertex_neighbors", vertex_neighbors, py::arg("triangles"), py::arg("hull"), py::arg("n"));
+  module.def("first_triangles", first_triangles, py::arg("triangles"), py::arg("n"));
+}
+
+}  // namespace flaunay::python

@@ -1,0 +1,209 @@
+"""What cannot be done is an exception that says what is wrong."""
+
+import os
+import pickle
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+
+import flaunay
+
+FOUR = np.array([[0, 0], [4, 0], [4, 3], [0, 4.0]])
+CALLS = [flaunay.triangulate, flaunay.Delaunay]
+
+
+def test_the_classes():
+    for kind in flaunay.UsageError, flaunay.InputError:
+        assert issubclass(kind, flaunay.Error) and issubclass(kind, ValueError)
+    for kind in flaunay.DeviceError, flaunay.InternalError:
+        assert issubclass(kind, flaunay.Error) and not issubclass(kind, ValueError)
+    assert issubclass(flaunay.Error, RuntimeError)
+
+
+def test_they_can_be_pickled():
+    error = pickle.loads(pickle.dumps(flaunay.DeviceError("gone", -5, "clFinish")))
+    assert (str(error), error.code, error.call) == ("gone", -5, "clFinish")
+
+
+@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.parametrize(
+    "points, message",
+    [
+        ([], "shape"),
+        (3.0, "shape"),
+        ([1.0, 2.0], "shape"),
+        (np.zeros((2, 2, 2)), "shape"),
+        (np.zeros((5, 3)), "two-dimensional, but have 3 coordinates"),
+        (np.zeros((5, 1)), "two-dimensional, but have 1 coordinates"),
+        (np.zeros((5, 2), complex), "complex128"),
+        (np.zeros((5, 2), object), "object"),
+        ([["a", "b"]], "real numbers"),
+        (np.zeros((5, 2), "M8[s]"), "datetime64"),
+        ([[1, 2], [None, 3]], "object"),
+        (np.ma.masked_array(FOUR, FOUR > 3), "masked"),
+    ],
+)
+def test_points_that_are_none(call, points, message):
+    with pytest.raises(flaunay.UsageError, match=message) as raised:
+        call(points)
+    assert (raised.value.code, raised.value.call) == (0, "")
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_ragged_lists(call):
+    with pytest.raises(ValueError):
+        call([[0, 1], [2]])
+
+
+@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_points_that_are_not_finite(call, dtype, bad):
+    points = np.zeros((1000, 2), dtype)
+    points[[700, 123], [0, 1]] = bad
+    with pytest.raises(flaunay.InputError, match="point 123 is not finite"):
+        call(points)
+
+
+def test_magnitudes_that_differ_too_much():
+    with pytest.raises(flaunay.InputError, match="point 1 has x.*point 3 has y"):
+        flaunay.triangulate([[0, 0], [1e200, 0], [0, 1], [1, 1e-200]])
+
+
+@pytest.mark.parametrize(
+    "segments, message",
+    [
+        ([], "integers"),
+        (np.empty(0, int), "one offset"),
+        ([0], "end with 0, but there are 4"),
+        ([0, 3], "end with 3, but there are 4"),
+        ([0, 5], "end with 5, but there are 4"),
+        ([1, 4], "begin with 0"),
+        ([0, 3, 2, 4], "not decrease"),
+        ([0, -1, 4], "not decrease"),
+        ([0.0, 4.0], "integers"),
+        ([[0, 4]], "one dimension"),
+        (4, "one dimension"),
+        ("04", "integers"),
+    ],
+)
+@pytest.mark.parametrize("mode", ["hybrid", "flattened", "dwyer"])
+def test_segments_that_are_none(segments, message, mode):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.triangulate(FOUR, segments=segments, mode=mode)
+
+
+def test_modes():
+    with pytest.raises(flaunay.UsageError, match="no mode 'fast'; there are hybrid, flattened"):
+        flaunay.triangulate(FOUR, mode="fast")
+    with pytest.raises(flaunay.UsageError, match="takes no device"):
+        flaunay.triangulate(FOUR, mode="dwyer", device="#0")
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_unknown_devices(call):
+    with pytest.raises(flaunay.DeviceError, match="no such device"):
+        call(FOUR, device="no such device")
+    with pytest.raises(flaunay.DeviceError, match="#99"):
+        call(FOUR, device="#99")
+    with pytest.raises(TypeError, match="device must be a string"):
+        call(FOUR, device=0)
+
+
+def test_a_device_that_is_unknown_to_the_environment(monkeypatch):
+    monkeypatch.setenv("FLAUNAY_DEVICE", "no such device")
+    with pytest.raises(flaunay.DeviceError, match="FLAUNAY_DEVICE"):
+        flaunay.triangulate(FOUR)
+    assert len(flaunay.triangulate(FOUR, device="#0").triangles) == 2
+
+
+def test_work_goes_on_after_an_error():
+    expected = flaunay.triangulate(FOUR)
+    for _ in range(3):
+        with pytest.raises(flaunay.InputError):
+            flaunay.triangulate([[np.nan, 0]])
+        assert np.array_equal(flaunay.triangulate(FOUR).triangles, expected.triangles)
+
+
+def run_python(text, **environment):
+    return subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(text)],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+def test_a_device_without_fp64():
+    library = os.environ.get("FLAUNAY_TEST_NO_FP64")
+    if not library:
+        pytest.skip("FLAUNAY_TEST_NO_FP64 does not name the library that hides fp64")
+    assert os.path.exists(library)
+    run = run_python(
+        """
+        import flaunay
+        assert not any(device["fp64"] for device in flaunay.devices())
+        assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]], mode="dwyer").triangles) == 1
+        for device in None, "#0":
+            try:
+                flaunay.triangulate([[0, 0], [1, 0], [0, 1]], device=device)
+            except flaunay.DeviceError as error:
+                assert "fp64" in str(error), error
+            else:
+                raise AssertionError("no error")
+        """,
+        # Python loads the module, and with it the loader of OpenCL, where a preloaded library does not look for it.
+        LD_PRELOAD=f"{library} libOpenCL.so.1",
+    )
+    assert run.returncode == 0, run.stderr
+
+
+def test_without_any_platform(tmp_path):
+    run = run_python(
+        """
+        import flaunay
+        assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]], mode="dwyer").triangles) == 1
+        for call in flaunay.devices, lambda: flaunay.triangulate([[0, 0]]):
+            try:
+                call()
+            except flaunay.DeviceError as error:
+                assert "OpenCL" in str(error), error
+            else:
+                raise AssertionError("no error")
+        """,
+        OCL_ICD_VENDORS=str(tmp_path),
+    )
+    assert run.returncode == 0, run.stderr
+
+
+def test_a_child_of_a_process_that_used_opencl_gets_an_error_instead_of_waiting_for_ever():
+    run = run_python("""
+        import os
+        import flaunay
+        flaunay.triangulate([[0, 0], [1, 0], [0, 1]])
+        child = os.fork()
+        if child == 0:
+            try:
+                flaunay.triangulate([[0, 0], [1, 0], [0, 1]])
+            except flaunay.DeviceError as error:
+                os._exit(7 if "spawn" in str(error) else 8)
+            os._exit(9)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+        """)
+    assert run.returncode == 0, run.stderr
+
+
+def test_a_child_may_be_the_first_to_use_opencl():
+    run = run_python("""
+        import os
+        import flaunay
+        child = os.fork()
+        if child == 0:
+            os._exit(len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]]).triangles))
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 1
+        """)
+    assert run.returncode == 0, run.stderr

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Builds the Python module, installs it in a virtual environment of its own (build/python) and runs its tests and the
+# examples in its documentation. Arguments go to pytest. Needs what scripts/install-deps.sh installs.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# NumPy, SciPy, pyopencl, Matplotlib and pytest are the system's: pyopencl must use the same OpenCL loader as flaunay.
+system_python="${PYTHON:-/usr/bin/python3}"
+environment=build/python
+python="$environment/bin/python"
+if ! "$python" -c '' 2>/dev/null; then
+  "$system_python" -m venv --clear --system-site-packages "$environment"
+fi
+
+# What pyproject.toml names, kept in the environment: with build isolation, everything would be compiled anew each time.
+mapfile -t build_requirements < <("$python" -c '
+import tomllib
+with open("pyproject.toml", "rb") as file:
+    print(*tomllib.load(file)["build-system"]["requires"], sep="\n")')
+((${#build_requirements[@]} > 0))
+pip=("$python" -m pip --disable-pip-version-check --no-input)
+"${pip[@]}" install --quiet "${build_requirements[@]}"
+"${pip[@]}" install --quiet --no-build-isolation .
+
+# The programs in the guide.
+WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md
+
+exec "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"

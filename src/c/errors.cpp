@@ -1,0 +1,88 @@
+#include "c/errors.hpp"
+
+#include <exception>
+#include <new>
+#include <string>
+
+namespace flaunay::c {
+namespace {
+
+constexpr const char* kOutOfMemory = "the host is out of memory";
+
+struct LastError {
+  std::string text, call;
+  const char* message = "";  // the text, or a literal where there was no memory for one
+  int code = 0;
+};
+thread_local LastError last;
+
+void remember(const char* message, const std::string& call = {}, int code = 0) noexcept {
+  last.code = code;
+  try {
+    last.call = call;
+    last.text = message;
+    last.message = last.text.c_str();
+  } catch (...) {
+    last.call.clear();
+    last.message = kOutOfMemory;
+  }
+}
+
+flaunay_status status_of(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage:
+      return FLAUNAY_ERROR_USAGE;
+    case ErrorKind::input:
+      return FLAUNAY_ERROR_INPUT;
+    case ErrorKind::device:
+      return FLAUNAY_ERROR_DEVICE;
+    case ErrorKind::internal:
+      break;
+  }
+  return FLAUNAY_ERROR_INTERNAL;
+}
+
+}  // namespace
+
+flaunay_status remember_exception() noexcept {
+  try {
+    throw;
+  } catch (const Error& error) {
+    remember(error.what(), error.call(), error.code());
+    return status_of(error.kind());
+  } catch (const std::bad_alloc&) {
+    last.code = 0;
+    last.call.clear();
+    last.message = kOutOfMemory;
+    return FLAUNAY_ERROR_MEMORY;
+  } catch (const std::exception& error) {
+    remember(error.what());
+  } catch (...) {
+    remember("an exception of unknown type");
+  }
+  return FLAUNAY_ERROR_INTERNAL;
+}
+
+}  // namespace flaunay::c
+
+const char* flaunay_last_error(void) { return flaunay::c::last.message; }
+int flaunay_last_error_code(void) { return flaunay::c::last.code; }
+const char* flaunay_last_error_call(void) { return flaunay::c::last.call.c_str(); }
+
+const char* flaunay_status_string(int status) {
+  switch (status) {
+    case FLAUNAY_SUCCESS:
+      return "success";
+    case FLAUNAY_ERROR_INTERNAL:
+      return "internal error";
+    case FLAUNAY_ERROR_USAGE:
+      return "usage error";
+    case FLAUNAY_ERROR_INPUT:
+      return "bad input";
+    case FLAUNAY_ERROR_DEVICE:
+      return "device error";
+    case FLAUNAY_ERROR_MEMORY:
+      return "out of host memory";
+  }
+  return "unknown status";
+}

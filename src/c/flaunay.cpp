@@ -1,0 +1,261 @@
+// The C interface but for what is derived from a triangulation: handles and structs to those of C++ and back.
+#include "flaunay/flaunay.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+
+using namespace flaunay;
+
+// What the interface says goes through these: null handles, exceptions, new handles.
+using c::create;
+using c::guarded;
+using c::read;
+using c::required;
+
+namespace {
+
+template <typename Handle>
+auto& buffer_of(Handle& triangulation, unsigned part) {
+  switch (part) {
+    case FLAUNAY_PART_TRIANGLES:
+      return triangulation.cpp.triangles;
+    case FLAUNAY_PART_NEIGHBORS:
+      return triangulation.cpp.neighbors;
+    case FLAUNAY_PART_HALFEDGES:
+      return triangulation.cpp.halfedges;
+    case FLAUNAY_PART_HULL:
+      return triangulation.cpp.hull;
+    case FLAUNAY_PART_REPRESENTATIVES:
+      return triangulation.cpp.representatives;
+  }
+  throw Error(ErrorKind::usage, fmt::format("{} is not one part of a triangulation", part));
+}
+
+template <typename Coordinate>
+flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate* coordinates, size_t n,
+                           const size_t* offsets, size_t sets, const flaunay_options* options,
+                           flaunay_triangulation** result) {
+  return create(result, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_triangulation>(
+        cpp.triangulate(coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
+  });
+}
+
+}  // namespace
+
+struct flaunay_device_list {
+  explicit flaunay_device_list(std::vector<DeviceInfo> found) : infos(std::move(found)) {
+    for (const DeviceInfo& info : infos) views.push_back(c::view_of(info));
+  }
+  std::vector<DeviceInfo> infos;
+  std::vector<flaunay_device_info> views;
+};
+
+const char* flaunay_version(void) { return version(); }
+
+flaunay_status flaunay_device_list_create(int self_test, flaunay_device_list** list) {
+  return create(list, [&] { return std::make_unique<flaunay_device_list>(list_devices(self_test != 0)); });
+}
+
+void flaunay_device_list_destroy(flaunay_device_list* list) { delete list; }
+
+size_t flaunay_device_list_count(const flaunay_device_list* list) {
+  return read(list, [](const auto& handle) { return handle.views.size(); });
+}
+
+const flaunay_device_info* flaunay_device_list_at(const flaunay_device_list* list, size_t k) {
+  return read(list, [&](const auto& handle) { return k < handle.views.size() ? &handle.views[k] : nullptr; });
+}
+
+flaunay_status flaunay_triangulator_create(const char* device, flaunay_triangulator** triangulator) {
+  return create(triangulator, [&] {
+    return std::make_unique<flaunay_triangulator>(Triangulator(device != nullptr ? device : ""));
+  });
+}
+
+flaunay_status flaunay_triangulator_create_in_context(cl_context context, cl_device_id device,
+                                                      flaunay_triangulator** triangulator) {
+  return create(triangulator,
+                [&] { return std::make_unique<flaunay_triangulator>(Triangulator(context, device)); });
+}
+
+void flaunay_triangulator_destroy(flaunay_triangulator* triangulator) { delete triangulator; }
+
+const flaunay_device_info* flaunay_triangulator_device(const flaunay_triangulator* triangulator) {
+  return read(triangulator, [](const auto& handle) { return &handle.info_view; });
+}
+
+cl_context flaunay_triangulator_context(const flaunay_triangulator* triangulator) {
+  return read(triangulator, [](const auto& handle) { return handle.cpp.context(); });
+}
+
+cl_device_id flaunay_triangulator_device_id(const flaunay_triangulator* triangulator) {
+  return read(triangulator, [](const auto& handle) { return handle.cpp.device_id(); });
+}
+
+cl_command_queue flaunay_triangulator_queue(const flaunay_triangulator* triangulator) {
+  return read(triangulator, [](const auto& handle) { return handle.cpp.queue(); });
+}
+
+size_t flaunay_triangulator_capacity(const flaunay_triangulator* triangulator) {
+  return read(triangulator, [](const auto& handle) { return handle.cpp.capacity(); });
+}
+
+flaunay_status flaunay_triangulator_workspace_bytes(const flaunay_triangulator* triangulator, size_t n,
+                                                    size_t sets, size_t* bytes) {
+  return guarded([&] {
+    required(bytes, "the pointer to the number of bytes") = 0;
+    *bytes = required(triangulator, "the triangulator").cpp.workspace_bytes(n, sets);
+  });
+}
+
+flaunay_status flaunay_triangulator_use_workspace(flaunay_triangulator* triangulator, cl_mem workspace) {
+  return guarded([&] { required(triangulator, "the triangulator").cpp.use_workspace(workspace); });
+}
+
+flaunay_status flaunay_triangulate(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+                                   const size_t* offsets, size_t sets, const flaunay_options* options,
+                                   flaunay_triangulation** result) {
+  return triangulate(triangulator, coordinates, n, offsets, sets, options, result);
+}
+
+flaunay_status flaunay_triangulate_float(flaunay_triangulator* triangulator, const float* coordinates,
+                                         size_t n, const size_t* offsets, size_t sets,
+                                         const flaunay_options* options, flaunay_triangulation** result) {
+  return triangulate(triangulator, coordinates, n, offsets, sets, options, result);
+}
+
+flaunay_status flaunay_triangulate_on_host(const double* coordinates, size_t n, const size_t* offsets,
+                                           size_t sets, const flaunay_options* options,
+                                           flaunay_triangulation** result) {
+  return create(result, [&] {
+    return std::make_unique<flaunay_triangulation>(
+        triangulate_on_host(coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
+  });
+}
+
+void flaunay_triangulation_destroy(flaunay_triangulation* triangulation) { delete triangulation; }
+
+size_t flaunay_triangulation_point_count(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return handle.cpp.representatives.size(); });
+}
+
+size_t flaunay_triangulation_set_count(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::set_count(handle.cpp.triangle_offsets); });
+}
+
+size_t flaunay_triangulation_triangle_count(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return handle.cpp.triangles.size() / 3; });
+}
+
+size_t flaunay_triangulation_hull_count(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return handle.cpp.hull.size(); });
+}
+
+const int32_t* flaunay_triangulation_triangles(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.triangles); });
+}
+
+const int32_t* flaunay_triangulation_neighbors(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.neighbors); });
+}
+
+const int32_t* flaunay_triangulation_halfedges(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.halfedges); });
+}
+
+const int32_t* flaunay_triangulation_hull(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.hull); });
+}
+
+const int32_t* flaunay_triangulation_representatives(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.representatives); });
+}
+
+const size_t* flaunay_triangulation_triangle_offsets(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.triangle_offsets); });
+}
+
+const size_t* flaunay_triangulation_hull_offsets(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.hull_offsets); });
+}
+
+const flaunay_statistics* flaunay_triangulation_statistics(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return handle.statistics.get(); });
+}
+
+flaunay_status flaunay_device_triangulation_create(flaunay_device_triangulation** triangulation) {
+  return create(triangulation, [] { return std::make_unique<flaunay_device_triangulation>(); });
+}
+
+void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangulation) {
+  delete triangulation;
+}
+
+flaunay_status flaunay_device_triangulation_set_buffer(flaunay_device_triangulation* triangulation,
+                                                       unsigned part, cl_mem memory) {
+  return guarded(
+      [&] { buffer_of(required(triangulation, "the triangulation"), part) = c::to_buffer(memory); });
+}
+
+cl_mem flaunay_device_triangulation_buffer(const flaunay_device_triangulation* triangulation, unsigned part) {
+  return read(triangulation, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
+}
+
+unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::to_bits(handle.cpp.parts); });
+}
+
+size_t flaunay_device_triangulation_point_count(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return handle.cpp.points; });
+}
+
+size_t flaunay_device_triangulation_set_count(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::set_count(handle.cpp.point_offsets); });
+}
+
+size_t flaunay_device_triangulation_triangle_count(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::total(handle.cpp.triangle_offsets); });
+}
+
+size_t flaunay_device_triangulation_hull_count(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::total(handle.cpp.hull_offsets); });
+}
+
+const size_t* flaunay_device_triangulation_point_offsets(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.point_offsets); });
+}
+
+const size_t* flaunay_device_triangulation_triangle_offsets(
+    const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.triangle_offsets); });
+}
+
+const size_t* flaunay_device_triangulation_hull_offsets(const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.hull_offsets); });
+}
+
+const flaunay_statistics* flaunay_device_triangulation_statistics(
+    const flaunay_device_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return handle.statistics.get(); });
+}
+
+flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
+                                          const flaunay_device_points* points, unsigned parts,
+                                          const flaunay_enqueue* enqueue,
+                                          flaunay_device_triangulation* result) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    flaunay_device_triangulation& handle = required(result, "the result");
+    // They refer to the statistics that the call replaces.
+    handle.statistics.clear();
+    cpp.triangulate(c::to_points(points), handle.cpp, c::to_parts(parts), queued);
+    handle.statistics.show(handle.cpp.statistics);
+  });
+}

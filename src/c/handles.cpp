@@ -1,0 +1,223 @@
+#include "c/handles.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <iterator>
+
+#include "input/magnitudes.hpp"
+
+namespace flaunay::c {
+namespace {
+
+[[noreturn]] void throw_usage(const std::string& message) { throw Error(ErrorKind::usage, message); }
+
+// Before memory is asked for.
+constexpr std::size_t kMostSets = std::size_t{1} << 40;
+
+template <typename Struct>
+void check_reserved(const Struct& given, const char* name) {
+  const auto is_set = [](std::uintptr_t member) { return member != 0; };
+  if (std::any_of(std::begin(given.reserved), std::end(given.reserved), is_set)) {
+    throw_usage(
+        fmt::format("{} has members that flaunay {} does not know: initialise it with {{0}}, or take "
+                    "a later version",
+                    name, version()));
+  }
+}
+
+Mode to_mode(int mode) {
+  switch (mode) {
+    case FLAUNAY_MODE_HYBRID:
+      return Mode::hybrid;
+    case FLAUNAY_MODE_FLATTENED:
+      return Mode::flattened;
+    case FLAUNAY_MODE_RECURSIVE_DEVICE:
+      return Mode::recursive_device;
+    case FLAUNAY_MODE_RECURSIVE:
+      return Mode::recursive;
+    case FLAUNAY_MODE_PARTITION:
+      return Mode::partition;
+    case FLAUNAY_MODE_DWYER:
+      return Mode::dwyer;
+  }
+  throw_usage(fmt::format("there is no mode {}", mode));
+}
+
+Cut to_cut(int cut) {
+  switch (cut) {
+    case FLAUNAY_CUT_INTERQUARTILE:
+      return Cut::interquartile;
+    case FLAUNAY_CUT_ALTERNATE:
+      return Cut::alternate;
+  }
+  throw_usage(fmt::format("there is no cut {}", cut));
+}
+
+Hull to_hull(int hull) {
+  switch (hull) {
+    case FLAUNAY_HULL_PRUNE:
+      return Hull::prune;
+    case FLAUNAY_HULL_QUICKHULL:
+      return Hull::quickhull;
+    case FLAUNAY_HULL_BALANCED:
+      return Hull::balanced;
+    case FLAUNAY_HULL_MONOTONE_CHAIN:
+      return Hull::monotone_chain;
+  }
+  throw_usage(fmt::format("there is no variant of hulls {}", hull));
+}
+
+Precision to_precision(int precision) {
+  switch (precision) {
+    case FLAUNAY_FLOAT64:
+      return Precision::float64;
+    case FLAUNAY_FLOAT32:
+      return Precision::float32;
+  }
+  throw_usage(fmt::format("there is no precision {}", precision));
+}
+
+void check_parts(unsigned parts) {
+  constexpr unsigned kAll = FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES |
+                            FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+  if (parts & ~kAll) throw_usage(fmt::format("there are no parts {:#x}", parts & ~kAll));
+}
+
+}  // namespace
+
+void StatisticsView::show(const Statistics& statistics) {
+  clear();
+  for (const PhaseStatistics& phase : statistics.phases) {
+    phases_.push_back({phase.name.c_str(), phase.seconds});
+  }
+  for (const KernelStatistics& kernel : statistics.kernels) {
+    kernels_.push_back({kernel.name.c_str(), kernel.launches, kernel.seconds});
+  }
+  view_.device = statistics.device.c_str();
+  view_.points = statistics.points;
+  view_.duplicates = statistics.duplicates;
+  view_.triangles = statistics.triangles;
+  view_.hull_vertices = statistics.hull_vertices;
+  view_.seconds = statistics.seconds;
+  view_.build_seconds = statistics.build_seconds;
+  view_.kernel_launches = statistics.kernel_launches;
+  view_.host_waits = statistics.host_waits;
+  view_.bytes_to_device = statistics.bytes_to_device;
+  view_.bytes_to_host = statistics.bytes_to_host;
+  view_.device_allocations = statistics.device_allocations;
+  view_.device_bytes_peak = statistics.device_bytes_peak;
+  view_.undecided = statistics.undecided;
+  view_.phases = elements(phases_);
+  view_.phase_count = phases_.size();
+  view_.kernels = elements(kernels_);
+  view_.kernel_count = kernels_.size();
+}
+
+void StatisticsView::clear() {
+  view_ = {};
+  view_.device = "";
+  phases_.clear();
+  kernels_.clear();
+}
+
+flaunay_device_info view_of(const DeviceInfo& info) {
+  flaunay_device_info view{};
+  view.name = info.name.c_str();
+  view.platform = info.platform.c_str();
+  view.vendor = info.vendor.c_str();
+  view.driver = info.driver.c_str();
+  view.version = info.version.c_str();
+  view.type = info.type.c_str();
+  view.compute_units = info.compute_units;
+  view.clock_mhz = info.clock_mhz;
+  view.memory_bytes = info.memory_bytes;
+  view.largest_buffer_bytes = info.largest_buffer_bytes;
+  view.local_memory_bytes = info.local_memory_bytes;
+  view.work_group_size = info.work_group_size;
+  view.fp64 = info.fp64;
+  view.self_test_passed = info.self_test_passed;
+  view.self_test_failure = info.self_test_failure.c_str();
+  return view;
+}
+
+Options to_options(const flaunay_options* options) {
+  Options result;
+  if (options == nullptr) return result;
+  check_reserved(*options, "flaunay_options");
+  check_parts(options->parts);
+  result.mode = to_mode(options->mode);
+  result.cut = to_cut(options->cut);
+  result.hull = to_hull(options->hull);
+  if (options->parts != 0) {
+    result.neighbors = options->parts & FLAUNAY_PART_NEIGHBORS;
+    result.halfedges = options->parts & FLAUNAY_PART_HALFEDGES;
+  }
+  result.profile = options->profile != 0;
+  result.partition_levels = options->partition_levels;
+  result.threads = options->threads;
+  if (options->progress != nullptr) {
+    result.progress = [call = options->progress, data = options->progress_data](const std::string& stage,
+                                                                                int level, double done) {
+      call(stage.c_str(), level, done, data);
+    };
+  }
+  return result;
+}
+
+Parts to_parts(unsigned parts) {
+  check_parts(parts);
+  if (parts == 0) return {};
+  const auto has = [parts](flaunay_part part) { return (parts & part) != 0; };
+  return {has(FLAUNAY_PART_TRIANGLES), has(FLAUNAY_PART_NEIGHBORS), has(FLAUNAY_PART_HALFEDGES),
+          has(FLAUNAY_PART_HULL), has(FLAUNAY_PART_REPRESENTATIVES)};
+}
+
+unsigned to_bits(const Parts& parts) {
+  unsigned bits = 0;
+  if (parts.triangles) bits |= FLAUNAY_PART_TRIANGLES;
+  if (parts.neighbors) bits |= FLAUNAY_PART_NEIGHBORS;
+  if (parts.halfedges) bits |= FLAUNAY_PART_HALFEDGES;
+  if (parts.hull) bits |= FLAUNAY_PART_HULL;
+  if (parts.representatives) bits |= FLAUNAY_PART_REPRESENTATIVES;
+  return bits;
+}
+
+std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n) {
+  if (offsets == nullptr) return {0, n};
+  if (sets > kMostSets) throw_usage("too many sets");
+  std::vector<std::size_t> result(offsets, offsets + sets + 1);
+  check_offsets(result, n);
+  return result;
+}
+
+DevicePoints to_points(const flaunay_device_points* points) {
+  const flaunay_device_points& given = required(points, "the points");
+  check_reserved(given, "flaunay_device_points");
+  DevicePoints result;
+  result.memory = given.memory;
+  result.count = given.count;
+  result.precision = to_precision(given.precision);
+  result.first = given.first;
+  if (given.offsets != nullptr) result.offsets = to_offsets(given.offsets, given.sets, given.count);
+  result.device_offsets = given.device_offsets;
+  result.sets = given.sets;
+  return result;
+}
+
+Enqueue to_enqueue(const flaunay_enqueue* enqueue) {
+  Enqueue result;
+  if (enqueue == nullptr) return result;
+  if (enqueue->event != nullptr) *enqueue->event = nullptr;
+  check_reserved(*enqueue, "flaunay_enqueue");
+  result.queue = enqueue->queue;
+  if (enqueue->wait_for_count > 0) {
+    const cl_event* first = &required(enqueue->wait_for, "a list of events that is not empty");
+    result.wait_for.assign(first, first + enqueue->wait_for_count);
+  }
+  result.event = enqueue->event;
+  result.profile = enqueue->profile != 0;
+  return result;
+}
+
+}  // namespace flaunay::c

@@ -1,0 +1,998 @@
+// The C interface: what it returns, and what it says of bad use. c_test no-fp64: with support/no_fp64.c
+// preloaded.
+#include <CL/cl.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <threads.h>
+
+#include "flaunay/flaunay.h"
+
+static int failures = 0;
+
+static int check(int holds, const char* what, int line) {
+  if (!holds) {
+    fprintf(stderr, "c_test.c:%d: %s; last error: %s\n", line, what, flaunay_last_error());
+    ++failures;
+  }
+  return holds;
+}
+
+// Goes on after a failure; where that would crash, REQUIRE does not.
+#define CHECK(condition) check((condition), #condition, __LINE__)
+#define REQUIRE(condition) \
+  if (!CHECK(condition)) exit(1)
+
+// The call failed so, and its message has the text.
+static int fails(flaunay_status got, flaunay_status expected, const char* text) {
+  return got == expected && strstr(flaunay_last_error(), text) != NULL;
+}
+
+enum { kPoints = 5000 };
+
+// A device of the caller's, and a triangulator on it, which all tests share: programs take seconds to build.
+static cl_context context;
+static cl_device_id device;
+static cl_command_queue queue;
+static flaunay_triangulator* triangulator;
+static double points[2 * kPoints];
+
+static const double kSquare[] = {0, 0, 4, 0, 4, 3, 0, 4};
+
+static cl_context make_context(void) {
+  cl_int code = CL_SUCCESS;
+  cl_context made = clCreateContext(NULL, 1, &device, NULL, NULL, &code);
+  REQUIRE(code == CL_SUCCESS);
+  return made;
+}
+
+static cl_command_queue make_queue(cl_context owner, cl_command_queue_properties properties) {
+  cl_int code = CL_SUCCESS;
+  cl_command_queue made = clCreateCommandQueue(owner, device, properties, &code);
+  REQUIRE(code == CL_SUCCESS);
+  return made;
+}
+
+static cl_mem make_buffer(cl_context owner, size_t bytes, const void* contents) {
+  cl_int code = CL_SUCCESS;
+  const cl_mem_flags copies = contents != NULL ? CL_MEM_COPY_HOST_PTR : 0;
+  cl_mem made = clCreateBuffer(owner, CL_MEM_READ_WRITE | copies, bytes, (void*)contents, &code);
+  REQUIRE(code == CL_SUCCESS);
+  return made;
+}
+
+static void make_points(void) {
+  uint64_t state = 1;
+  for (size_t k = 0; k < 2 * kPoints; ++k) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    points[k] = (double)(state >> 40);  // of 24 bits: the same as float
+  }
+}
+
+static void set_up(void) {
+  make_points();
+  flaunay_triangulator* chosen = NULL;
+  REQUIRE(flaunay_triangulator_create(NULL, &chosen) == FLAUNAY_SUCCESS);
+  device = flaunay_triangulator_device_id(chosen);
+  CHECK(flaunay_triangulator_context(chosen) != NULL);
+  CHECK(flaunay_triangulator_queue(chosen) != NULL);
+  flaunay_triangulator_destroy(chosen);
+  context = make_context();
+  queue = make_queue(context, 0);
+  REQUIRE(flaunay_triangulator_create_in_context(context, device, &triangulator) == FLAUNAY_SUCCESS);
+}
+
+static void tear_down(void) {
+  flaunay_triangulator_destroy(triangulator);
+  clReleaseCommandQueue(queue);
+  clReleaseContext(context);
+}
+
+static flaunay_triangulation* on_host(const double* coordinates, size_t n, const size_t* offsets, size_t sets,
+                                      unsigned parts) {
+  flaunay_options options = {0};
+  options.parts = parts;
+  flaunay_triangulation* result = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, coordinates, n, offsets, sets, &options, &result) ==
+          FLAUNAY_SUCCESS);
+  return result;
+}
+
+static int same(const int32_t* a, const int32_t* b, size_t count) {
+  return count == 0 || (a != NULL && b != NULL && memcmp(a, b, count * sizeof *a) == 0);
+}
+
+static int same_sizes(const size_t* a, const size_t* b, size_t count) {
+  return a != NULL && b != NULL && memcmp(a, b, count * sizeof *a) == 0;
+}
+
+// ---- What needs no points
+
+static void test_statuses(void) {
+  CHECK(strcmp(flaunay_status_string(FLAUNAY_SUCCESS), "success") == 0);
+  CHECK(strcmp(flaunay_status_string(FLAUNAY_ERROR_MEMORY), "out of host memory") == 0);
+  CHECK(strcmp(flaunay_status_string(-1), "unknown status") == 0);
+  CHECK(strchr(flaunay_version(), '.') != NULL);
+  CHECK(strcmp(flaunay_last_error(), "") == 0);
+  CHECK(strcmp(flaunay_last_error_call(), "") == 0);
+  CHECK(flaunay_last_error_code() == 0);
+}
+
+static int has_no_error(void* unused) {
+  (void)unused;
+  return strcmp(flaunay_last_error(), "") == 0;
+}
+
+static void test_errors_are_of_threads(void) {
+  CHECK(flaunay_triangulator_capacity(NULL) == 0);
+  CHECK(strstr(flaunay_last_error(), "NULL") != NULL);
+  thrd_t thread;
+  int result = 0;
+  REQUIRE(thrd_create(&thread, has_no_error, NULL) == thrd_success);
+  CHECK(thrd_join(thread, &result) == thrd_success && result == 1);
+}
+
+static void test_devices(void) {
+  flaunay_device_list* list = NULL;
+  REQUIRE(flaunay_device_list_create(0, &list) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_list_count(list) >= 1);
+  CHECK(flaunay_device_list_at(list, flaunay_device_list_count(list)) == NULL);
+  const flaunay_device_info* own = flaunay_triangulator_device(triangulator);
+  int is_listed = 0;
+  for (size_t k = 0; k < flaunay_device_list_count(list); ++k) {
+    const flaunay_device_info* info = flaunay_device_list_at(list, k);
+    CHECK(info->name[0] != '\0' && info->self_test_passed == 0 && info->self_test_failure[0] == '\0');
+    is_listed |= strcmp(info->name, own->name) == 0;
+  }
+  CHECK(is_listed);
+  CHECK(own->fp64 == 1 && own->self_test_passed == 1 && own->memory_bytes > 0);
+  CHECK(flaunay_triangulator_capacity(triangulator) > kPoints);
+  flaunay_device_list_destroy(list);
+}
+
+static void test_devices_that_are_none(void) {
+  flaunay_triangulator* none = triangulator;
+  CHECK(fails(flaunay_triangulator_create("no such device", &none), FLAUNAY_ERROR_DEVICE, "no such device"));
+  CHECK(none == NULL);
+  CHECK(fails(flaunay_triangulator_create("#1000", &none), FLAUNAY_ERROR_DEVICE, "#1000"));
+  CHECK(fails(flaunay_triangulator_create_in_context(NULL, device, &none), FLAUNAY_ERROR_USAGE, "context"));
+  CHECK(fails(flaunay_triangulator_create_in_context(context, NULL, &none), FLAUNAY_ERROR_USAGE, "device"));
+  CHECK(fails(flaunay_triangulator_create_in_context(context, (cl_device_id)&none, &none),
+              FLAUNAY_ERROR_USAGE, "not one of the context"));
+}
+
+// ---- Host memory
+
+static void test_square(void) {
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, NULL, &mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulation_point_count(mesh) == 4);
+  CHECK(flaunay_triangulation_set_count(mesh) == 1);
+  CHECK(flaunay_triangulation_triangle_count(mesh) == 2);
+  CHECK(flaunay_triangulation_hull_count(mesh) == 4);
+  CHECK(same(flaunay_triangulation_hull(mesh), (const int32_t[]){0, 1, 2, 3}, 4));
+  CHECK(same(flaunay_triangulation_representatives(mesh), (const int32_t[]){0, 1, 2, 3}, 4));
+  CHECK(same_sizes(flaunay_triangulation_triangle_offsets(mesh), (const size_t[]){0, 2}, 2));
+  CHECK(same_sizes(flaunay_triangulation_hull_offsets(mesh), (const size_t[]){0, 4}, 2));
+  CHECK(flaunay_triangulation_neighbors(mesh) != NULL);
+  CHECK(flaunay_triangulation_halfedges(mesh) == NULL);
+  const flaunay_statistics* statistics = flaunay_triangulation_statistics(mesh);
+  CHECK(statistics->points == 4 && statistics->triangles == 2 && statistics->hull_vertices == 4);
+  CHECK(statistics->kernel_launches > 0 && statistics->host_waits > 0 && statistics->seconds > 0);
+  CHECK(statistics->phase_count > 0 && statistics->phases[0].name[0] != '\0');
+  CHECK(statistics->kernel_count == 0 && statistics->kernels == NULL);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_neighbors_and_halfedges(void) {
+  flaunay_triangulation* mesh =
+      on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  const size_t triangles = flaunay_triangulation_triangle_count(mesh);
+  CHECK(triangles == 2 * kPoints - 2 - flaunay_triangulation_hull_count(mesh));
+  const int32_t* neighbors = flaunay_triangulation_neighbors(mesh);
+  const int32_t* halfedges = flaunay_triangulation_halfedges(mesh);
+  REQUIRE(neighbors != NULL && halfedges != NULL);
+  size_t wrong = 0, on_hull = 0;
+  for (size_t e = 0; e < 3 * triangles; ++e) {
+    const size_t opposite = e / 3 * 3 + (e + 2) % 3;  // the vertex that halfedge e does not touch
+    const int32_t beyond = halfedges[e] < 0 ? -1 : halfedges[e] / 3;
+    wrong += beyond != neighbors[opposite];
+    wrong += halfedges[e] >= 0 && (size_t)halfedges[halfedges[e]] != e;
+    on_hull += halfedges[e] < 0;
+  }
+  CHECK(wrong == 0);
+  CHECK(on_hull == flaunay_triangulation_hull_count(mesh));
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_float(void) {
+  float* narrow = malloc(2 * kPoints * sizeof *narrow);
+  REQUIRE(narrow != NULL);
+  for (size_t k = 0; k < 2 * kPoints; ++k) narrow[k] = (float)points[k];
+  flaunay_triangulation *wide = on_host(points, kPoints, NULL, 0, 0), *result = NULL;
+  REQUIRE(flaunay_triangulate_float(triangulator, narrow, kPoints, NULL, 0, NULL, &result) ==
+          FLAUNAY_SUCCESS);
+  const size_t triangles = flaunay_triangulation_triangle_count(wide);
+  CHECK(flaunay_triangulation_triangle_count(result) == triangles);
+  CHECK(same(flaunay_triangulation_triangles(result), flaunay_triangulation_triangles(wide), 3 * triangles));
+  CHECK(same(flaunay_triangulation_neighbors(result), flaunay_triangulation_neighbors(wide), 3 * triangles));
+  flaunay_triangulation_destroy(wide);
+  flaunay_triangulation_destroy(result);
+  free(narrow);
+}
+
+// Sets of a square, of none, of collinear points with a duplicate, and of a triangle.
+static const double kSets[] = {0, 0, 4, 0, 4, 3, 0, 4, 2, 2, 1, 1, 2, 2, 0, 0, 1, 0, 0, 1};
+static const size_t kSetOffsets[] = {0, 4, 4, 7, 10};
+
+static void test_batches(void) {
+  flaunay_triangulation* mesh = on_host(kSets, 10, kSetOffsets, 4, 0);
+  CHECK(flaunay_triangulation_set_count(mesh) == 4);
+  CHECK(same_sizes(flaunay_triangulation_triangle_offsets(mesh), (const size_t[]){0, 2, 2, 2, 3}, 5));
+  CHECK(same_sizes(flaunay_triangulation_hull_offsets(mesh), (const size_t[]){0, 4, 4, 6, 9}, 5));
+  CHECK(same(flaunay_triangulation_hull(mesh), (const int32_t[]){0, 1, 2, 3, 5, 4, 7, 8, 9}, 9));
+  CHECK(
+      same(flaunay_triangulation_representatives(mesh), (const int32_t[]){0, 1, 2, 3, 4, 5, 4, 7, 8, 9}, 10));
+  CHECK(same(flaunay_triangulation_triangles(mesh) + 6, (const int32_t[]){7, 8, 9}, 3));
+  CHECK(flaunay_triangulation_statistics(mesh)->duplicates == 1);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_modes(void) {
+  for (int mode = FLAUNAY_MODE_HYBRID; mode <= FLAUNAY_MODE_DWYER; ++mode) {
+    flaunay_options options = {.mode = mode, .cut = FLAUNAY_CUT_ALTERNATE};
+    flaunay_triangulation* mesh = NULL;
+    REQUIRE(flaunay_triangulate(triangulator, kSets, 10, kSetOffsets, 4, &options, &mesh) == FLAUNAY_SUCCESS);
+    CHECK(same_sizes(flaunay_triangulation_triangle_offsets(mesh), (const size_t[]){0, 2, 2, 2, 3}, 5));
+    CHECK(flaunay_triangulation_point_count(mesh) == 10 && flaunay_triangulation_set_count(mesh) == 4);
+    flaunay_triangulation_destroy(mesh);
+  }
+}
+
+static void test_on_host(void) {
+  flaunay_options options = {.mode = FLAUNAY_MODE_DWYER};
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_triangulate_on_host(kSquare, 4, NULL, 0, &options, &mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulation_triangle_count(mesh) == 2);
+  flaunay_triangulation_destroy(mesh);
+  CHECK(
+      fails(flaunay_triangulate_on_host(NULL, 4, NULL, 0, &options, &mesh), FLAUNAY_ERROR_USAGE, "4 points"));
+  CHECK(fails(flaunay_triangulate_on_host(kSquare, 4, NULL, 0, NULL, &mesh), FLAUNAY_ERROR_USAGE, "modes"));
+}
+
+static void count_calls(const char* stage, int level, double done, void* calls) {
+  CHECK(stage != NULL && level >= -1 && done >= 0 && done <= 1);
+  ++*(int*)calls;
+}
+
+static void test_progress_and_profile(void) {
+  int calls = 0;
+  flaunay_options options = {.progress = count_calls, .progress_data = &calls, .profile = 1};
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, points, kPoints, NULL, 0, &options, &mesh) == FLAUNAY_SUCCESS);
+  CHECK(calls > 0);
+  const flaunay_statistics* statistics = flaunay_triangulation_statistics(mesh);
+  REQUIRE(statistics->kernel_count > 0);
+  CHECK(statistics->kernels[0].name[0] != '\0' && statistics->kernels[0].launches > 0);
+  CHECK(statistics->kernels[0].seconds >= statistics->kernels[statistics->kernel_count - 1].seconds);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void check_is_empty(flaunay_triangulation* mesh, size_t sets) {
+  CHECK(flaunay_triangulation_point_count(mesh) == 0);
+  CHECK(flaunay_triangulation_set_count(mesh) == sets);
+  CHECK(flaunay_triangulation_triangle_count(mesh) == 0);
+  CHECK(flaunay_triangulation_triangles(mesh) == NULL);
+  CHECK(flaunay_triangulation_triangle_offsets(mesh)[sets] == 0);
+  CHECK(flaunay_triangulation_hull_offsets(mesh)[sets] == 0);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_no_points(void) {
+  const size_t zeros[3] = {0};
+  for (int mode = FLAUNAY_MODE_HYBRID; mode <= FLAUNAY_MODE_DWYER; ++mode) {
+    const flaunay_options options = {.mode = mode};
+    flaunay_triangulation* mesh = NULL;
+    REQUIRE(flaunay_triangulate(triangulator, NULL, 0, NULL, 0, &options, &mesh) == FLAUNAY_SUCCESS);
+    check_is_empty(mesh, 1);
+    REQUIRE(flaunay_triangulate(triangulator, NULL, 0, zeros, 2, &options, &mesh) == FLAUNAY_SUCCESS);
+    check_is_empty(mesh, 2);
+    REQUIRE(flaunay_triangulate(triangulator, NULL, 0, zeros, 0, &options, &mesh) == FLAUNAY_SUCCESS);
+    check_is_empty(mesh, 0);
+  }
+}
+
+// ---- Device memory
+
+static void read_buffer(cl_mem memory, size_t bytes, void* place) {
+  if (bytes == 0) return;
+  CHECK(memory != NULL &&
+        clEnqueueReadBuffer(queue, memory, CL_TRUE, 0, bytes, place, 0, NULL, NULL) == CL_SUCCESS);
+}
+
+static int device_has(const flaunay_device_triangulation* mesh, flaunay_part part, const int32_t* expected,
+                      size_t count) {
+  int32_t* found = malloc((count + 1) * sizeof *found);
+  REQUIRE(found != NULL);
+  read_buffer(flaunay_device_triangulation_buffer(mesh, part), count * sizeof *found, found);
+  const int is_same = same(found, expected, count);
+  free(found);
+  return is_same;
+}
+
+static const unsigned kAllParts = FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES |
+                                  FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+
+// The result of a call that is complete on the test's queue, with all parts.
+static void check_same(const flaunay_device_triangulation* mesh, flaunay_triangulation* expected) {
+  const size_t n = flaunay_triangulation_point_count(expected);
+  const size_t sets = flaunay_triangulation_set_count(expected);
+  const size_t triangles = flaunay_triangulation_triangle_count(expected);
+  const size_t hull = flaunay_triangulation_hull_count(expected);
+  CHECK(flaunay_device_triangulation_parts(mesh) == kAllParts);
+  CHECK(flaunay_device_triangulation_point_count(mesh) == n);
+  CHECK(flaunay_device_triangulation_set_count(mesh) == sets);
+  CHECK(flaunay_device_triangulation_hull_count(mesh) == hull);
+  REQUIRE(flaunay_device_triangulation_triangle_count(mesh) == triangles);
+  CHECK(flaunay_device_triangulation_point_offsets(mesh)[sets] == n);
+  CHECK(same_sizes(flaunay_device_triangulation_triangle_offsets(mesh),
+                   flaunay_triangulation_triangle_offsets(expected), sets + 1));
+  CHECK(same_sizes(flaunay_device_triangulation_hull_offsets(mesh),
+                   flaunay_triangulation_hull_offsets(expected), sets + 1));
+  CHECK(device_has(mesh, FLAUNAY_PART_TRIANGLES, flaunay_triangulation_triangles(expected), 3 * triangles));
+  CHECK(device_has(mesh, FLAUNAY_PART_NEIGHBORS, flaunay_triangulation_neighbors(expected), 3 * triangles));
+  CHECK(device_has(mesh, FLAUNAY_PART_HALFEDGES, flaunay_triangulation_halfedges(expected), 3 * triangles));
+  CHECK(device_has(mesh, FLAUNAY_PART_HULL, flaunay_triangulation_hull(expected), hull));
+  CHECK(device_has(mesh, FLAUNAY_PART_REPRESENTATIVES, flaunay_triangulation_representatives(expected), n));
+}
+
+static flaunay_device_triangulation* make_device_triangulation(void) {
+  flaunay_device_triangulation* made = NULL;
+  REQUIRE(flaunay_device_triangulation_create(&made) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_parts(made) == 0);
+  CHECK(flaunay_device_triangulation_set_count(made) == 0);
+  CHECK(flaunay_device_triangulation_triangle_count(made) == 0);
+  CHECK(strcmp(flaunay_device_triangulation_statistics(made)->device, "") == 0);
+  return made;
+}
+
+// The caller's context, queue and buffers, an upload to wait for, and an event to wait for.
+static void test_device_to_device(void) {
+  const flaunay_part parts[] = {FLAUNAY_PART_TRIANGLES, FLAUNAY_PART_NEIGHBORS, FLAUNAY_PART_HALFEDGES,
+                                FLAUNAY_PART_HULL, FLAUNAY_PART_REPRESENTATIVES};
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  for (int p = 0; p < 5; ++p) {
+    cl_mem memory = make_buffer(context, (p < 3 ? 24 : 4) * kPoints, NULL);
+    CHECK(flaunay_device_triangulation_set_buffer(mesh, parts[p], memory) == FLAUNAY_SUCCESS);
+    CHECK(flaunay_device_triangulation_buffer(mesh, parts[p]) == memory);
+    clReleaseMemObject(memory);  // the handle retains it
+  }
+  const flaunay_device_points given = {.memory = make_buffer(context, sizeof points, NULL), .count = kPoints};
+  cl_event uploaded = NULL, done = NULL;
+  CHECK(clEnqueueWriteBuffer(queue, given.memory, CL_FALSE, 0, sizeof points, points, 0, NULL, &uploaded) ==
+        CL_SUCCESS);
+  cl_command_queue other = make_queue(context, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
+  const flaunay_enqueue enqueue = {
+      .queue = other, .wait_for = &uploaded, .wait_for_count = 1, .event = &done};
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(done != NULL);
+  CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
+  flaunay_triangulation* expected =
+      on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  check_same(mesh, expected);
+  const flaunay_statistics* statistics = flaunay_device_triangulation_statistics(mesh);
+  CHECK(statistics->points == kPoints && statistics->host_waits > 0 && statistics->host_waits < 20);
+  CHECK(statistics->bytes_to_host < 4096 && statistics->bytes_to_device < 4096);
+  flaunay_triangulation_destroy(expected);
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseEvent(uploaded);
+  clReleaseEvent(done);
+  clReleaseCommandQueue(other);
+  clReleaseMemObject(given.memory);
+}
+
+// Buffers of flaunay's own grow and stay.
+static void test_own_buffers(void) {
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  flaunay_device_points given = {.memory = make_buffer(context, sizeof points, points), .count = 100};
+  const flaunay_enqueue enqueue = {.queue = queue};
+  CHECK(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_TRIANGLES) == NULL);
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_parts(mesh) == FLAUNAY_PART_TRIANGLES);
+  CHECK(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_TRIANGLES) != NULL);
+  CHECK(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_HULL) == NULL);
+  given.count = kPoints;
+  for (int k = 0; k < 2; ++k) {
+    REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+    CHECK(clFinish(queue) == CL_SUCCESS);
+  }
+  CHECK(flaunay_device_triangulation_statistics(mesh)->device_allocations == 0);
+  flaunay_triangulation* expected =
+      on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  check_same(mesh, expected);
+  flaunay_triangulation_destroy(expected);
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseMemObject(given.memory);
+}
+
+// Sets, float, points that precede: offsets in host memory and on the device.
+static void test_device_sets(void) {
+  float narrow[6 + 20] = {9, 9, 9, 9, 9, 9};
+  int32_t device_offsets[5];
+  for (int k = 0; k < 20; ++k) narrow[6 + k] = (float)kSets[k];
+  for (int s = 0; s < 5; ++s) device_offsets[s] = (int32_t)kSetOffsets[s];
+  flaunay_device_points given = {.memory = make_buffer(context, sizeof narrow, narrow),
+                                 .count = 10,
+                                 .precision = FLAUNAY_FLOAT32,
+                                 .first = 3,
+                                 .offsets = kSetOffsets,
+                                 .sets = 4};
+  flaunay_triangulation* expected =
+      on_host(kSets, 10, kSetOffsets, 4, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  const flaunay_enqueue enqueue = {.queue = queue};
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  check_same(mesh, expected);
+  given.offsets = NULL;
+  given.device_offsets = make_buffer(context, sizeof device_offsets, device_offsets);
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  check_same(mesh, expected);
+  clReleaseMemObject(given.memory);
+  clReleaseMemObject(given.device_offsets);
+  flaunay_triangulation_destroy(expected);
+  flaunay_device_triangulation_destroy(mesh);
+}
+
+static void test_no_points_on_device(void) {
+  const size_t zeros[4] = {0};
+  flaunay_device_points given = {0};
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  cl_event done = NULL;
+  const flaunay_enqueue enqueue = {.queue = queue, .event = &done};
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(done != NULL);
+  CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
+  clReleaseEvent(done);
+  CHECK(flaunay_device_triangulation_set_count(mesh) == 1);
+  CHECK(flaunay_device_triangulation_triangle_count(mesh) == 0);
+  given.offsets = zeros;
+  given.sets = 3;
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, NULL, mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_set_count(mesh) == 3);
+  CHECK(flaunay_device_triangulation_hull_offsets(mesh)[3] == 0);
+  flaunay_device_triangulation_destroy(mesh);
+}
+
+static void test_device_profile(void) {
+  cl_command_queue timed = make_queue(context, CL_QUEUE_PROFILING_ENABLE);
+  flaunay_device_points given = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  flaunay_enqueue enqueue = {.queue = timed, .profile = 1};
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_statistics(mesh)->kernel_count > 0);
+  enqueue.queue = queue;
+  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, mesh), FLAUNAY_ERROR_USAGE,
+              "CL_QUEUE_PROFILING_ENABLE"));
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseCommandQueue(timed);
+  clReleaseMemObject(given.memory);
+}
+
+static void test_workspace(void) {
+  size_t bytes = 0;
+  char text[64];
+  REQUIRE(flaunay_triangulator_workspace_bytes(triangulator, kPoints, 1, &bytes) == FLAUNAY_SUCCESS);
+  CHECK(bytes > kPoints);
+  cl_mem small = make_buffer(context, bytes - 1, NULL), enough = make_buffer(context, bytes, NULL);
+  flaunay_device_points given = {.memory = make_buffer(context, sizeof points, points), .count = kPoints};
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  flaunay_triangulation *expected = on_host(points, kPoints, NULL, 0, kAllParts), *result = NULL;
+  const flaunay_enqueue enqueue = {.queue = queue};
+
+  REQUIRE(flaunay_triangulator_use_workspace(triangulator, small) == FLAUNAY_SUCCESS);
+  snprintf(text, sizeof text, "has %zu bytes", bytes - 1);
+  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, NULL, mesh), FLAUNAY_ERROR_USAGE, text));
+  snprintf(text, sizeof text, "need %zu", bytes);
+  CHECK(strstr(flaunay_last_error(), text) != NULL);
+
+  REQUIRE(flaunay_triangulator_use_workspace(triangulator, enough) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  check_same(mesh, expected);
+  // What needs more memory takes it from elsewhere, also after the workspace was in use.
+  const flaunay_options flattened = {.mode = FLAUNAY_MODE_FLATTENED};
+  CHECK(flaunay_triangulate(triangulator, points, kPoints, NULL, 0, &flattened, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulation_triangle_count(result) == flaunay_triangulation_triangle_count(expected));
+  flaunay_triangulation_destroy(result);
+  CHECK(flaunay_device_triangulation_set_buffer(mesh, FLAUNAY_PART_HULL, enough) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_triangulate_device(triangulator, &given, kAllParts, NULL, mesh), FLAUNAY_ERROR_USAGE,
+              "two things"));
+
+  CHECK(flaunay_triangulator_use_workspace(triangulator, NULL) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_set_buffer(mesh, FLAUNAY_PART_HULL, NULL) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  check_same(mesh, expected);
+  flaunay_triangulation_destroy(expected);
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseMemObject(small);
+  clReleaseMemObject(enough);
+  clReleaseMemObject(given.memory);
+}
+
+// ---- Bad use
+
+static void test_null_handles(void) {
+  CHECK(flaunay_device_list_count(NULL) == 0);
+  CHECK(flaunay_device_list_at(NULL, 0) == NULL);
+  CHECK(flaunay_triangulator_device(NULL) == NULL);
+  CHECK(flaunay_triangulator_context(NULL) == NULL);
+  CHECK(flaunay_triangulator_device_id(NULL) == NULL);
+  CHECK(flaunay_triangulator_queue(NULL) == NULL);
+  CHECK(flaunay_triangulation_point_count(NULL) == 0);
+  CHECK(flaunay_triangulation_set_count(NULL) == 0);
+  CHECK(flaunay_triangulation_triangle_count(NULL) == 0);
+  CHECK(flaunay_triangulation_hull_count(NULL) == 0);
+  CHECK(flaunay_triangulation_triangles(NULL) == NULL);
+  CHECK(flaunay_triangulation_neighbors(NULL) == NULL);
+  CHECK(flaunay_triangulation_halfedges(NULL) == NULL);
+  CHECK(flaunay_triangulation_hull(NULL) == NULL);
+  CHECK(flaunay_triangulation_representatives(NULL) == NULL);
+  CHECK(flaunay_triangulation_triangle_offsets(NULL) == NULL);
+  CHECK(flaunay_triangulation_hull_offsets(NULL) == NULL);
+  CHECK(flaunay_triangulation_statistics(NULL) == NULL);
+  CHECK(flaunay_device_triangulation_buffer(NULL, FLAUNAY_PART_HULL) == NULL);
+  CHECK(flaunay_device_triangulation_parts(NULL) == 0);
+  CHECK(flaunay_device_triangulation_point_count(NULL) == 0);
+  CHECK(flaunay_device_triangulation_set_count(NULL) == 0);
+  CHECK(flaunay_device_triangulation_triangle_count(NULL) == 0);
+  CHECK(flaunay_device_triangulation_hull_count(NULL) == 0);
+  CHECK(flaunay_device_triangulation_point_offsets(NULL) == NULL);
+  CHECK(flaunay_device_triangulation_triangle_offsets(NULL) == NULL);
+  CHECK(flaunay_device_triangulation_hull_offsets(NULL) == NULL);
+  CHECK(flaunay_device_triangulation_statistics(NULL) == NULL);
+  flaunay_device_list_destroy(NULL);
+  flaunay_triangulator_destroy(NULL);
+  flaunay_triangulation_destroy(NULL);
+  flaunay_device_triangulation_destroy(NULL);
+}
+
+static void test_null_arguments(void) {
+  flaunay_triangulation* mesh = NULL;
+  flaunay_device_triangulation* device_mesh = make_device_triangulation();
+  const flaunay_device_points none = {0};
+  const float* no_floats = NULL;
+  size_t bytes = 0;
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  CHECK(flaunay_device_list_create(0, NULL) == usage);
+  CHECK(flaunay_triangulator_create(NULL, NULL) == usage);
+  CHECK(flaunay_triangulator_create_in_context(context, device, NULL) == usage);
+  CHECK(flaunay_triangulator_workspace_bytes(NULL, 1, 1, &bytes) == usage);
+  CHECK(flaunay_triangulator_workspace_bytes(triangulator, 1, 1, NULL) == usage);
+  CHECK(flaunay_triangulator_use_workspace(NULL, NULL) == usage);
+  CHECK(flaunay_triangulate(NULL, kSquare, 4, NULL, 0, NULL, &mesh) == usage);
+  CHECK(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, NULL, NULL) == usage);
+  CHECK(fails(flaunay_triangulate(triangulator, NULL, 4, NULL, 0, NULL, &mesh), usage, "4 points"));
+  CHECK(
+      fails(flaunay_triangulate_float(triangulator, no_floats, 4, NULL, 0, NULL, &mesh), usage, "4 points"));
+  CHECK(flaunay_triangulate_on_host(NULL, 0, NULL, 0, NULL, NULL) == usage);
+  CHECK(flaunay_device_triangulation_create(NULL) == usage);
+  CHECK(flaunay_device_triangulation_set_buffer(NULL, FLAUNAY_PART_HULL, NULL) == usage);
+  CHECK(flaunay_triangulate_device(NULL, &none, 0, NULL, device_mesh) == usage);
+  CHECK(flaunay_triangulate_device(triangulator, NULL, 0, NULL, device_mesh) == usage);
+  CHECK(flaunay_triangulate_device(triangulator, &none, 0, NULL, NULL) == usage);
+  const flaunay_enqueue no_events = {.wait_for_count = 1};
+  CHECK(fails(flaunay_triangulate_device(triangulator, &none, 0, &no_events, device_mesh), usage, "events"));
+  CHECK(strcmp(flaunay_last_error_call(), "") == 0 && flaunay_last_error_code() == 0);
+  flaunay_device_triangulation_destroy(device_mesh);
+}
+
+static void test_bad_options(void) {
+  flaunay_triangulation* mesh = NULL;
+  const flaunay_options bad[] = {{.mode = 17},  {.cut = 17},          {.hull = 17},
+                                 {.parts = 64}, {.reserved = {0, 1}}, {.hull = FLAUNAY_HULL_MONOTONE_CHAIN}};
+  const char* const texts[] = {"17", "17", "17", "0x40", "flaunay_options", "monotone-chain"};
+  for (int k = 0; k < 6; ++k) {
+    CHECK(fails(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, &bad[k], &mesh), FLAUNAY_ERROR_USAGE,
+                texts[k]));
+    CHECK(mesh == NULL);
+  }
+}
+
+static flaunay_status triangulate_sets(const size_t* offsets, size_t sets) {
+  flaunay_triangulation* mesh = NULL;
+  const flaunay_status status = flaunay_triangulate(triangulator, kSquare, 4, offsets, sets, NULL, &mesh);
+  flaunay_triangulation_destroy(mesh);
+  return status;
+}
+
+static void test_bad_offsets(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  CHECK(fails(triangulate_sets((const size_t[]){0, 3, 2, 4}, 3), usage, "not decrease"));
+  CHECK(fails(triangulate_sets((const size_t[]){1, 4}, 1), usage, "begin with 0"));
+  CHECK(fails(triangulate_sets((const size_t[]){0, 3}, 1), usage, "end with 3, but there are 4"));
+  CHECK(fails(triangulate_sets((const size_t[]){0}, SIZE_MAX), usage, "too many sets"));
+}
+
+// Points are not read before their number is checked.
+static void test_too_many_points(void) {
+  flaunay_triangulation* mesh = NULL;
+  const size_t counts[] = {(size_t)1 << 31, SIZE_MAX / 2, SIZE_MAX};
+  for (int k = 0; k < 3; ++k) {
+    CHECK(fails(flaunay_triangulate(triangulator, points, counts[k], NULL, 0, NULL, &mesh),
+                FLAUNAY_ERROR_INPUT, "too many"));
+    size_t bytes = 1;
+    CHECK(fails(flaunay_triangulator_workspace_bytes(triangulator, counts[k], 1, &bytes), FLAUNAY_ERROR_INPUT,
+                "too many"));
+    CHECK(bytes == 0);
+  }
+  size_t bytes = 0;
+  CHECK(fails(flaunay_triangulator_workspace_bytes(triangulator, 1, SIZE_MAX, &bytes), FLAUNAY_ERROR_USAGE,
+              "too many sets"));
+}
+
+static void test_bad_coordinates(void) {
+  double bad[] = {0, 0, 1, 0, 1, 1, 0, NAN, 5, 5};
+  flaunay_triangulation* mesh = NULL;
+  CHECK(
+      fails(flaunay_triangulate(triangulator, bad, 5, NULL, 0, NULL, &mesh), FLAUNAY_ERROR_INPUT, "point 3"));
+  flaunay_device_triangulation* device_mesh = make_device_triangulation();
+  flaunay_device_points given = {.memory = make_buffer(context, sizeof bad, bad), .count = 5};
+  cl_event done = (cl_event)bad;
+  const flaunay_enqueue enqueue = {.queue = queue, .event = &done};
+  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, device_mesh), FLAUNAY_ERROR_INPUT,
+              "point 3"));
+  CHECK(done == NULL);
+  given.first = 2;
+  given.count = 3;
+  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, device_mesh), FLAUNAY_ERROR_INPUT,
+              "point 1"));
+  given.first = 0;  // and it goes on as before
+  CHECK(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, device_mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_triangle_count(device_mesh) == 1);
+  clWaitForEvents(1, &done);
+  clReleaseEvent(done);
+  clReleaseMemObject(given.memory);
+  flaunay_device_triangulation_destroy(device_mesh);
+}
+
+// A call on the square with one thing wrong.
+static flaunay_status triangulate_square(flaunay_device_points given, unsigned parts,
+                                         const flaunay_enqueue* enqueue) {
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  const flaunay_status status = flaunay_triangulate_device(triangulator, &given, parts, enqueue, mesh);
+  flaunay_device_triangulation_destroy(mesh);
+  return status;
+}
+
+static void test_bad_device_points(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  flaunay_device_points given = square;
+  CHECK(triangulate_square(given, 0, NULL) == FLAUNAY_SUCCESS);
+  given.count = 5;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "it has 64 bytes, 80 are needed"));
+  given = square;
+  given.first = SIZE_MAX;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "too many points"));
+  given = square;
+  given.memory = NULL;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "no buffer of points"));
+  given = square;
+  given.precision = 17;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "17"));
+  given = square;
+  given.reserved[3] = 1;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "flaunay_device_points"));
+  CHECK(fails(triangulate_square(square, FLAUNAY_PART_NEIGHBORS, NULL), usage, "with triangles only"));
+  CHECK(fails(triangulate_square(square, 32, NULL), usage, "0x20"));
+  const flaunay_enqueue unknown = {.reserved = {1}};
+  CHECK(fails(triangulate_square(square, 0, &unknown), usage, "flaunay_enqueue"));
+  clReleaseMemObject(square.memory);
+}
+
+static void test_bad_device_offsets(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const int32_t decreasing[] = {0, 3, 2, 4}, short_by_one[] = {0, 2, 2, 3}, negative[] = {-1, 2, 2, 4};
+  const size_t host_offsets[] = {0, 3, 2, 4}, host_short[] = {0, 2, 2, 3};
+  flaunay_device_points given = {
+      .memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4, .sets = 3};
+  given.offsets = host_offsets;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "not decrease"));
+  given.offsets = host_short;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "end with 3, but there are 4"));
+  const int32_t* const wrong[] = {decreasing, short_by_one, negative};
+  const char* const texts[] = {"not decrease", "end with 3, but there are 4", "begin with 0"};
+  given.offsets = NULL;
+  for (int k = 0; k < 3; ++k) {
+    given.device_offsets = make_buffer(context, sizeof decreasing, wrong[k]);
+    CHECK(fails(triangulate_square(given, 0, NULL), usage, texts[k]));
+    clReleaseMemObject(given.device_offsets);
+  }
+  given.device_offsets = make_buffer(context, sizeof decreasing, decreasing);
+  given.sets = 4;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "it has 16 bytes, 20 are needed"));
+  given.sets = SIZE_MAX;
+  CHECK(fails(triangulate_square(given, 0, NULL), usage, "too many sets"));
+  given.sets = 3;
+  given.offsets = host_short;
+  CHECK(flaunay_last_error()[0] != '\0' && triangulate_square(given, 0, NULL) == usage);
+  clReleaseMemObject(given.device_offsets);
+  clReleaseMemObject(given.memory);
+}
+
+static void test_bad_result_buffers(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const flaunay_part triangles = FLAUNAY_PART_TRIANGLES;
+  cl_context foreign = make_context();
+  cl_mem small = make_buffer(context, 24 * 4 - 1, NULL), wrong = make_buffer(foreign, 24 * 4, NULL);
+  const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  CHECK(flaunay_device_triangulation_set_buffer(mesh, triangles, small) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_triangulate_device(triangulator, &square, 0, NULL, mesh), usage,
+              "triangles is too small: it has 95 bytes, 96 are needed"));
+  CHECK(flaunay_device_triangulation_set_buffer(mesh, triangles, wrong) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_triangulate_device(triangulator, &square, 0, NULL, mesh), usage, "another context"));
+  CHECK(flaunay_device_triangulation_set_buffer(mesh, triangles, square.memory) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulate_device(triangulator, &square, 0, NULL, mesh) == usage);
+  CHECK(fails(flaunay_device_triangulation_set_buffer(mesh, 3, small), usage, "3 is not one part"));
+  CHECK(flaunay_device_triangulation_buffer(mesh, 3) == NULL);
+  CHECK(fails(flaunay_triangulator_use_workspace(triangulator, wrong), usage, "another context"));
+  CHECK(flaunay_device_triangulation_set_buffer(mesh, triangles, NULL) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulate_device(triangulator, &square, 0, NULL, mesh) == FLAUNAY_SUCCESS);
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseMemObject(small);
+  clReleaseMemObject(wrong);
+  clReleaseMemObject(square.memory);
+  clReleaseContext(foreign);
+}
+
+static void test_bad_queues(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  cl_context foreign = make_context();
+  flaunay_device_points square = {.memory = make_buffer(foreign, sizeof kSquare, kSquare), .count = 4};
+  flaunay_enqueue enqueue = {.queue = queue};
+  CHECK(fails(triangulate_square(square, 0, &enqueue), usage, "points is of another context"));
+  clReleaseMemObject(square.memory);
+  square.memory = make_buffer(context, sizeof kSquare, kSquare);
+  enqueue.queue = make_queue(foreign, 0);
+  CHECK(fails(triangulate_square(square, 0, &enqueue), usage, "queue is of another context"));
+
+  cl_event wrong = NULL;
+  CHECK(clEnqueueMarkerWithWaitList(enqueue.queue, 0, NULL, &wrong) == CL_SUCCESS);
+  CHECK(clFinish(enqueue.queue) == CL_SUCCESS);
+  const flaunay_enqueue waiting = {.queue = queue, .wait_for = &wrong, .wait_for_count = 1};
+  CHECK(fails(triangulate_square(square, 0, &waiting), usage, "event to wait for is of another context"));
+  clReleaseEvent(wrong);
+  clReleaseCommandQueue(enqueue.queue);
+
+  enqueue.queue = make_queue(context, 0);
+  CHECK(triangulate_square(square, 0, &enqueue) == FLAUNAY_SUCCESS);
+  CHECK(clFinish(enqueue.queue) == CL_SUCCESS);
+  clReleaseCommandQueue(enqueue.queue);
+  // The triangulator still holds it; whether it can be seen is up to the OpenCL implementation.
+  const flaunay_status released = triangulate_square(square, 0, &enqueue);
+  CHECK(released == FLAUNAY_SUCCESS || fails(released, usage, "released"));
+  CHECK(triangulate_square(square, 0, NULL) == FLAUNAY_SUCCESS);
+  clReleaseMemObject(square.memory);
+  clReleaseContext(foreign);
+}
+
+// Under the address sanitizer, whose own memory the limit would not leave, there is no such test.
+static void test_out_of_memory(void) {
+#ifndef __SANITIZE_ADDRESS__
+  struct rlimit before;
+  REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
+  struct rlimit limited = before;
+  limited.rlim_cur = (rlim_t)1 << 38;
+  REQUIRE(setrlimit(RLIMIT_AS, &limited) == 0);
+  CHECK(fails(triangulate_sets((const size_t[]){0, 4}, (size_t)1 << 36), FLAUNAY_ERROR_MEMORY, "memory"));
+  REQUIRE(setrlimit(RLIMIT_AS, &before) == 0);
+#endif
+}
+
+// ---- Voronoi diagrams and queries
+
+// Inside of the lower triangle of the square, on a point, outside.
+static const double kQueries[] = {3, 1, 4, 3, -1, -1};
+enum { kQueryCount = 3 };
+static const double kValues[] = {0, 4, 7, 4};  // x + y
+
+// As of points 0 to 3 of the square.
+static void check_answers(const flaunay_triangulation* mesh, const int32_t* triangles, const int32_t* nearest,
+                          const double* values) {
+  const int32_t* all = flaunay_triangulation_triangles(mesh);
+  for (int k = 0; k < 2; ++k) {
+    const int32_t t = triangles[k];
+    if (!CHECK(t == 0 || t == 1)) return;
+    const int32_t* corners = all + 3 * (size_t)t;
+    CHECK(corners[0] == 1 || corners[1] == 1 || corners[2] == 1 || k == 1);
+  }
+  CHECK(triangles[2] == -1);
+  CHECK(nearest[0] == 1 && nearest[1] == 2 && nearest[2] == 0);
+  CHECK(fabs(values[0] - 4) < 1e-12 && values[1] == 7 && isnan(values[2]));
+}
+
+static void test_voronoi(void) {
+  flaunay_triangulation* mesh = NULL;
+  flaunay_voronoi* dual = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_voronoi_compute(triangulator, kSquare, 4, mesh, &dual) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_voronoi_point_count(dual) == 4 && flaunay_voronoi_triangle_count(dual) == 2);
+  CHECK(flaunay_voronoi_corner_count(dual) == 6);
+  const int32_t* offsets = flaunay_voronoi_cell_offsets(dual);
+  CHECK(offsets[0] == 0 && offsets[4] == 6);
+  for (size_t i = 0; i < 4; ++i) {
+    CHECK(flaunay_voronoi_unbounded(dual)[i] == 1);
+    for (int32_t k = offsets[i]; k < offsets[i + 1]; ++k) {
+      const int32_t t = flaunay_voronoi_cells(dual)[k];
+      const double* centre = flaunay_voronoi_circumcentres(dual) + 2 * (size_t)t;
+      const int32_t other = flaunay_triangulation_triangles(mesh)[3 * t];
+      CHECK(fabs(hypot(kSquare[2 * i] - centre[0], kSquare[2 * i + 1] - centre[1]) -
+                 hypot(kSquare[2 * other] - centre[0], kSquare[2 * other + 1] - centre[1])) < 1e-12);
+    }
+  }
+  flaunay_voronoi_destroy(dual);
+  CHECK(fails(flaunay_voronoi_compute(triangulator, kSquare, 3, mesh, &dual), FLAUNAY_ERROR_USAGE, "points"));
+  CHECK(dual == NULL);
+  CHECK(fails(flaunay_voronoi_compute(NULL, kSquare, 4, mesh, &dual), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(fails(flaunay_voronoi_compute(triangulator, kSquare, 4, NULL, &dual), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(flaunay_voronoi_cells(NULL) == NULL && flaunay_voronoi_point_count(NULL) == 0);
+  flaunay_voronoi_destroy(NULL);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_locator(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  flaunay_triangulation* mesh = NULL;
+  flaunay_locator* locator = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_locator_create(triangulator, kSquare, 4, NULL, 1, mesh, &locator) == FLAUNAY_SUCCESS);
+  int32_t triangles[kQueryCount], nearest[kQueryCount];
+  double values[kQueryCount];
+  CHECK(flaunay_locator_locate(locator, kQueries, kQueryCount, NULL, 1, triangles) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_nearest(locator, kQueries, kQueryCount, NULL, 1, nearest) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_interpolate(locator, kValues, kQueries, kQueryCount, NULL, 1, values) ==
+        FLAUNAY_SUCCESS);
+  check_answers(mesh, triangles, nearest, values);
+
+  const double bad[] = {0, 0, NAN, 1};
+  CHECK(fails(flaunay_locator_locate(locator, bad, 2, NULL, 1, triangles), FLAUNAY_ERROR_INPUT, "query 1"));
+  CHECK(fails(flaunay_locator_locate(locator, NULL, 2, NULL, 1, triangles), usage, "NULL"));
+  CHECK(fails(flaunay_locator_locate(locator, kQueries, 2, NULL, 1, NULL), usage, "NULL"));
+  CHECK(fails(flaunay_locator_locate(NULL, kQueries, 2, NULL, 1, triangles), usage, "NULL"));
+  CHECK(fails(flaunay_locator_interpolate(locator, NULL, kQueries, 2, NULL, 1, values), usage, "NULL"));
+  CHECK(fails(flaunay_locator_nearest(locator, kQueries, 3, (const size_t[]){0, 1, 3}, 2, nearest), usage,
+              "sets"));
+  CHECK(fails(flaunay_locator_nearest(locator, kQueries, 3, (const size_t[]){0, 2}, 1, nearest), usage,
+              "offsets"));
+  CHECK(flaunay_locator_locate(locator, NULL, 0, NULL, 1, NULL) == FLAUNAY_SUCCESS);
+  flaunay_locator_destroy(locator);
+  flaunay_locator_destroy(NULL);
+  CHECK(fails(flaunay_locator_create(triangulator, kSquare, 3, NULL, 1, mesh, &locator), usage, "points"));
+  CHECK(locator == NULL);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_derived_on_device(void) {
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
+  const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  const flaunay_device_points queries = {.memory = make_buffer(context, sizeof kQueries, kQueries),
+                                         .count = kQueryCount};
+  cl_mem values = make_buffer(context, sizeof kValues, kValues);
+  cl_mem results = make_buffer(context, kQueryCount * sizeof(double), NULL);
+  cl_mem found = make_buffer(context, kQueryCount * sizeof(int32_t), NULL);
+  cl_mem near = make_buffer(context, kQueryCount * sizeof(int32_t), NULL);
+  const flaunay_enqueue enqueue = {.queue = queue};
+  flaunay_device_triangulation* device_mesh = NULL;
+  flaunay_device_voronoi* dual = NULL;
+  flaunay_locator* locator = NULL;
+  const unsigned parts =
+      FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+  REQUIRE(flaunay_device_triangulation_create(&device_mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_device_voronoi_create(&dual) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &square, parts, &enqueue, device_mesh) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_voronoi_compute_device(triangulator, &square, device_mesh, &enqueue, dual) ==
+        FLAUNAY_SUCCESS);
+  double centres[4] = {0};
+  cl_mem centre_memory = flaunay_device_voronoi_buffer(dual, FLAUNAY_VORONOI_CIRCUMCENTRES);
+  REQUIRE(clEnqueueReadBuffer(queue, centre_memory, CL_TRUE, 0, sizeof centres, centres, 0, NULL, NULL) ==
+          CL_SUCCESS);
+  CHECK(centres[0] > 0 && centres[0] < 4 && centres[2] > 0 && centres[2] < 4);
+
+  REQUIRE(flaunay_locator_create_device(triangulator, &square, device_mesh, &enqueue, &locator) ==
+          FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_locate_device(locator, &queries, &enqueue, &found) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_nearest_device(locator, &queries, &enqueue, &near) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_interpolate_device(locator, values, &queries, &enqueue, &results) == FLAUNAY_SUCCESS);
+  int32_t triangles[kQueryCount], nearest[kQueryCount];
+  double interpolated[kQueryCount];
+  clEnqueueReadBuffer(queue, found, CL_TRUE, 0, sizeof triangles, triangles, 0, NULL, NULL);
+  clEnqueueReadBuffer(queue, near, CL_TRUE, 0, sizeof nearest, nearest, 0, NULL, NULL);
+  clEnqueueReadBuffer(queue, results, CL_TRUE, 0, sizeof interpolated, interpolated, 0, NULL, NULL);
+  check_answers(mesh, triangles, nearest, interpolated);
+  CHECK(fails(flaunay_locator_interpolate_device(locator, values, &queries, &enqueue, &found),
+              FLAUNAY_ERROR_USAGE, "too small"));
+
+  flaunay_locator_destroy(locator);
+  flaunay_device_voronoi_destroy(dual);
+  flaunay_device_voronoi_destroy(NULL);
+  flaunay_device_triangulation_destroy(device_mesh);
+  flaunay_triangulation_destroy(mesh);
+  clReleaseMemObject(square.memory);
+  clReleaseMemObject(queries.memory);
+  clReleaseMemObject(values);
+  clReleaseMemObject(results);
+  clReleaseMemObject(found);
+  clReleaseMemObject(near);
+}
+
+// ---- Without double precision
+
+static void test_no_fp64(void) {
+  flaunay_device_list* list = NULL;
+  REQUIRE(flaunay_device_list_create(0, &list) == FLAUNAY_SUCCESS);
+  const char* name = flaunay_device_list_at(list, 0)->name;
+  CHECK(flaunay_device_list_at(list, 0)->fp64 == 0);
+  flaunay_triangulator* none = NULL;
+  CHECK(fails(flaunay_triangulator_create("", &none), FLAUNAY_ERROR_DEVICE, "fp64"));
+  CHECK(fails(flaunay_triangulator_create("#0", &none), FLAUNAY_ERROR_DEVICE, "fp64"));
+  CHECK(strstr(flaunay_last_error(), name) != NULL);
+
+  cl_platform_id platform = NULL;
+  REQUIRE(clGetPlatformIDs(1, &platform, NULL) == CL_SUCCESS);
+  REQUIRE(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL) == CL_SUCCESS);
+  context = make_context();
+  CHECK(fails(flaunay_triangulator_create_in_context(context, device, &none), FLAUNAY_ERROR_DEVICE, "fp64"));
+  clReleaseContext(context);
+  flaunay_device_list_destroy(list);
+}
+
+static void test_all(void) {
+  test_statuses();
+  set_up();
+  test_errors_are_of_threads();
+  test_devices();
+  test_devices_that_are_none();
+  test_square();
+  test_neighbors_and_halfedges();
+  test_float();
+  test_batches();
+  test_modes();
+  test_on_host();
+  test_progress_and_profile();
+  test_no_points();
+  test_device_to_device();
+  test_own_buffers();
+  test_device_sets();
+  test_no_points_on_device();
+  test_device_profile();
+  test_workspace();
+  test_null_handles();
+  test_null_arguments();
+  test_bad_options();
+  test_bad_offsets();
+  test_too_many_points();
+  test_bad_coordinates();
+  test_bad_device_points();
+  test_bad_device_offsets();
+  test_bad_result_buffers();
+  test_bad_queues();
+  test_out_of_memory();
+  test_voronoi();
+  test_locator();
+  test_derived_on_device();
+  tear_down();
+}
+
+int main(int argc, char** argv) {
+  if (argc == 2 && strcmp(argv[1], "no-fp64") == 0) {
+    test_no_fp64();
+  } else {
+    test_all();
+  }
+  if (failures > 0) fprintf(stderr, "%d checks failed\n", failures);
+  return failures > 0;
+}
