@@ -54,6 +54,7 @@ Arena::~Arena() = default;
 std::size_t Arena::held_bytes() const {
   std::size_t sum = 0;
   for (const Block& block : blocks_) sum += block.size;
+  for (const Block& block : own_blocks_) sum += block.size;
   return sum;
 }
 

@@ -70,7 +70,7 @@ class Arena {
   std::size_t alignment() const { return alignment_; }
   /// Bytes in use at most since reset_peak, without gaps at the ends of blocks.
   std::size_t peak_bytes() const { return peak_; }
-  /// Bytes of all blocks.
+  /// Bytes of all blocks, own and lent.
   std::size_t held_bytes() const;
   /// Blocks, and separate buffers, made so far: no more blocks for the same work done again.
   std::size_t block_allocations() const { return block_allocations_; }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "host/clock.hpp"
 #include "host/device.hpp"
@@ -86,18 +87,25 @@ void Runtime::use_queue(cl_command_queue wanted, bool profiling) {
     wanted = own_queues_[profiling].get();
   }
   collect_times();
-  if (wanted != queue_.get()) {
-    const cl_event done = mark();
-    flush();
-    queue_ = boost::compute::command_queue(wanted);
-    const cl_int code = clEnqueueBarrierWithWaitList(queue_.get(), 1, &done, nullptr);
-    clReleaseEvent(done);
-    check_call(code, "clEnqueueBarrierWithWaitList");
-  }
+  const boost::compute::command_queue before = queue_;
+  queue_ = boost::compute::command_queue(wanted);
+  if (before != queue_) follow(before.get());
+  // Its owner knows the other one, and may have enqueued there what this is to follow.
+  if (wanted == own_queues_[1].get() && before != own_queues_[0]) follow(own_queues_[0].get());
   profiling_ = profiling;
   is_unordered_ = queue_.get_info<cl_command_queue_properties>(CL_QUEUE_PROPERTIES) &
                   CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE;
   keep_order();
+}
+
+void Runtime::follow(cl_command_queue other) {
+  cl_event done = nullptr;
+  FLAUNAY_CL(clEnqueueMarkerWithWaitList(other, 0, nullptr, &done));
+  const cl_int flushed = clFlush(other);
+  const cl_int code = clEnqueueBarrierWithWaitList(queue_.get(), 1, &done, nullptr);
+  clReleaseEvent(done);
+  check_call(flushed, "clFlush");
+  check_call(code, "clEnqueueBarrierWithWaitList");
 }
 
 void Runtime::wait_for(const std::vector<cl_event>& events) {
@@ -195,8 +203,8 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
     group /= 2;
     kernel.largest_group = group;
   }
-  keep_order();
   if (profiling_) events_.emplace_back(event, &kernel.name);
+  keep_order();
   if (profiling_ && events_.size() >= 4096) collect_times();
 }
 
@@ -264,18 +272,18 @@ void Runtime::finish() {
 void Runtime::collect_times() {
   if (events_.empty()) return;
   FLAUNAY_CL(clFinish(queue_.get()));
-  for (const auto& [event, name] : events_) {
+  const auto events = std::exchange(events_, {});
+  for (const auto& [event, name] : events) {
     cl_ulong begin = 0, end = 0;
-    FLAUNAY_CL_KERNEL(
-        clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr), *name);
-    FLAUNAY_CL_KERNEL(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr),
-                      *name);
+    const cl_int code =
+        clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr) |
+        clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr);
     clReleaseEvent(event);
+    if (code != CL_SUCCESS) continue;  // of a kernel that failed, which other calls tell
     KernelTime& time = times_[*name];
     ++time.launches;
     time.seconds += 1e-9 * static_cast<double>(end - begin);
   }
-  events_.clear();
 }
 
 std::map<std::string, KernelTime> Runtime::kernel_times() {

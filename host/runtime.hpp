@@ -222,6 +222,8 @@ class Runtime {
   }
 
   boost::compute::command_queue make_queue(bool profiling) const;
+  /// What is enqueued from now on waits for what was enqueued there.
+  void follow(cl_command_queue other);
   Kernel& find_kernel(const char* file, const char* name);
   const boost::compute::program& find_program(const std::string& file);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);

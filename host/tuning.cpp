@@ -68,6 +68,7 @@ Tuning small_tuning() {
   tuning.list_workers = 7;
   tuning.block_workers = 3;
   tuning.block_group = 2;
+  tuning.sorted_queries_least = 4;
   tuning.separate_buffers = true;
   return tuning;
 }

@@ -11,6 +11,8 @@ constexpr int kSmallRegion = 48;
 /// Points of a block of Mode::hybrid, at most: with what its solution needs, it stays in a core's
 /// second-level cache.
 constexpr std::size_t kBlockPoints = 2048;
+/// From so many queries on, sorting them saves more than it takes.
+constexpr std::size_t kSortedQueries = 16384;
 
 struct Tuning {
   /// Work-group size of kernels with one work-item per element.
@@ -32,6 +34,8 @@ struct Tuning {
   std::size_t block_group = 1;
   /// Pairs of edges that are fetched into the cache before they are needed; 0: none.
   std::size_t fetch_ahead = 0;
+  /// So many queries of a locator, and more, are answered in the order of the plane.
+  std::size_t sorted_queries_least = kSortedQueries;
   /// Whether kernels read and write the caller's memory in place of copies.
   bool in_host_memory = false;
   /// Whether arrays are buffers of their own; see Arena::separate_buffers.

@@ -7,8 +7,10 @@
 // copies the hull, for sets that have no triangles. make_faces, place_hull and check_representatives find indices that
 // lead nowhere. start_triangles gives each leaf of the sets' cut trees the triangle where walks begin.
 //
-// Queries, a pass each: find_triangles takes a chunk of them a work-item, some down the tree of their set at the same
-// time, then one after the other by a visibility walk: from triangle to triangle, over any edge that has the query
+// Queries: if there are many, find_query_leaves says to which leaf of its set's tree each goes, the host sorts them by
+// that, and place_queries brings them to that order, so that those that follow each other read the same memory. Then, a
+// pass each: find_triangles takes a chunk of them a work-item, some down the tree at the same time if that is not done,
+// then one after the other by a visibility walk: from triangle to triangle, over any edge that has the query
 // strictly beyond it (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002). In a Delaunay triangulation it
 // ends, whichever edge is tried first: the power of the query with respect to the triangle's circle falls with each
 // step, except within a cocircular polygon, whose triangles form a tree. nearest_points and interpolate_queries go on
@@ -77,7 +79,11 @@ kernel void make_faces(int n, int sets, global const int* restrict triangle_offs
     if (good) {
       for (int k = 0; k < 3; ++k) atomic_min(&incident[f.corner[k]], t);
     } else {
-      for (int k = 0; k < 3; ++k) f.corner[k] = 0;
+      // Leads nowhere, for those that come before it is told.
+      for (int k = 0; k < 3; ++k) {
+        f.corner[k] = 0;
+        f.neighbor[k] = -1;
+      }
       atomic_min(&bad[0], t);
     }
     faces[t] = f;
@@ -171,12 +177,16 @@ kernel void check_representatives(int n, int sets, global const int* restrict po
   }
 }
 
-// by_leaf: each leaf's sample; drawn: the point that a sample is. last: the last triangle.
-kernel void start_triangles(int n, int last, global const int* restrict by_leaf, global const int* restrict drawn,
+// by_leaf: each leaf's sample; drawn: the point that a sample is. last: the last triangle. Representatives may be wrong,
+// which check_representatives says.
+kernel void start_triangles(int n, int points, int last, global const int* restrict by_leaf, global const int* restrict drawn,
                             global const int* restrict representatives, global const int* restrict incident,
                             global int* restrict starts) {
   const int i = get_global_id(0);
-  if (i < n) starts[i] = min(last, incident[representatives[drawn[by_leaf[i]]]]);
+  if (i < n) {
+    const int vertex = representatives[drawn[by_leaf[i]]];
+    starts[i] = vertex < 0 || vertex >= points ? last : min(last, incident[vertex]);
+  }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -241,14 +251,51 @@ static inline void fetch(global const void* what) {
 #endif
 }
 
-// n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set.
-// keep_outside: whether queries outside of the hull get what walk() says, else -1; without triangles it is -1.
-kernel void find_triangles(int n, int chunk, int sets, int keep_outside, global const int* restrict query_offsets,
-                           global const mesh_set* restrict records, global const cut_node* restrict nodes,
-                           global const int* restrict starts, global const double* restrict queries, double s0,
-                           double s1, double s2, double bound, double unit, global const double2* restrict points,
-                           global const face* restrict faces, global const int* restrict first_triangle,
-                           global int* restrict found) {
+// n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set. keys: each
+// query's leaf, counted over all sets, where a set has one leaf more than its tree, or one alone: so in the order of
+// keys each set's queries take the places that they had. order: 0, 1, 2...
+kernel void find_query_leaves(int n, int chunk, int sets, global const int* restrict query_offsets,
+                              global const mesh_set* restrict records, global const cut_node* restrict nodes,
+                              global const double* restrict queries, global ulong* restrict keys,
+                              global int* restrict order) {
+  const int c = get_global_id(0);
+  if ((long)c * chunk < n) {
+    const int last = (int)min((long)n, (c + 1L) * chunk);
+    int s = sets > 1 ? segment_of(c * chunk, sets, query_offsets) : 0;
+    int begin = c * chunk;
+    while (begin < last) {
+      while (sets > 1 && query_offsets[s + 1] <= begin) ++s;
+      const int end = min(begin + DESCENTS, sets > 1 ? min(last, query_offsets[s + 1]) : last);
+      const mesh_set set = records[s];
+      int leaf[DESCENTS];
+      find_leaves(begin, end, queries, nodes + set.nodes, set.depth, leaf);
+      for (int i = begin; i < end; ++i) {
+        keys[i] = (ulong)set.nodes + s + leaf[i - begin];
+        order[i] = i;
+      }
+      begin = end;
+    }
+  }
+}
+
+// order: the query at a place.
+kernel void place_queries(int n, global const int* restrict order, global const double* restrict queries, double s0,
+                          double s1, double s2, global double2* restrict placed) {
+  const int i = get_global_id(0);
+  if (i < n) placed[i] = scaled_point(order[i], queries, s0, s1, s2);
+}
+
+// are_placed: whether there are keys, in their order, and placed queries; else queries go down the trees here, and their
+// order and places are those that they have. is_answer: whether found is by query, with -1 outside of the hull; else it
+// is by place, with what walk() says. Without triangles it is -1.
+kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer,
+                           global const int* restrict query_offsets, global const mesh_set* restrict records,
+                           global const cut_node* restrict nodes, global const int* restrict starts,
+                           global const double* restrict queries, double s0, double s1, double s2,
+                           global const ulong* restrict keys, global int* restrict order,
+                           global double2* restrict placed, double bound, double unit,
+                           global const double2* restrict points, global const face* restrict faces,
+                           global const int* restrict first_triangle, global int* restrict found) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -259,8 +306,16 @@ kernel void find_triangles(int n, int chunk, int sets, int keep_outside, global 
       const int end = min(begin + DESCENTS, sets > 1 ? min(last, query_offsets[s + 1]) : last);
       const mesh_set set = records[s];
       int start[DESCENTS];
-      find_leaves(begin, end, queries, nodes + set.nodes, set.depth, start);
-      for (int j = 0; j < DESCENTS; ++j) {
+      if (are_placed) {
+        for (int i = begin; i < end; ++i) start[i - begin] = (int)keys[i] - set.nodes - s;
+      } else {
+        find_leaves(begin, end, queries, nodes + set.nodes, set.depth, start);
+        for (int i = begin; i < end; ++i) {
+          order[i] = i;
+          placed[i] = scaled_point(i, queries, s0, s1, s2);
+        }
+      }
+      for (int j = 0; j < end - begin; ++j) {
         start[j] = set.depth > 0 ? starts[set.starts + start[j]] : set.starts;
         fetch(&faces[start[j]]);
       }
@@ -268,10 +323,9 @@ kernel void find_triangles(int n, int chunk, int sets, int keep_outside, global 
       for (int i = begin; i < end; ++i) {
         int at = -1;
         if (set.triangles > 0) {
-          at = walk(scaled_point(i, queries, s0, s1, s2), start[i - begin], set.triangles, bound, unit, points, faces,
-                    first_triangle);
+          at = walk(placed[i], start[i - begin], set.triangles, bound, unit, points, faces, first_triangle);
         }
-        found[i] = keep_outside ? at : max(at, -1);
+        found[is_answer ? order[i] : i] = is_answer ? max(at, -1) : at;
       }
       begin = end;
     }
@@ -371,24 +425,27 @@ static inline int nearest_on_line(double2 q, int first, int end, double bound, d
   return low;
 }
 
-// found: of find_triangles, with what is outside kept.
+// found: of find_triangles, by place; the answer is by query.
 kernel void nearest_points(int n, int sets, global const int* restrict query_offsets,
-                           global const mesh_set* restrict records, global const double* restrict queries, double s0,
-                           double s1, double s2, double bound, double unit, global const double2* restrict points,
-                           global const int* restrict source, global const int* restrict clearances,
-                           global const face* restrict faces, global const double2* restrict hull_points,
-                           global const int* restrict hull, global const int* restrict found, global int* restrict nearest) {
+                           global const mesh_set* restrict records, global const int* restrict order,
+                           global const double2* restrict placed, double bound, double unit,
+                           global const double2* restrict points, global const int* restrict source,
+                           global const int* restrict clearances, global const face* restrict faces,
+                           global const double2* restrict hull_points, global const int* restrict hull,
+                           global const int* restrict found, global int* restrict nearest) {
   const int i = get_global_id(0);
   if (i < n) {
-    const double2 q = scaled_point(i, queries, s0, s1, s2);
+    const double2 q = placed[i];
     const mesh_set set = records[sets > 1 ? segment_of(i, sets, query_offsets) : 0];
+    int answer;
     if (set.triangles == 0) {
       const int at = nearest_on_line(q, set.hull, set.hull_end, bound, unit, hull_points);
-      nearest[i] = at < 0 ? -1 : hull[at];
+      answer = at < 0 ? -1 : hull[at];
     } else {
       const int t = found[i];
-      nearest[i] = source[nearest_vertex(q, t < 0 ? ~t : t, bound, unit, points, faces, clearances)];
+      answer = source[nearest_vertex(q, t < 0 ? ~t : t, bound, unit, points, faces, clearances)];
     }
+    nearest[order[i]] = answer;
   }
 }
 
@@ -420,14 +477,14 @@ static inline double area_exact(double2 a, double2 b, double2 q) {
 #define SLENDER 4096.0
 
 // Weights are areas by the whole. Where q lies on an edge, the opposite corner has none, not even that of a NaN.
-kernel void interpolate_queries(int n, global const double* restrict queries, double s0, double s1, double s2,
+kernel void interpolate_queries(int n, global const int* restrict order, global const double2* restrict placed,
                                 double bound, double unit, global const double2* restrict points,
                                 global const int* restrict source, global const face* restrict faces,
-                                global const int* restrict found,
-                                global const double* restrict values, global double* restrict results) {
+                                global const int* restrict found, global const double* restrict values,
+                                global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
-    const double2 q = scaled_point(i, queries, s0, s1, s2);
+    const double2 q = placed[i];
     double result = as_double(0x7ff8000000000000UL);
     if (found[i] >= 0) {
       const face f = faces[found[i]];
@@ -454,6 +511,6 @@ kernel void interpolate_queries(int n, global const double* restrict queries, do
         if (weight[k] != 0.0) result += weight[k] / whole * values[source[f.corner[k]]];
       }
     }
-    results[i] = result;
+    results[order[i]] = result;
   }
 }

@@ -301,7 +301,11 @@ void check_answers(const Case& input, const std::vector<std::string>& names = tu
       }
     }
     if (first) {
-      EXPECT_EQ(std::memcmp(first->values.data(), answers.values.data(), 8 * results.size()), 0);
+      // As bytes, since NaN is not equal to itself.
+      const auto bytes = [](const std::vector<double>& numbers) {
+        return std::string(reinterpret_cast<const char*>(numbers.data()), 8 * numbers.size());
+      };
+      EXPECT_EQ(bytes(first->values), bytes(answers.values));
     } else {
       first = std::make_unique<Answers>(answers);
     }
@@ -409,6 +413,61 @@ TEST(SmallDerived, NothingAtAll) {
     check_answers(input);
     check_dual(input);
   }
+}
+
+/// Answers with queries sorted and not, which must be the same bytes.
+void check_orders(const Case& input) {
+  const std::vector<double> values = values_for(input.size());
+  std::unique_ptr<Answers> first;
+  for (const std::string& name : tunings()) {
+    Runtime& runtime = Runtimes::get(name);
+    const host::Tuning before = runtime.tuning();
+    for (const std::size_t least : {std::size_t{0}, input.query_count() + 1}) {
+      SCOPED_TRACE(fmt::format("tuning {}, sorted from {} on", name, least));
+      host::Tuning tuning = before;
+      tuning.sorted_queries_least = least;
+      runtime.set_tuning(tuning);
+      const Answers answers = ask(runtime, input, values);
+      if (!first) first = std::make_unique<Answers>(answers);
+      EXPECT_TRUE(same(answers.triangles, first->triangles));
+      EXPECT_TRUE(same(answers.nearest, first->nearest));
+      EXPECT_EQ(
+          std::memcmp(answers.values.data(), first->values.data(), sizeof(double) * answers.values.size()),
+          0);
+    }
+    runtime.set_tuning(before);
+  }
+}
+
+/// Sets with and without trees take turns, with empty ones; only some have queries.
+Case case_of_trees(std::size_t n, std::size_t m) {
+  Case made;
+  const auto add = [&](const Coordinates& points) { made.add(points, make_queries(points, m, made.sets())); };
+  add({});
+  add({2, 3});
+  add(make_fixture("uniform", n, 23));
+  add({0, 0, 4, 0, 1, 3});
+  add({});
+  add(make_fixture("collinear", n, 24));
+  made.add(make_fixture("uniform", n, 25), {});
+  add(make_fixture("kuzmin", n, 26));
+  add(make_fixture("grid", n, 27));
+  add({1, 1, 1, 1});
+  add({});
+  made.triangulate();
+  return made;
+}
+
+TEST(SmallDerived, TheOrderOfQueriesDoesNotShow) {
+  const Case input = case_of_trees(270, 2);
+  check_orders(input);
+  check_answers(input);
+}
+
+TEST(Derived, TheOrderOfManyQueriesDoesNotShow) {
+  const Case input = case_of_trees(2000, 500);
+  ASSERT_GT(input.query_count(), host::kSortedQueries);
+  check_orders(input);
 }
 
 TEST(Derived, EveryFixture) {
@@ -601,7 +660,8 @@ TEST(Kernels, AllAreLaunched) {
   std::set<std::string> launched;
   Runtime& runtime = Runtimes::get("own");
   runtime.set_profiling(true);
-  const Case input = nested_case(100, 2);
+  const Case input = case_of_trees(270, 500);
+  ASSERT_GT(input.query_count(), host::kSortedQueries);
   ask(runtime, input, values_for(input.size()));
   dual(runtime, input);
   for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
@@ -615,7 +675,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 15u);
+  EXPECT_EQ(kernels, 17u);
 }
 
 }  // namespace

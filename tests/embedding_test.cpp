@@ -266,7 +266,12 @@ TEST(SmallEmbedding, OnlyWhatIsAskedForIsMade) {
   DeviceTriangulation result;
   for (const Parts& parts :
        {Parts{false, true, false, false, false}, Parts{false, false, true, false, false}}) {
-    expect_usage_error({"triangles"}, [&] { embedded().triangulate(points_in(memory, 50), result, parts); });
+    cl_event done = reinterpret_cast<cl_event>(8);
+    Enqueue enqueue;
+    enqueue.event = &done;
+    expect_usage_error({"triangles"},
+                       [&] { embedded().triangulate(points_in(memory, 50), result, parts, enqueue); });
+    EXPECT_EQ(done, nullptr);
   }
 }
 
@@ -382,6 +387,66 @@ TEST(SmallEmbedding, NoPointsAreNoError) {
   EXPECT_EQ(result.triangle_offsets, (Offsets{0}));
 }
 
+TEST(Embedding, AGpusSizesNeedNoMoreMemoryTheSecondTimeEither) {
+  const ScopedEnvironment gpu("FLAUNAY_TUNING", "gpu");
+  const std::size_t n = 30000;
+  Triangulator fresh(embedder().context(), embedder().device());
+  DeviceTriangulation result;
+  fresh.triangulate(points_in(embedder().upload(make_fixture("uniform", n, 10)), n), result, kAll, on_own());
+  for (const Coordinates& other :
+       {make_fixture("uniform", n, 12), make_fixture("grid", n, 13), Coordinates(2 * n, 0.5)}) {
+    const Memory memory = embedder().upload(other);
+    opencl_calls().reset();
+    fresh.triangulate(points_in(memory, n), result, kAll, on_own());
+    EXPECT_EQ(opencl_calls().buffers, 0u);
+    check(clFinish(embedder().queue()), "clFinish");
+  }
+}
+
+TEST(SmallEmbedding, AProfiledCallKeepsTheOrderOfTheOwnQueue) {
+  const std::size_t n = 500;
+  const Coordinates old_points = make_fixture("uniform", n, 1), new_points = make_fixture("uniform", n, 2);
+  Triangulator own(embedder().context(), embedder().device());
+  const Memory memory = embedder().upload(old_points);
+  Enqueue profiled;
+  profiled.profile = true;
+  DeviceTriangulation result;
+  own.triangulate(points_in(memory, n), result, kAll, profiled);
+  // What the owner of the queue enqueues there comes first.
+  check(clEnqueueWriteBuffer(own.queue(), memory.get(), CL_FALSE, 0, 16 * n, new_points.data(), 0, nullptr,
+                             nullptr),
+        "clEnqueueWriteBuffer");
+  own.triangulate(points_in(memory, n), result, kAll, profiled);
+  expect_same(result, expected_of(new_points, {0, n}), own.queue());
+  DeviceVoronoi dual;
+  own.voronoi(points_in(memory, n), result, dual, profiled);
+  const Voronoi expected = own.voronoi(new_points.data(), n, expected_of(new_points, {0, n}));
+  EXPECT_TRUE(same(embedder().download<std::int32_t>(dual.cells.memory(), expected.cells.size(), own.queue()),
+                   expected.cells));
+}
+
+TEST(SmallEmbedding, DestroyingWaitsForWhatWasEnqueued) {
+  const Coordinates coordinates = make_fixture("uniform", 500, 1);
+  const Memory memory = embedder().upload(coordinates);
+  const Queue queue = embedder().make_queue();
+  cl_event done = nullptr;
+  Enqueue enqueue = on(queue);
+  enqueue.event = &done;
+  DeviceTriangulation result;
+  std::unique_ptr<Locator> locator;
+  {
+    Triangulator passing(embedder().context(), embedder().device());
+    passing.triangulate(points_in(memory, 500), result, kAll, on(queue));
+    locator = std::make_unique<Locator>(passing, points_in(memory, 500), result, on(queue));
+    passing.triangulate(points_in(memory, 500), result, kAll, enqueue);
+  }
+  cl_int status = -1;
+  clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+  EXPECT_EQ(status, CL_COMPLETE);
+  clReleaseEvent(done);
+  EXPECT_EQ(locator->locate(coordinates.data(), 500).size(), 500u);
+}
+
 // Counted where the calls are made, and by flaunay itself.
 TEST(Embedding, ASecondCallAllocatesNothingAndOnlySizesCross) {
   const std::size_t n = 100000;
@@ -404,9 +469,18 @@ TEST(Embedding, ASecondCallAllocatesNothingAndOnlySizesCross) {
     EXPECT_EQ(calls.waits, result.statistics.host_waits);
     // Some numbers for each of the 64 blocks: the points alone are 1,600,000 bytes.
     EXPECT_LE(calls.bytes_to_host + calls.bytes_to_device, 64u * 200);
-    EXPECT_LE(calls.waits, 12u);
+    EXPECT_EQ(calls.waits, 6u);
   }
-  // Fewer points do not need more either.
+  fresh.triangulate(points_in(first, 1000), result, kAll, on_own());
+  EXPECT_EQ(result.statistics.host_waits, 5u);
+  // Nor do points that need more of it: others at random, or all in one block; nor fewer.
+  for (const Coordinates& other :
+       {make_fixture("uniform", n, 12), make_fixture("line", n, 13), Coordinates(2 * n, 0.5)}) {
+    const Memory memory = embedder().upload(other);
+    calls.reset();
+    fresh.triangulate(points_in(memory, n), result, kAll, on_own());
+    EXPECT_EQ(calls.buffers, 0u);
+  }
   calls.reset();
   fresh.triangulate(points_in(first, n / 3), result, kTriangles, on_own());
   EXPECT_EQ(calls.buffers, 0u);
@@ -458,6 +532,10 @@ TEST(SmallEmbedding, TheWorkspaceIsABufferOfTheContext) {
   expect_usage_error({"workspace", "context"}, [&] { t.use_workspace(foreign.get()); });
   const Memory read_only = embedder().make_buffer(1 << 20, CL_MEM_READ_ONLY);
   expect_usage_error({"workspace", "CL_MEM_READ_ONLY"}, [&] { t.use_workspace(read_only.get()); });
+  for (const cl_mem_flags flags : {CL_MEM_HOST_NO_ACCESS, CL_MEM_HOST_READ_ONLY, CL_MEM_WRITE_ONLY}) {
+    const Memory closed = embedder().make_buffer(1 << 20, flags);
+    expect_usage_error({"workspace", "CL_MEM_HOST_"}, [&] { t.use_workspace(closed.get()); });
+  }
   const Memory whole = embedder().make_buffer(1 << 20);
   const cl_buffer_region region{0, 1 << 19};
   cl_int code = CL_SUCCESS;
@@ -688,10 +766,40 @@ TEST(SmallLocator, BadUseIsAnError) {
     DeviceBuffer results;
     device_locator.interpolate(small.get(), points_in(memory, 30), results, on_own());
   });
+  // One buffer for queries and answers.
+  DeviceBuffer shared(memory.get());
+  expect_usage_error({"two things"}, [&] { device_locator.locate(points_in(memory, 30), shared, on_own()); });
+  dual.cells = dual.circumcentres = DeviceBuffer(embedder().make_buffer(1 << 14).get());
+  expect_usage_error({"two things"},
+                     [&] { embedded().voronoi(points_in(memory, 30), on_device, dual, on_own()); });
+  const DeviceTriangulation moved = std::move(on_device);
+  DeviceVoronoi other;
+  expect_usage_error({"offsets", "moved"},
+                     [&] { embedded().voronoi(points_in(memory, 30), on_device, other, on_own()); });
+  EXPECT_EQ(moved.points, 30u);
   Embedder stranger(embedder().device());
   Enqueue foreign;
   foreign.queue = stranger.queue();
   expect_usage_error({"queue"}, [&] { device_locator.locate(points_in(memory, 30), result, foreign); });
+}
+
+// Of a set with a tree, whose starts are found by representatives.
+TEST(SmallLocator, WrongArraysAreAnError) {
+  const std::size_t n = 2000;
+  const Coordinates points = make_fixture("uniform", n, 5);
+  const Triangulation right = expected_of(points, {0, n});
+  for (const std::int32_t wrong : {-5, 2000, 2000000000}) {
+    Triangulation mesh = right;
+    std::fill(mesh.representatives.begin(), mesh.representatives.end(), wrong);
+    expect_error(ErrorKind::input, {"representative 0"},
+                 [&] { Locator(triangulator(), points.data(), n, mesh); });
+    mesh = right;
+    std::fill(mesh.neighbors.begin(), mesh.neighbors.end(), wrong);
+    expect_error(ErrorKind::input, {"triangle 0"}, [&] { Locator(triangulator(), points.data(), n, mesh); });
+    mesh = right;
+    mesh.triangles[4] = wrong;
+    expect_error(ErrorKind::input, {"triangle "}, [&] { Locator(triangulator(), points.data(), n, mesh); });
+  }
 }
 
 TEST(SmallVoronoi, OfTheHostAndOfTheDevice) {
@@ -830,6 +938,12 @@ TEST(SmallEmbeddingMisuse, Queues) {
   enqueue.wait_for = {foreign};
   refused({"event", "another context"});
   clReleaseEvent(foreign);
+  const cl_event failed = clCreateUserEvent(embedder().context(), &code);
+  check(code, "clCreateUserEvent");
+  clSetUserEventStatus(failed, -5);
+  enqueue.wait_for = {failed};
+  refused({"event", "has failed", "CL_OUT_OF_RESOURCES"});
+  clReleaseEvent(failed);
   // A queue that its owner has given up.
   Queue queue = embedder().make_queue();
   enqueue = on(queue);
@@ -876,6 +990,11 @@ TEST(SmallEmbeddingMisuse, PointsThatAreNotFiniteAreNamed) {
   expect_error(ErrorKind::input, {"point 10 is not finite"},
                [&] { embedded().triangulate(points, result, kAll, enqueue); });
   EXPECT_EQ(done, nullptr);
+  const Memory closed = embedder().make_buffer(320, CL_MEM_HOST_NO_ACCESS);
+  check(clEnqueueCopyBuffer(embedder().queue(), memory.get(), closed.get(), 0, 0, 320, 0, nullptr, nullptr),
+        "copy");
+  expect_error(ErrorKind::input, {"point 13 is not finite"},
+               [&] { embedded().triangulate(points_in(closed, 20), result, kAll, on_own()); });
   points.count = 10;
   embedded().triangulate(points, result, kAll, on_own());
 }
@@ -910,6 +1029,10 @@ TEST(SmallEmbeddingMisuse, FailuresOfOpenclAreNamed) {
     EXPECT_EQ(error.code(), CL_MEM_OBJECT_ALLOCATION_FAILURE);
     EXPECT_EQ(error.call(), "clCreateBuffer");
     EXPECT_NE(std::string(error.what()).find("CL_MEM_OBJECT_ALLOCATION_FAILURE"), std::string::npos);
+    Error first(error);
+    const Error second(std::move(first));
+    EXPECT_EQ(first.call(), "clCreateBuffer");
+    EXPECT_EQ(second.call(), "clCreateBuffer");
   }
   opencl_calls().buffer_failure = CL_SUCCESS;
   fresh.triangulate(points_in(memory, 20), result, kAll, on_own());

@@ -17,8 +17,14 @@ from flaunay._triangulation import triangulate
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
 
-# Two threads that ask at the same time should not both make a locator.
-_locator_lock = threading.Lock()
+
+def _check_points(indices: Indices, n: int, name: str) -> None:
+    """UsageError unless there are n, each the index of one of n points."""
+    if indices.shape != (n,):
+        raise UsageError(f"{name} must have the shape ({n},), not {indices.shape}")
+    wrong = np.flatnonzero((indices < 0) | (indices >= n))
+    if wrong.size:
+        raise UsageError(f"{name} were changed: {indices[wrong[0]]} is none of the {n} points")
 
 
 def _as_queries(xi: npt.ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
@@ -92,6 +98,8 @@ class Delaunay:
         self.points: FloatArray = as_points(points).copy()
         self._device = device
         self._locator_or_none: Optional[_flaunay.Locator] = None
+        # Two threads that ask at the same time should not both make a locator.
+        self._locator_lock = threading.Lock()
         mesh = triangulate(self.points, device=device)
         assert mesh.neighbors is not None
         self.simplices: Indices = mesh.triangles
@@ -137,6 +145,7 @@ class Delaunay:
         In each row the point, a simplex that has the equal point (-1 if none has), and the equal
         point. SciPy lists these points likewise, and can list further ones, which it lost.
         """
+        _check_points(self.representatives, self.npoints, "representatives")
         points = np.flatnonzero(self.representatives != np.arange(self.npoints))
         equal = self.representatives[points]
         simplices = _flaunay.first_triangles(self.simplices, self.npoints)[equal]
@@ -150,6 +159,7 @@ class Delaunay:
         Of several the one of the smallest index. For a point that another represents, the other's; -1
         if there are no simplices.
         """
+        _check_points(self.representatives, self.npoints, "representatives")
         return _flaunay.first_triangles(self.simplices, self.npoints)[self.representatives]
 
     @cached_property
@@ -164,7 +174,9 @@ class Delaunay:
     @property
     def _locator(self) -> _flaunay.Locator:
         _triangulators.check_process()
-        with _locator_lock:
+        if self._locator_or_none is not None:
+            return self._locator_or_none
+        with self._locator_lock:
             if self._locator_or_none is None:
                 self._locator_or_none = _flaunay.Locator(
                     _triangulators.of_device(self._device),
@@ -177,8 +189,14 @@ class Delaunay:
             return self._locator_or_none
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is in device memory is made again where it is needed.
-        return {**self.__dict__, "_locator_or_none": None}
+        # What is in device memory is made again where it is needed; a lock is the object's own.
+        state = {**self.__dict__, "_locator_or_none": None}
+        del state["_locator_lock"]
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._locator_lock = threading.Lock()
 
     def find_simplex(self, xi: npt.ArrayLike) -> Indices:
         """The simplices that points lie in, exactly.

@@ -50,6 +50,7 @@ def of_device(device: Optional[str]) -> _flaunay.Triangulator:
         raise TypeError(f"device must be a string or None, not {type(device).__name__}")
     check_process()
     name = device or os.environ.get("FLAUNAY_DEVICE", "")
+    dropped: list[_flaunay.Triangulator] = []
     with _lock:
         found = _by_name.get(name)
         if found is None:
@@ -58,6 +59,7 @@ def of_device(device: Optional[str]) -> _flaunay.Triangulator:
             # A device has more than one name; what it holds, it should hold once.
             for other in _by_name.values():
                 if other.device == found.device:
+                    dropped.append(found)
                     found = other
                     break
             _by_name[name] = found
@@ -68,13 +70,15 @@ def of_queue(queue: pyopencl.CommandQueue) -> _flaunay.Triangulator:
     """The triangulator in a queue's context."""
     check_process()
     handles = (queue.context.int_ptr, queue.device.int_ptr)
+    # Its end waits for queues of the caller, so that it must not come under the lock.
+    dropped: list[_flaunay.Triangulator] = []
     with _lock:
         found = _by_handles.get(handles)
         if found is None:
             found = _flaunay.Triangulator.from_handles(*handles)
             _by_handles[handles] = found
             if len(_by_handles) > _MOST_CONTEXTS:
-                _by_handles.popitem(last=False)
+                dropped.append(_by_handles.popitem(last=False)[1])
         _by_handles.move_to_end(handles)
         return found
 

@@ -26,23 +26,26 @@ class SharedTriangulator {
  public:
   explicit SharedTriangulator(const std::string& device);
   SharedTriangulator(cl_context context, cl_device_id device);
+  /// Waits for queues of the caller, without the interpreter's lock: what they wait for may be a thread's.
   ~SharedTriangulator();
+  SharedTriangulator(const SharedTriangulator&) = delete;
+  SharedTriangulator& operator=(const SharedTriangulator&) = delete;
 
   /// work(triangulator); it must touch no Python object.
   template <typename Work>
   auto run(const Work& work) {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return work(triangulator_);
+    return work(*triangulator_);
   }
 
   /// Those that never change need no turn.
-  std::uintptr_t context() const { return reinterpret_cast<std::uintptr_t>(triangulator_.context()); }
-  std::uintptr_t device() const { return reinterpret_cast<std::uintptr_t>(triangulator_.device_id()); }
-  std::uintptr_t queue() const { return reinterpret_cast<std::uintptr_t>(triangulator_.queue()); }
+  std::uintptr_t context() const { return reinterpret_cast<std::uintptr_t>(triangulator_->context()); }
+  std::uintptr_t device() const { return reinterpret_cast<std::uintptr_t>(triangulator_->device_id()); }
+  std::uintptr_t queue() const { return reinterpret_cast<std::uintptr_t>(triangulator_->queue()); }
 
  private:
-  Triangulator triangulator_;
+  std::optional<Triangulator> triangulator_;
   std::mutex mutex_;
 };
 
@@ -86,6 +89,14 @@ std::vector<std::size_t> to_offsets(const std::optional<Offsets>& offsets, std::
 
 /// Throws Error(usage) unless the array has two dimensions, the second of size 2.
 std::size_t count_points(const py::array& points);
+
+/// Users can change arrays in place, at any time: what is checked must be a copy of their indices.
+std::vector<std::int32_t> copy_of(const Indices& array);
+
+/// Throws Error(usage), which names the array, if an index is not in lowest to n - 1. Needs no lock of the
+/// interpreter. what: that of which there are n.
+void check_indices(const std::vector<std::int32_t>& indices, std::int32_t lowest, std::size_t n,
+                   const char* name, const char* what);
 
 py::dict to_dict(const Statistics& statistics);
 

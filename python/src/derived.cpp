@@ -6,12 +6,8 @@
 namespace flaunay::python {
 namespace {
 
-std::vector<std::int32_t> copy_of(const Indices& array) {
-  return {array.data(), array.data() + array.size()};
-}
-
-Triangulation to_triangulation(const Indices& triangles, const Indices& neighbors, const Indices& hull,
-                               const Indices& representatives) {
+Triangulation to_triangulation(std::size_t n, const Indices& triangles, const Indices& neighbors,
+                               const Indices& hull, const Indices& representatives) {
   Triangulation result;
   result.triangles = copy_of(triangles);
   result.neighbors = copy_of(neighbors);
@@ -19,6 +15,11 @@ Triangulation to_triangulation(const Indices& triangles, const Indices& neighbor
   result.representatives = copy_of(representatives);
   result.triangle_offsets = {0, result.triangles.size() / 3};
   result.hull_offsets = {0, result.hull.size()};
+  const py::gil_scoped_release release;
+  check_indices(result.triangles, 0, n, "simplices", "points");
+  check_indices(result.neighbors, -1, result.triangles.size() / 3, "neighbors", "simplices");
+  check_indices(result.hull, 0, n, "hull", "points");
+  check_indices(result.representatives, 0, n, "representatives", "points");
   return result;
 }
 
@@ -26,7 +27,7 @@ py::tuple voronoi(SharedTriangulator& shared, const Points64& points, const Indi
                   const Indices& neighbors, const Indices& hull, const Indices& representatives) {
   const std::size_t n = count_points(points);
   const double* const coordinates = points.data();
-  const Triangulation triangulation = to_triangulation(triangles, neighbors, hull, representatives);
+  const Triangulation triangulation = to_triangulation(n, triangles, neighbors, hull, representatives);
   Voronoi result = shared.run(
       [&](Triangulator& triangulator) { return triangulator.voronoi(coordinates, n, triangulation); });
   return py::make_tuple(to_rows(std::move(result.circumcentres), 2), to_array(std::move(result.cell_offsets)),
@@ -45,10 +46,10 @@ class SharedLocator {
  public:
   SharedLocator(std::shared_ptr<SharedTriangulator> shared, const Points64& points, const Indices& triangles,
                 const Indices& neighbors, const Indices& hull, const Indices& representatives)
-      : shared_(std::move(shared)) {
-    const std::size_t n = count_points(points);
+      : shared_(std::move(shared)), point_count_(count_points(points)) {
+    const std::size_t n = point_count_;
     const double* const coordinates = points.data();
-    const Triangulation triangulation = to_triangulation(triangles, neighbors, hull, representatives);
+    const Triangulation triangulation = to_triangulation(n, triangles, neighbors, hull, representatives);
     shared_->run(
         [&](Triangulator& triangulator) { locator_.emplace(triangulator, coordinates, n, triangulation); });
   }
@@ -68,6 +69,11 @@ class SharedLocator {
 
   /// values: one for each point.
   py::array_t<double> interpolate(const Points64& values, const Points64& queries) {
+    if (static_cast<std::size_t>(values.size()) != point_count_) {
+      throw Error(ErrorKind::usage, "points were changed: there are " + std::to_string(values.size()) +
+                                        " values for the " + std::to_string(point_count_) +
+                                        " of the triangulation");
+    }
     const double* const given = values.data();
     return answers(queries,
                    [&](const double* at, std::size_t m) { return locator_->interpolate(given, at, m); });
@@ -75,6 +81,7 @@ class SharedLocator {
 
  private:
   std::shared_ptr<SharedTriangulator> shared_;
+  std::size_t point_count_;
   std::optional<Locator> locator_;
 };
 

@@ -65,16 +65,26 @@ py::dict triangulate_without_device(const Points64& points, const std::optional<
   return arrays_of(std::move(triangulation), options);
 }
 
+std::vector<std::int32_t> corners_of(const Indices& triangles) {
+  if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
+    throw Error(ErrorKind::usage, "simplices must have the shape (nsimplex, 3)");
+  }
+  return copy_of(triangles);
+}
+
 // For each point its neighbours in the mesh, in increasing order: those of point i are
 // indices[starts[i]] to indices[starts[i + 1]].
 py::tuple vertex_neighbors(const Indices& triangles, const Indices& hull, std::size_t n) {
-  const std::int32_t* const corners = triangles.data();
-  const std::int32_t* const ring = hull.data();
-  const auto corner_count = static_cast<std::size_t>(triangles.size());
-  const std::size_t ring_size = corner_count == 0 ? 0 : static_cast<std::size_t>(hull.size());
-  std::vector<std::int32_t> starts(n + 1), neighbors(corner_count + ring_size);
+  const std::vector<std::int32_t> corners = corners_of(triangles), ring = copy_of(hull);
+  std::vector<std::int32_t> starts, neighbors;
   {
     const py::gil_scoped_release release;
+    check_indices(corners, 0, n, "simplices", "points");
+    check_indices(ring, 0, n, "hull", "points");
+    const std::size_t corner_count = corners.size();
+    const std::size_t ring_size = corner_count == 0 ? 0 : ring.size();
+    starts.resize(n + 1);
+    neighbors.resize(corner_count + ring_size);
     // Each edge from each of its ends: a triangle has its edges one way round, and what has no triangle
     // beyond is on the hull.
     const auto for_each_edge = [&](const auto& visit) {
@@ -96,9 +106,12 @@ py::tuple vertex_neighbors(const Indices& triangles, const Indices& hull, std::s
 
 // For each point the first triangle that has it, -1 where there is none.
 py::array_t<std::int32_t> first_triangles(const Indices& triangles, std::size_t n) {
+  const std::vector<std::int32_t> corners = corners_of(triangles);
   std::vector<std::int32_t> first(n, -1);
-  for (py::ssize_t i = triangles.size(); i-- > 0;) {
-    first[triangles.data()[i]] = static_cast<std::int32_t>(i / 3);
+  {
+    const py::gil_scoped_release release;
+    check_indices(corners, 0, n, "simplices", "points");
+    for (std::size_t i = corners.size(); i-- > 0;) first[corners[i]] = static_cast<std::int32_t>(i / 3);
   }
   return to_array(std::move(first));
 }

@@ -58,10 +58,13 @@ py::list devices() {
 
 }  // namespace
 
-SharedTriangulator::SharedTriangulator(const std::string& device) : triangulator_(device) {}
+SharedTriangulator::SharedTriangulator(const std::string& device) : triangulator_(std::in_place, device) {}
 SharedTriangulator::SharedTriangulator(cl_context context, cl_device_id device)
-    : triangulator_(context, device) {}
-SharedTriangulator::~SharedTriangulator() = default;
+    : triangulator_(std::in_place, context, device) {}
+SharedTriangulator::~SharedTriangulator() {
+  const py::gil_scoped_release release;
+  triangulator_.reset();
+}
 
 std::vector<std::size_t> to_offsets(const std::optional<Offsets>& offsets, std::size_t n) {
   if (!offsets) return {0, n};
@@ -84,6 +87,20 @@ std::size_t count_points(const py::array& points) {
     throw Error(ErrorKind::usage, "points must be an array of shape (n, 2)");
   }
   return static_cast<std::size_t>(points.shape(0));
+}
+
+std::vector<std::int32_t> copy_of(const Indices& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+void check_indices(const std::vector<std::int32_t>& indices, std::int32_t lowest, std::size_t n,
+                   const char* name, const char* what) {
+  for (const std::int32_t index : indices) {
+    if (index < lowest || index >= static_cast<std::int64_t>(n)) {
+      throw Error(ErrorKind::usage, std::string(name) + " were changed: " + std::to_string(index) +
+                                        " is none of the " + std::to_string(n) + " " + what);
+    }
+  }
 }
 
 py::dict to_dict(const Statistics& statistics) {

@@ -191,3 +191,42 @@ def test_what_scipy_takes_and_this_does_not():
     for name in "furthest_site", "incremental", "qhull_options":
         with pytest.raises(TypeError):
             flaunay.Delaunay(FOUR, **{name: None})
+
+
+@pytest.mark.parametrize("index", [-1, 100, 10**9, -(2**31)])
+@pytest.mark.parametrize(
+    "name, attributes",
+    [
+        ("simplices", ["vertex_neighbor_vertices", "vertex_to_simplex", "coplanar"]),
+        ("hull", ["vertex_neighbor_vertices"]),
+        ("representatives", ["vertex_to_simplex", "coplanar"]),
+    ],
+)
+def test_indices_that_were_changed_to_no_point(random, name, attributes, index):
+    tri = flaunay.Delaunay(random.random((100, 2)))
+    for place in slice(None), -1:
+        getattr(tri, name)[place] = index
+        for attribute in attributes:
+            with pytest.raises(flaunay.UsageError, match=f"{name} .*{index} is none of the 100"):
+                getattr(tri, attribute)
+
+
+def test_indices_that_were_changed_to_other_points(random):
+    tri = flaunay.Delaunay(random.random((100, 2)))
+    for name in "simplices", "hull", "representatives":
+        getattr(tri, name)[:] = 99
+    starts, indices = tri.vertex_neighbor_vertices
+    assert starts[99] == 0 and starts[100] == len(indices) and (indices == 99).all()
+    assert (tri.vertex_to_simplex == 0).all()
+
+
+def test_arrays_of_another_shape(random):
+    tri = flaunay.Delaunay(random.random((100, 2)))
+    tri.simplices, simplices = tri.simplices.ravel()[:-1], tri.simplices
+    for attribute in "vertex_neighbor_vertices", "vertex_to_simplex", "coplanar":
+        with pytest.raises(flaunay.UsageError, match="simplices must have the shape"):
+            getattr(tri, attribute)
+    tri.simplices, tri.representatives = simplices, tri.representatives[:-1]
+    for attribute in "vertex_to_simplex", "coplanar":
+        with pytest.raises(flaunay.UsageError, match="representatives must have the shape"):
+            getattr(tri, attribute)

@@ -1,6 +1,8 @@
 """flaunay.triangulate_device: from pyopencl arrays to pyopencl arrays."""
 
 import gc
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -293,3 +295,47 @@ def test_threads_with_queues_of_their_own(random, context):
     with ThreadPoolExecutor(2) as pool:
         for points, result in zip(inputs, pool.map(work, inputs)):
             assert np.array_equal(result.triangles, flaunay.triangulate(points).triangles)
+
+
+def test_a_context_is_forgotten_while_its_queue_waits_for_a_thread():
+    # In a process of its own, since a deadlock would not end.
+    program = """if True:
+        import threading
+
+        import numpy as np
+        import pyopencl as cl
+        import pyopencl.array
+
+        import flaunay
+        from flaunay import _triangulators
+
+        points = np.array([[0, 0], [4, 0], [0, 4.0]])
+
+
+        def triangulate():
+            queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+            array = cl.array.to_device(queue, points)
+            result = flaunay.triangulate_device(array)
+            assert result.triangles.get().tolist() == [[0, 1, 2]]
+            return queue, array
+
+
+        queue, array = triangulate()
+        others = [triangulate() for _ in range(_triangulators._MOST_CONTEXTS - 1)]
+        gate = cl.UserEvent(queue.context)
+        cl.enqueue_marker(queue, wait_for=[gate])
+        queue.flush()
+
+
+        def open_gate():
+            # Neither the interpreter's lock nor that of the triangulators may be held.
+            flaunay.triangulate_device(others[-1][1])
+            gate.set_status(cl.command_execution_status.COMPLETE)
+
+
+        threading.Timer(1, open_gate).start()
+        triangulate()
+        assert len(_triangulators._by_handles) == _triangulators._MOST_CONTEXTS
+        queue.finish()
+    """
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)

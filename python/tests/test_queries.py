@@ -1,5 +1,6 @@
 """Queries in a triangulation, beside SciPy's and beside brute force."""
 
+import copy
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 
@@ -137,10 +138,34 @@ def test_another_number_of_values_than_of_points(points, values):
         flaunay.Delaunay(points).interpolate(values, [0, 0])
 
 
-def test_queries_after_pickling(points, queries):
+@pytest.mark.parametrize(
+    "copied", [lambda tri: pickle.loads(pickle.dumps(tri)), copy.copy, copy.deepcopy]
+)
+def test_queries_after_pickling_and_copying(points, queries, copied):
     tri = flaunay.Delaunay(points)
+    before = copied(tri)
     expected = tri.find_simplex(queries)
-    assert np.array_equal(pickle.loads(pickle.dumps(tri)).find_simplex(queries), expected)
+    for other in before, copied(tri), copied(copied(tri)):
+        assert np.array_equal(other.find_simplex(queries), expected)
+        assert other._locator_lock is not tri._locator_lock
+
+
+@pytest.mark.parametrize("index", [-2, 800, 10**9, -(2**31), 2**31 - 1])
+@pytest.mark.parametrize("name", ["simplices", "neighbors", "hull", "representatives"])
+def test_queries_where_indices_were_changed(points, queries, name, index):
+    tri = flaunay.Delaunay(points)
+    getattr(tri, name)[:] = index
+    for ask in tri.find_simplex, tri.nearest, lambda xi: tri.interpolate(points[:, 0], xi):
+        with pytest.raises(flaunay.UsageError, match=f"{name} .*{index} is none of the"):
+            ask(queries)
+
+
+def test_interpolation_where_points_were_replaced(points, queries):
+    tri = flaunay.Delaunay(points)
+    tri.nearest(queries)
+    tri.points = points[:10]
+    with pytest.raises(flaunay.UsageError, match="10 values for the 400"):
+        tri.interpolate(np.ones(10), queries)
 
 
 def test_queries_from_two_threads(points, queries):

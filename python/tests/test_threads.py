@@ -66,3 +66,54 @@ def test_another_thread_counts_meanwhile(random):
         if pauses[-1] < 0.5:
             return
     raise AssertionError(pauses)
+
+
+def test_a_locator_is_made_while_another_is(random, monkeypatch):
+    from flaunay import _flaunay
+
+    make = _flaunay.Locator
+    begun, other_is_done = threading.Event(), threading.Event()
+
+    def wait_with_the_large_one(triangulator, points, *mesh):
+        if len(points) == 1000:
+            begun.set()
+            assert other_is_done.wait(60)
+        return make(triangulator, points, *mesh)
+
+    monkeypatch.setattr(_flaunay, "Locator", wait_with_the_large_one)
+    large, small = (flaunay.Delaunay(random.random((n, 2))) for n in (1000, 10))
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(large.nearest, large.points)
+        assert begun.wait(60)
+        second = pool.submit(small.nearest, small.points)
+        try:
+            assert np.array_equal(second.result(30), np.arange(10))
+        finally:
+            other_is_done.set()
+        assert np.array_equal(first.result(60), np.arange(1000))
+
+
+def test_two_threads_make_one_locator(random, monkeypatch):
+    from flaunay import _flaunay
+
+    make = _flaunay.Locator
+    made = []
+
+    def make_slowly(*arguments):
+        made.append(arguments)
+        time.sleep(0.2)
+        return make(*arguments)
+
+    monkeypatch.setattr(_flaunay, "Locator", make_slowly)
+    tri = flaunay.Delaunay(random.random((100, 2)))
+    with ThreadPoolExecutor(2) as pool:
+        for found in pool.map(tri.nearest, [tri.points] * 2):
+            assert np.array_equal(found, np.arange(100))
+    assert len(made) == 1
+
+
+def test_queries_take_no_lock_once_there_is_a_locator(random):
+    tri = flaunay.Delaunay(random.random((100, 2)))
+    tri.nearest(tri.points)
+    with ThreadPoolExecutor(1) as pool, tri._locator_lock:
+        assert np.array_equal(pool.submit(tri.nearest, tri.points).result(30), np.arange(100))

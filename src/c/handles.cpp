@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "embedding/handles.hpp"
 #include "input/magnitudes.hpp"
 
 namespace flaunay::c {
@@ -13,7 +14,7 @@ namespace {
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
 // Before memory is asked for.
-constexpr std::size_t kMostSets = std::size_t{1} << 40;
+using embedding::kMostCountable;
 
 template <typename Struct>
 void check_reserved(const Struct& given, const char* name) {
@@ -185,7 +186,7 @@ unsigned to_bits(const Parts& parts) {
 
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n) {
   if (offsets == nullptr) return {0, n};
-  if (sets > kMostSets) throw_usage("too many sets");
+  if (sets > kMostCountable) throw_usage("too many sets");
   std::vector<std::size_t> result(offsets, offsets + sets + 1);
   check_offsets(result, n);
   return result;

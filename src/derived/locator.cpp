@@ -76,8 +76,9 @@ void make_trees(host::Runtime& runtime, Arena& own, const Mesh& mesh,
   if (cut.empty()) return;
   const hybrid::CutTrees::Samples samples = trees.draw(mesh.coordinates);
   const auto by_leaf = trees.cut(samples.points, locator.nodes);
-  runtime.map("locate", "start_triangles", trees.samples(), static_cast<cl_int>(mesh.triangle_count() - 1),
-              by_leaf, samples.indices, mesh.representatives, incident, locator.starts);
+  runtime.map("locate", "start_triangles", trees.samples(), static_cast<cl_int>(mesh.points()),
+              static_cast<cl_int>(mesh.triangle_count() - 1), by_leaf, samples.indices, mesh.representatives,
+              incident, locator.starts);
 }
 
 // What is wrong with the indices: the first place of each kind, or none.
@@ -132,13 +133,30 @@ void fill_hull(host::Runtime& runtime, const Mesh& mesh, const std::array<double
               locator.hull_points, locator.hull, faults);
 }
 
-// What a pass over queries needs beside its own arrays.
+// What passes over queries need beside their own arrays.
 struct Pass {
   QueryScaling scaling;
   std::array<double, 3> powers;
   cl_int sets;
   Buffer<cl_int> query_offsets;  // not read of one set
+  bool are_placed;               // by now; else the first pass does it
+  Buffer<cl_ulong> keys;         // the leaves of placed queries
+  Buffer<cl_int> order;          // the query at a place
+  Buffer<cl_double2> placed;     // scaled
 };
+
+// By leaves, which are near each other in memory as in the plane.
+void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries,
+                  std::size_t m, Pass& pass) {
+  pass.keys = runtime.arena().allocate<cl_ulong>(m);
+  pass.order = runtime.arena().allocate<cl_int>(m);
+  runtime.chunks("locate", "find_query_leaves", m, runtime.tuning().chunk(m), pass.sets, pass.query_offsets,
+                 locator.records, locator.nodes, queries, pass.keys, pass.order);
+  host::sort_by_key(runtime, pass.keys, pass.order, m);
+  pass.placed = runtime.arena().allocate<cl_double2>(m);
+  runtime.map("locate", "place_queries", m, pass.order, queries, pass.powers[0], pass.powers[1],
+              pass.powers[2], pass.placed);
+}
 
 Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
              const std::vector<std::size_t>& query_offsets) {
@@ -157,15 +175,26 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
   if (locator.sets > 1) {
     runtime.write_kept(pass.query_offsets, integers(query_offsets));
   }
+  const bool has_trees = locator.starts.size() > 0;
+  pass.are_placed = has_trees && m >= runtime.tuning().sorted_queries_least;
+  if (pass.are_placed) {
+    sort_queries(runtime, locator, queries, m, pass);
+  } else {
+    pass.keys = runtime.arena().allocate<cl_ulong>(0);
+    pass.order = runtime.arena().allocate<cl_int>(m);
+    pass.placed = runtime.arena().allocate<cl_double2>(m);
+  }
   return pass;
 }
 
-void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& pass, bool keep_outside,
+// is_answer: see the kernel.
+void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& pass, bool is_answer,
                     const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found) {
-  runtime.chunks("locate", "find_triangles", m, runtime.tuning().chunk(m), pass.sets, cl_int{keep_outside},
-                 pass.query_offsets, locator.records, locator.nodes, locator.starts, queries, pass.powers[0],
-                 pass.powers[1], pass.powers[2], pass.scaling.orient_bound, pass.scaling.unit, locator.points,
-                 locator.faces, locator.first_triangle, found);
+  runtime.chunks("locate", "find_triangles", m, runtime.tuning().chunk(m), pass.sets, cl_int{pass.are_placed},
+                 cl_int{is_answer}, pass.query_offsets, locator.records, locator.nodes, locator.starts,
+                 queries, pass.powers[0], pass.powers[1], pass.powers[2], pass.keys, pass.order, pass.placed,
+                 pass.scaling.orient_bound, pass.scaling.unit, locator.points, locator.faces,
+                 locator.first_triangle, found);
 }
 
 }  // namespace
@@ -212,7 +241,7 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
   Arena::Scope scope(runtime.arena());
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
-  find_triangles(runtime, locator, pass, false, queries, m, triangles);
+  find_triangles(runtime, locator, pass, true, queries, m, triangles);
 }
 
 void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
@@ -220,11 +249,10 @@ void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
   Arena::Scope scope(runtime.arena());
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, true, queries, m, found);
-  runtime.map("locate", "nearest_points", m, pass.sets, pass.query_offsets, locator.records, queries,
-              pass.powers[0], pass.powers[1], pass.powers[2], pass.scaling.nearness_bound, pass.scaling.unit,
-              locator.points, locator.source, locator.clearances, locator.faces, locator.hull_points,
-              locator.hull, found, points);
+  find_triangles(runtime, locator, pass, false, queries, m, found);
+  runtime.map("locate", "nearest_points", m, pass.sets, pass.query_offsets, locator.records, pass.order,
+              pass.placed, pass.scaling.nearness_bound, pass.scaling.unit, locator.points, locator.source,
+              locator.clearances, locator.faces, locator.hull_points, locator.hull, found, points);
 }
 
 void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
@@ -234,9 +262,8 @@ void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, queries, m, found);
-  runtime.map("locate", "interpolate_queries", m, queries, pass.powers[0], pass.powers[1], pass.powers[2],
-              pass.scaling.orient_bound, pass.scaling.unit, locator.points, locator.source, locator.faces,
-              found, values, results);
+  runtime.map("locate", "interpolate_queries", m, pass.order, pass.placed, pass.scaling.orient_bound,
+              pass.scaling.unit, locator.points, locator.source, locator.faces, found, values, results);
 }
 
 }  // namespace flaunay::derived

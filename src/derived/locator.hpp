@@ -38,8 +38,10 @@ struct Locator {
 Locator make_locator(host::Runtime& runtime, Arena& own, const Mesh& mesh);
 
 // Queries: m points, x0 y0 x1 y1 ..., aligned as elements only; those of set s are [query_offsets[s],
-// query_offsets[s + 1]). Each call waits 2 or 3 times, to see that all are finite and not too fine nor too
-// far beside the points (else Error(input) that names one), and enqueues the rest. Temporary: 4 m bytes.
+// query_offsets[s + 1]). Each call waits 2 times, or 3 if queries are sorted, to see that all are finite and
+// not too fine nor too far beside the points (else Error(input) that names one), and enqueues the rest. Many
+// queries are answered in the order of the trees' leaves, which takes one wait more. Temporary: 24 m bytes,
+// 32 m of many queries.
 
 /// For each query the triangle that it lies in, the smallest of several; -1 outside of the hull.
 void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,

@@ -1,6 +1,7 @@
 // The public side of what is derived from a triangulation: the dual, and the answers to queries.
 #include <fmt/format.h>
 
+#include <limits>
 #include <utility>
 
 #include "derived/locator.hpp"
@@ -69,6 +70,10 @@ derived::Mesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
   const auto input = [&](const DeviceBuffer& buffer, std::size_t count, const char* what) {
     return embedding::input_buffer<cl_int>(runtime, buffer, count, what);
   };
+  const std::size_t sets = triangulation.point_offsets.size();
+  expect(sets > 0 && triangulation.triangle_offsets.size() == sets &&
+             triangulation.hull_offsets.size() == sets && triangulation.point_offsets.back() == points.count,
+         "the triangulation's offsets do not fit: was it moved from?");
   derived::Mesh mesh;
   mesh.point_offsets = triangulation.point_offsets;
   mesh.triangle_offsets = triangulation.triangle_offsets;
@@ -97,6 +102,7 @@ class HostCall {
 
 Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation) {
   return with_errors([&] {
+    implementation_->check_size(n);
     const HostCall call(implementation_->own_memory());
     host::Runtime& runtime = call.runtime;
     Voronoi result;
@@ -138,6 +144,10 @@ void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation
     buffers.cells = embedding::result_buffer<cl_int>(runtime, result.cells, 3 * triangles, "cells", made);
     buffers.unbounded =
         embedding::result_buffer<cl_uchar>(runtime, result.unbounded, points.count, "unbounded cells", made);
+    embedding::check_distinct({mesh.triangles.memory(), mesh.neighbors.memory(), mesh.hull.memory(),
+                               mesh.representatives.memory(), points.memory, buffers.circumcentres.memory(),
+                               buffers.cell_offsets.memory(), buffers.cells.memory(),
+                               buffers.unbounded.memory()});
     derived::voronoi(runtime, mesh, buffers);
     call.end();
   });
@@ -149,6 +159,11 @@ struct Locator::Implementation {
     if (owner->runtime.tuning().separate_buffers) own.separate_buffers();
   }
 
+  // Kernels count with 32-bit integers.
+  static void check_queries(std::size_t m) {
+    expect(m <= std::numeric_limits<std::int32_t>::max() / 2, "more queries than 32-bit indices can count");
+  }
+
   /// Points per query on the host: a work of queries and the buffer of results.
   template <typename Result, typename Work>
   std::vector<Result> answer(const double* queries, const std::vector<std::size_t>& offsets,
@@ -156,6 +171,7 @@ struct Locator::Implementation {
     return with_errors([&] {
       check_offsets(offsets);
       const std::size_t m = offsets.back();
+      check_queries(m);
       expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
       const HostCall call(owner->own_memory());
       host::Runtime& runtime = call.runtime;
@@ -170,17 +186,19 @@ struct Locator::Implementation {
   }
 
   template <typename Result, typename Work>
-  void answer(const DevicePoints& queries, DeviceBuffer& result, const char* what, const Enqueue& enqueue,
-              const Work& work) {
+  void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
+              const Enqueue& enqueue, const Work& work) {
     with_errors([&] {
       host::Runtime& runtime = owner->own_memory();
       embedding::check_enqueue(runtime, enqueue);
       embedding::check_points(runtime, queries, "queries");
       embedding::QueuedCall call(runtime, enqueue);
       Arena::Scope scope(runtime.arena());
+      check_queries(queries.count);
       const std::vector<std::size_t> offsets = embedding::checked_offsets(runtime, queries);
       const auto output =
           embedding::result_buffer<Result>(runtime, result, queries.count, what, owner->buffer_allocations);
+      embedding::check_distinct({queries.memory, queries.device_offsets, values, result.memory()});
       work(runtime, embedding::wide_points(runtime, runtime.arena(), queries), queries.count, offsets,
            output);
       call.end();
@@ -193,14 +211,19 @@ struct Locator::Implementation {
   std::size_t points = 0;
 };
 
+std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator) {
+  return with_errors([&] { return std::make_unique<Implementation>(triangulator.implementation_); });
+}
+
 Locator::Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
                  const Triangulation& triangulation)
     : Locator(triangulator, coordinates, std::vector<std::size_t>{0, n}, triangulation) {}
 
 Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
-    : implementation_(std::make_unique<Implementation>(triangulator.implementation_)) {
+    : implementation_(make(triangulator)) {
   with_errors([&] {
+    implementation_->owner->check_size(offsets.empty() ? 0 : offsets.back());
     const HostCall call(implementation_->owner->own_memory());
     const host::Runtime::Settled settled(call.runtime);
     const derived::Mesh mesh = mesh_of(call.runtime, coordinates, offsets, triangulation);
@@ -212,7 +235,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
 
 Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
                  const DeviceTriangulation& triangulation, const Enqueue& enqueue)
-    : implementation_(std::make_unique<Implementation>(triangulator.implementation_)) {
+    : implementation_(make(triangulator)) {
   with_errors([&] {
     host::Runtime& runtime = implementation_->owner->own_memory();
     embedding::check_enqueue(runtime, enqueue);
@@ -242,7 +265,7 @@ std::vector<std::int32_t> Locator::locate(const double* queries, const std::vect
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
   implementation_->answer<cl_int>(
-      queries, triangles, "located triangles", enqueue,
+      queries, nullptr, triangles, "located triangles", enqueue,
       [&](auto& runtime, const auto&... all) { derived::locate(runtime, implementation_->locator, all...); });
 }
 
@@ -257,7 +280,7 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vec
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
-  implementation_->answer<cl_int>(queries, points, "nearest points", enqueue,
+  implementation_->answer<cl_int>(queries, nullptr, points, "nearest points", enqueue,
                                   [&](auto& runtime, const auto&... all) {
                                     derived::nearest(runtime, implementation_->locator, all...);
                                   });
@@ -280,7 +303,7 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
                           const Enqueue& enqueue) {
   const std::size_t n = implementation_->points;
   implementation_->answer<cl_double>(
-      queries, results, "interpolated values", enqueue, [&](auto& runtime, const auto&... all) {
+      queries, values, results, "interpolated values", enqueue, [&](auto& runtime, const auto&... all) {
         embedding::check_buffer(runtime, values, n * sizeof(cl_double), embedding::Access::read, "values");
         const Buffer<cl_double> given(values == nullptr ? nullptr : embedding::retained(values), n);
         derived::interpolate(runtime, implementation_->locator, given, all...);

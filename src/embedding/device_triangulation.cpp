@@ -18,7 +18,6 @@ namespace {
 
 // A vertex is the middle one of two triangles at most.
 constexpr std::size_t kMostTrianglesPerPoint = 2;
-constexpr std::size_t kMostSets = std::size_t{1} << 40;
 
 // The results' buffers for n points.
 struct Results {
@@ -42,21 +41,6 @@ Results make_results(host::Runtime& runtime, std::size_t n, const Parts& parts, 
   return results;
 }
 
-// No two of them may be one.
-void check_distinct(const Results& results, cl_mem points, cl_mem workspace) {
-  std::vector<cl_mem> all{points};
-  if (workspace != nullptr) all.push_back(workspace);
-  for (const Buffer<cl_int>* buffer :
-       {&results.mesh.triangles, &results.mesh.neighbors, &results.mesh.halfedges, &results.mesh.hull,
-        &results.representatives}) {
-    if (buffer->memory() != nullptr) all.push_back(buffer->memory());
-  }
-  std::sort(all.begin(), all.end());
-  if (std::adjacent_find(all.begin(), all.end()) != all.end()) {
-    throw Error(ErrorKind::usage, "one buffer is given for two things");
-  }
-}
-
 }  // namespace
 
 host::Runtime& Triangulator::Implementation::own_memory() {
@@ -65,9 +49,14 @@ host::Runtime& Triangulator::Implementation::own_memory() {
   return runtime;
 }
 
-void Triangulator::Implementation::share_workspace(std::size_t n, std::size_t sets) {
-  if (workspace == nullptr) return;
+void Triangulator::Implementation::provide_workspace(std::size_t n, std::size_t sets) {
   const hybrid::WorkspaceBytes needed = hybrid::workspace_bytes(runtime, n, sets);
+  if (workspace == nullptr) {
+    // The most that points can need, so that others of the same number find it there.
+    persistent.reserve(needed.persistent);
+    runtime.arena().reserve(needed.scratch);
+    return;
+  }
   std::size_t size = 0;
   FLAUNAY_CL(clGetMemObjectInfo(workspace.get(), CL_MEM_SIZE, sizeof size, &size, nullptr));
   if (size < needed.persistent + needed.scratch) {
@@ -82,10 +71,10 @@ void Triangulator::Implementation::share_workspace(std::size_t n, std::size_t se
 
 void Triangulator::Implementation::triangulate(const DevicePoints& points, DeviceTriangulation& result,
                                                const Parts& parts, const Enqueue& enqueue) {
+  embedding::check_enqueue(runtime, enqueue);
   if ((parts.neighbors || parts.halfedges) && !parts.triangles) {
     throw Error(ErrorKind::usage, "neighbours and halfedges are computed with triangles only");
   }
-  embedding::check_enqueue(runtime, enqueue);
   embedding::check_points(runtime, points, "points");
   check_size(points.count);
   embedding::QueuedCall call(runtime, enqueue);
@@ -95,8 +84,11 @@ void Triangulator::Implementation::triangulate(const DevicePoints& points, Devic
   const std::size_t n = points.count;
   const std::size_t sets = offsets.size() - 1;
   const Results results = make_results(runtime, n, parts, result, buffer_allocations);
-  check_distinct(results, points.memory, workspace.get());
-  share_workspace(n, sets);
+  embedding::check_distinct({points.memory, points.device_offsets, workspace.get(),
+                             results.mesh.triangles.memory(), results.mesh.neighbors.memory(),
+                             results.mesh.halfedges.memory(), results.mesh.hull.memory(),
+                             results.representatives.memory()});
+  provide_workspace(n, sets);
   Statistics statistics;
   statistics.device = runtime.device().name();
   statistics.points = n;
@@ -108,7 +100,6 @@ void Triangulator::Implementation::triangulate(const DevicePoints& points, Devic
 
   if (n > 0) {
     Arena::Scope scope(persistent), scratch_scope(runtime.arena());
-    persistent.reserve(n * (hybrid::kPersistentBytesPerPoint + sizeof(cl_int)));
     hybrid::Workspace work{runtime, persistent};
     const auto representatives =
         parts.representatives ? results.representatives : persistent.allocate<cl_int>(n);
@@ -144,7 +135,7 @@ std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const
   return with_errors([&] {
     implementation_->check_size(n);
     // Sums of what is more could overflow.
-    if (sets > kMostSets) throw Error(ErrorKind::usage, "too many sets of points");
+    if (sets > embedding::kMostCountable) throw Error(ErrorKind::usage, "too many sets of points");
     const hybrid::WorkspaceBytes needed = hybrid::workspace_bytes(implementation_->runtime, n, sets);
     return needed.persistent + needed.scratch;
   });
@@ -155,7 +146,7 @@ void Triangulator::use_workspace(cl_mem workspace) {
     Implementation& self = *implementation_;
     std::shared_ptr<_cl_mem> lent;
     if (workspace != nullptr) {
-      embedding::check_buffer(self.runtime, workspace, 1, embedding::Access::write, "the workspace");
+      embedding::check_buffer(self.runtime, workspace, 1, embedding::Access::workspace, "the workspace");
       cl_mem parent = nullptr;
       FLAUNAY_CL(clGetMemObjectInfo(workspace, CL_MEM_ASSOCIATED_MEMOBJECT, sizeof parent, &parent, nullptr));
       if (parent != nullptr) {

@@ -78,6 +78,13 @@ void check_event(host::Runtime& runtime, cl_event event) {
   if (context != runtime.context().get()) {
     throw_usage("an event to wait for is of another context than the triangulator");
   }
+  cl_int status = 0;
+  FLAUNAY_CL(clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr));
+  if (status < 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("what an event to wait for stands for has failed: {}", host::error_name(status)),
+                status);
+  }
 }
 
 }  // namespace
@@ -122,6 +129,18 @@ void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Acce
     throw_usage(
         fmt::format("the buffer of {} is too small: it has {} bytes, {} are needed", what, size, bytes));
   }
+  if (access == Access::host && (flags & (CL_MEM_HOST_NO_ACCESS | CL_MEM_HOST_WRITE_ONLY))) {
+    throw_usage(
+        fmt::format("the buffer of {} is not for the host to read, but that is where it is read", what));
+  }
+  if (access == Access::workspace &&
+      (flags & (CL_MEM_HOST_NO_ACCESS | CL_MEM_HOST_READ_ONLY | CL_MEM_HOST_WRITE_ONLY | CL_MEM_WRITE_ONLY |
+                CL_MEM_READ_ONLY))) {
+    throw_usage(
+        fmt::format("{} must be for kernels and for the host to read and write: no CL_MEM_READ_ONLY, "
+                    "CL_MEM_WRITE_ONLY or CL_MEM_HOST_... flags",
+                    what));
+  }
   if (access == Access::write && (flags & CL_MEM_READ_ONLY)) {
     throw_usage(fmt::format("the buffer of {} is CL_MEM_READ_ONLY, but results go there", what));
   }
@@ -136,11 +155,19 @@ void check_enqueue(host::Runtime& runtime, const Enqueue& enqueue) {
   for (const cl_event event : enqueue.wait_for) check_event(runtime, event);
 }
 
+void check_distinct(std::vector<cl_mem> buffers) {
+  buffers.erase(std::remove(buffers.begin(), buffers.end(), nullptr), buffers.end());
+  std::sort(buffers.begin(), buffers.end());
+  if (std::adjacent_find(buffers.begin(), buffers.end()) != buffers.end()) {
+    throw_usage("one buffer is given for two things");
+  }
+}
+
 std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoints& points) {
   std::vector<std::size_t> offsets = points.offsets;
   if (points.device_offsets != nullptr) {
     if (!offsets.empty()) throw_usage("offsets of sets are given twice, in host and in device memory");
-    check_buffer(runtime, points.device_offsets, (points.sets + 1) * sizeof(cl_int), Access::read, "offsets");
+    check_buffer(runtime, points.device_offsets, (points.sets + 1) * sizeof(cl_int), Access::host, "offsets");
     std::vector<cl_int> read(points.sets + 1);
     runtime.read(host::Buffer<cl_int>(retained(points.device_offsets), read.size()), 0, read.size(),
                  read.data());
@@ -154,9 +181,9 @@ std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoi
 
 void check_points(host::Runtime& runtime, const DevicePoints& points, const std::string& what) {
   // Before products of these numbers, which could overflow.
-  constexpr std::size_t kMost = std::size_t{1} << 40;
-  if (points.count > kMost || points.first > kMost) throw_usage(fmt::format("too many {}", what));
-  if (points.sets > kMost) throw_usage(fmt::format("too many sets of {}", what));
+  if (points.count > kMostCountable || points.first > kMostCountable)
+    throw_usage(fmt::format("too many {}", what));
+  if (points.sets > kMostCountable) throw_usage(fmt::format("too many sets of {}", what));
   const std::size_t bytes = points.count == 0 ? 0 : (points.first + points.count) * bytes_per_point(points);
   check_buffer(runtime, points.memory, bytes, Access::read, what);
 }
@@ -197,6 +224,8 @@ QueuedCall::QueuedCall(host::Runtime& runtime, const Enqueue& enqueue)
 }
 
 void QueuedCall::end() {
+  // Times are there when all is done.
+  if (enqueue_.profile) runtime_.finish();
   if (enqueue_.event != nullptr) *enqueue_.event = runtime_.mark();
   runtime_.flush();
 }

@@ -24,7 +24,11 @@ struct DeviceBufferAccess {
 
 namespace embedding {
 
-enum class Access { read, write };
+/// Numbers of points or sets beyond it make no sense, and their sums and products could overflow.
+constexpr std::size_t kMostCountable = std::size_t{1} << 40;
+
+/// Who does what with a buffer: kernels, or the host, or both do all.
+enum class Access { read, write, host, workspace };
 
 std::shared_ptr<_cl_mem> retained(cl_mem memory);
 
@@ -37,6 +41,9 @@ void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Acce
 /// context and device, made for profiling if that is wanted, and events are of the context. That one was
 /// released is noticed as a rule, not always.
 void check_enqueue(host::Runtime& runtime, const Enqueue& enqueue);
+
+/// Throws Error(usage) if two of these are the same buffer; null ones are none.
+void check_distinct(std::vector<cl_mem> buffers);
 
 /// The sets' offsets, read from the device if they are there. Throws Error(usage) if they do not increase
 /// from 0 to the number of points.

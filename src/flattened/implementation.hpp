@@ -60,8 +60,9 @@ struct Triangulator::Implementation {
                    const Enqueue& enqueue);
   /// For what is not to take memory from the workspace.
   host::Runtime& own_memory();
-  /// Takes the arenas from the workspace, if there is one. Throws Error(usage) if it is too small.
-  void share_workspace(std::size_t n, std::size_t sets);
+  /// Sees that the arenas hold what a call needs: in the caller's workspace, if there is one, else of their
+  /// own. Throws Error(usage) if the workspace is too small.
+  void provide_workspace(std::size_t n, std::size_t sets);
 
   host::Runtime runtime;
   host::Arena persistent, even, odd;

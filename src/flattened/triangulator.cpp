@@ -332,7 +332,7 @@ void Triangulator::Implementation::hybrid(const HostPoints& points, const std::v
   const std::size_t n = offsets.back();
   recursive::Phases phases(options);
   begin_accounts(options.profile);
-  share_workspace(n, offsets.size() - 1);
+  if (workspace != nullptr) provide_workspace(n, offsets.size() - 1);
   Arena::Scope scope(persistent), scratch_scope(runtime.arena());
   persistent.reserve(n * hybrid::kPersistentBytesPerPoint);
   hybrid::Workspace work{runtime, persistent};
@@ -507,7 +507,10 @@ void Triangulator::Implementation::write_result(Call& call, const Buffer<cl_int>
 
 Triangulator::Triangulator(const std::string& device)
     : implementation_(with_errors([&] { return std::make_shared<Implementation>(device); })) {}
-Triangulator::~Triangulator() = default;
+Triangulator::~Triangulator() {
+  // A locator may keep the device, but what was enqueued here is to be done. Errors can be told to nobody.
+  if (implementation_) clFinish(implementation_->runtime.queue());
+}
 Triangulator::Triangulator(Triangulator&&) noexcept = default;
 Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
 

@@ -80,6 +80,7 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
 
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {
   rings.distinct.resize(blocks.count);
+  const host::Runtime::Settled settled(work.runtime);
   work.runtime.read_later(rings.device_distinct, 0, blocks.count, rings.distinct.data());
   rings.undecided = work.runtime.read_one(rings.device_undecided, 0);
 }

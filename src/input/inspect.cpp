@@ -17,7 +17,12 @@ Scaling scaling_for(host::Runtime& runtime, const host::Buffer<cl_double>& point
   std::vector<double> coordinates;
   if (!can_be_exact(magnitudes, n)) {
     coordinates.resize(2 * n);
-    runtime.read(points, 0, 2 * n, coordinates.data());
+    // The caller's buffer may not be for the host to read.
+    const bool in_host_memory = runtime.device().type() & CL_DEVICE_TYPE_CPU;
+    const host::Buffer<cl_double> copy(
+        host::allocate_device_memory(runtime.context().get(), in_host_memory, 2 * n * sizeof(double)), 2 * n);
+    runtime.copy(points, 0, copy, 0, 2 * n);
+    runtime.read(copy, 0, 2 * n, coordinates.data());
   }
   return scaling_for(coordinates.data(), n, magnitudes);
 }

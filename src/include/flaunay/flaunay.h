@@ -367,7 +367,7 @@ FLAUNAY_API const flaunay_statistics* flaunay_device_triangulation_statistics(
     const flaunay_device_triangulation* triangulation);
 
 /// Triangulates points in device memory into device memory, in mode hybrid. No points and no results cross to
-/// the host: only sizes do, and the host waits some 9 times in between. Returns when all is enqueued; the
+/// the host: only sizes do, and the host waits 5 or 6 times in between. Returns when all is enqueued; the
 /// results are there when the event is complete, or for whatever is enqueued on the same in-order queue
 /// later. The points and the results' buffers must not change until then. A second call of the same size
 /// allocates no device memory. parts: of flaunay_part, 0 for the triangles alone; neighbours and halfedges

@@ -31,6 +31,9 @@ class FLAUNAY_API Error : public std::runtime_error {
   explicit Error(ErrorKind kind, const std::string& message, int code = 0, const std::string& call = {})
       : std::runtime_error(message), kind_(kind), code_(code), call_(std::make_shared<std::string>(call)) {}
   /// For programs; what() is for people, and names the place.
+  // Copied, never moved from, so that call() has a string to return.
+  Error(const Error&) = default;
+  Error& operator=(const Error&) = default;
   ErrorKind kind() const noexcept { return kind_; }
   /// What the OpenCL call returned, such as -5 for CL_OUT_OF_RESOURCES; 0 if none failed.
   int code() const noexcept { return code_; }
@@ -413,7 +416,7 @@ class FLAUNAY_API Triangulator {
                             const Options& options = {});
 
   /// Triangulates points in device memory into device memory (Mode::hybrid). No points and no results cross
-  /// to the host: only sizes do, some bytes for each block of 2,048 points, and the host waits some 9 times
+  /// to the host: only sizes do, some bytes for each block of 2,048 points, and the host waits 5 or 6 times
   /// in between (Statistics::host_waits). Returns when all is enqueued, with the numbers of triangles known;
   /// the results are there when the event is complete, or for whatever is enqueued on the same in-order queue
   /// later. The points and the results' buffers must not change until then. A second call of the same size
@@ -506,6 +509,7 @@ class FLAUNAY_API Locator {
 
  private:
   struct FLAUNAY_LOCAL Implementation;
+  FLAUNAY_LOCAL static std::unique_ptr<Implementation> make(Triangulator& triangulator);
   std::unique_ptr<Implementation> implementation_;
 };
 
