@@ -6,8 +6,8 @@
 #include "embedding/handles.hpp"
 #include "flattened/errors.hpp"
 #include "flattened/implementation.hpp"
+#include "host/clock.hpp"
 #include "hybrid/workspace.hpp"
-#include "recursive/phases.hpp"
 
 namespace flaunay {
 
@@ -79,7 +79,7 @@ void Triangulator::Implementation::triangulate(const DevicePoints& points, Devic
   check_size(points.count);
   embedding::QueuedCall call(runtime, enqueue);
   reset_accounts();
-  recursive::Phases phases({});
+  const double begin = host::now();
   const std::vector<std::size_t> offsets = embedding::checked_offsets(runtime, points);
   const std::size_t n = points.count;
   const std::size_t sets = offsets.size() - 1;
@@ -120,8 +120,7 @@ void Triangulator::Implementation::triangulate(const DevicePoints& points, Devic
     statistics.hull_vertices = result.hull_offsets.back();
   }
   call.end();
-  phases.end("enqueue");
-  phases.write(statistics);
+  statistics.seconds = host::now() - begin;
   write_accounts(statistics);
   result.statistics = std::move(statistics);
 }

@@ -4,6 +4,7 @@
 #include <CL/cl.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
