@@ -164,7 +164,8 @@ struct Locator::Implementation {
     expect(m <= std::numeric_limits<std::int32_t>::max() / 2, "more queries than 32-bit indices can count");
   }
 
-  /// Points per query on the host: a work of queries and the buffer of results.
+  /// Answers queries in host memory: work(runtime, queries, m, offsets, results) enqueues what writes the
+  /// results.
   template <typename Result, typename Work>
   std::vector<Result> answer(const double* queries, const std::vector<std::size_t>& offsets,
                              const Work& work) {
@@ -185,6 +186,7 @@ struct Locator::Implementation {
     });
   }
 
+  /// The same in device memory. values: what else is read there, or null.
   template <typename Result, typename Work>
   void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
               const Enqueue& enqueue, const Work& work) {

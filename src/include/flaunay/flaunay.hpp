@@ -30,10 +30,11 @@ class FLAUNAY_API Error : public std::runtime_error {
   /// code and call: of OpenCL, if it was one of its calls that failed.
   explicit Error(ErrorKind kind, const std::string& message, int code = 0, const std::string& call = {})
       : std::runtime_error(message), kind_(kind), code_(code), call_(std::make_shared<std::string>(call)) {}
-  /// For programs; what() is for people, and names the place.
-  // Copied, never moved from, so that call() has a string to return.
+  /// Copied, and never moved from, so that call() always has a string to return.
   Error(const Error&) = default;
+  /// Likewise.
   Error& operator=(const Error&) = default;
+  /// For programs; what() is for people, and names the place.
   ErrorKind kind() const noexcept { return kind_; }
   /// What the OpenCL call returned, such as -5 for CL_OUT_OF_RESOURCES; 0 if none failed.
   int code() const noexcept { return code_; }
