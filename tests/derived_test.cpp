@@ -24,6 +24,7 @@
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
@@ -45,27 +46,13 @@ using Offsets = std::vector<std::size_t>;
 // -----------------------------------------------------------------------------------------------------------
 // Runtimes
 
-/// One runtime for each tuning, destroyed before the OpenCL implementation leaves. "own" is the device's or
-/// what the environment names.
-class Runtimes : public ::testing::Environment {
- public:
-  void TearDown() override { all().clear(); }
-  static Runtime& get(const std::string& name) {
-    std::unique_ptr<Runtime>& runtime = all()[name];
-    if (!runtime) {
-      const char* const before = std::getenv("FLAUNAY_TUNING");
-      const testing::ScopedEnvironment kind("FLAUNAY_TUNING", name == "own" ? before : name.c_str());
-      runtime = std::make_unique<Runtime>(host::find_device(""));
-    }
-    return *runtime;
-  }
-
- private:
-  static std::map<std::string, std::unique_ptr<Runtime>>& all() {
-    static std::map<std::string, std::unique_ptr<Runtime>> runtimes;
-    return runtimes;
-  }
-};
+/// One for each tuning; "own" is the device's or what the environment names.
+std::unique_ptr<Runtime> make_runtime(const std::string& name) {
+  const char* const before = std::getenv("FLAUNAY_TUNING");
+  const testing::ScopedEnvironment kind("FLAUNAY_TUNING", name == "own" ? before : name.c_str());
+  return std::make_unique<Runtime>(host::find_device(""));
+}
+using Runtimes = testing::SharedRuntimes<make_runtime>;
 [[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
 
 /// Under the tuning that the environment names alone, if it names one.

@@ -30,6 +30,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/hybrid_twins.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
 
 namespace flaunay::hybrid {
@@ -58,48 +59,31 @@ using Offsets = std::vector<std::size_t>;
 // -----------------------------------------------------------------------------------------------------------
 // Runtimes
 
-/// One runtime for each tuning, destroyed before the OpenCL implementation leaves. "own" is the device's or
-/// what the environment names.
-class Runtimes : public ::testing::Environment {
- public:
-  void TearDown() override { all().clear(); }
-
-  static Runtime& get(const std::string& name) {
-    std::unique_ptr<Runtime>& runtime = all()[name];
-    if (!runtime) runtime = make(name);
-    return *runtime;
+/// One for each tuning; "own" is the device's or what the environment names.
+std::unique_ptr<Runtime> make_runtime(const std::string& name) {
+  const char* const before = std::getenv("FLAUNAY_TUNING");
+  const testing::ScopedEnvironment kind("FLAUNAY_TUNING", name == "small" ? "small" : before);
+  auto runtime = std::make_unique<Runtime>(host::find_device(""));
+  Tuning tuning = runtime->tuning();
+  if (name == "odd") {
+    // One work-item for all blocks, many chunks.
+    tuning.block_points = 13;
+    tuning.block_workers = 1;
+    tuning.chunk_least = 2;  // as few as a scan can do with
+    tuning.chunks_most = 0;
   }
-
- private:
-  static std::unique_ptr<Runtime> make(const std::string& name) {
-    const char* const before = std::getenv("FLAUNAY_TUNING");
-    const testing::ScopedEnvironment kind("FLAUNAY_TUNING", name == "small" ? "small" : before);
-    auto runtime = std::make_unique<Runtime>(host::find_device(""));
-    Tuning tuning = runtime->tuning();
-    if (name == "odd") {
-      // One work-item for all blocks, many chunks.
-      tuning.block_points = 13;
-      tuning.block_workers = 1;
-      tuning.chunk_least = 2;  // as few as a scan can do with
-      tuning.chunks_most = 0;
-    }
-    if (name == "single") {
-      // Blocks without merges of their own, in memory that is shared if it was not.
-      tuning.block_points = 1;
-      tuning.block_workers = 1000;
-      tuning.chunk_least = 3;
-      tuning.chunks_most = 11;
-      if (runtime->device().type() & CL_DEVICE_TYPE_CPU) tuning.in_host_memory = !tuning.in_host_memory;
-    }
-    runtime->set_tuning(tuning);
-    return runtime;
+  if (name == "single") {
+    // Blocks without merges of their own, in memory that is shared if it was not.
+    tuning.block_points = 1;
+    tuning.block_workers = 1000;
+    tuning.chunk_least = 3;
+    tuning.chunks_most = 11;
+    if (runtime->device().type() & CL_DEVICE_TYPE_CPU) tuning.in_host_memory = !tuning.in_host_memory;
   }
-
-  static std::map<std::string, std::unique_ptr<Runtime>>& all() {
-    static std::map<std::string, std::unique_ptr<Runtime>> runtimes;
-    return runtimes;
-  }
-};
+  runtime->set_tuning(tuning);
+  return runtime;
+}
+using Runtimes = testing::SharedRuntimes<make_runtime>;
 [[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
 
 /// Under the tuning that the environment names alone, if it names one.

@@ -1,0 +1,34 @@
+// Runtimes that the tests of a program share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "host/runtime.hpp"
+
+namespace flaunay::testing {
+
+/// A runtime for each name, made by `make` when it is first needed. They end with the tests, before the
+/// OpenCL implementation leaves, if an object of this is one of the program's global environments.
+template <std::unique_ptr<host::Runtime> (*make)(const std::string& name)>
+class SharedRuntimes : public ::testing::Environment {
+ public:
+  void TearDown() override { all().clear(); }
+
+  static host::Runtime& get(const std::string& name) {
+    std::unique_ptr<host::Runtime>& runtime = all()[name];
+    if (!runtime) runtime = make(name);
+    return *runtime;
+  }
+
+ private:
+  static std::map<std::string, std::unique_ptr<host::Runtime>>& all() {
+    static std::map<std::string, std::unique_ptr<host::Runtime>> runtimes;
+    return runtimes;
+  }
+};
+
+}  // namespace flaunay::testing
