@@ -1,30 +1,41 @@
-// flaunay-bench: measures flaunay, its parts, and others that do the same. Each subcommand has a file.
+// flaunay-bench: measures flaunay, its parts, and others that do the same. Subcommands print what they
+// measure as tables, and write it as records.
 #include <fmt/format.h>
 
 #include <exception>
 #include <string>
 
-#include "commands.hpp"
-#include "flaunay/flaunay.hpp"
+#include "cli/exit_codes.hpp"
+#include "command.hpp"
+
+namespace flaunay::bench {
+
+// Each is defined in the file of its name; scaling and small are in sizes.cpp.
+void add_targets(CLI::App& app, Action& action);
+void add_peers(CLI::App& app, Action& action);
+void add_modes(CLI::App& app, Action& action);
+void add_scaling(CLI::App& app, Action& action);
+void add_cliffs(CLI::App& app, Action& action);
+void add_small(CLI::App& app, Action& action);
+void add_batches(CLI::App& app, Action& action);
+void add_embedding(CLI::App& app, Action& action);
+void add_threads(CLI::App& app, Action& action);
+void add_primitives(CLI::App& app, Action& action);
+void add_paper(CLI::App& app, Action& action);
 
 namespace {
-
-using namespace flaunay::bench;
 
 int fail(int code, const std::string& message) {
   fmt::print(stderr, "flaunay-bench: {}\n", message);
   return code;
 }
 
-std::string command_line(int argc, char** argv) {
-  std::string command = "flaunay-bench";
-  for (int i = 1; i < argc; ++i) command += fmt::format(" {}", argv[i]);
-  return command;
-}
-
 int run(int argc, char** argv) {
   CLI::App app("Measures flaunay, its parts, and others that do the same.", "flaunay-bench");
-  app.footer("FLAUNAY_DEVICE chooses the device where --device does not.");
+  app.footer(
+      "Each subcommand prints tables and, with --json, writes a record; bench/plot.py RECORD.json -o "
+      "FILE.svg "
+      "draws it.\nFLAUNAY_DEVICE chooses the device where --device does not.");
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
@@ -36,20 +47,21 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    return fail(kUsage, fmt::format("{} (see flaunay-bench --help)", error.what()));
+    return fail(cli::kUsage, fmt::format("{} (see flaunay-bench --help)", error.what()));
   }
-  if (!action) return fail(kUsage, "a subcommand is required (see flaunay-bench --help)");
-  return action(command_line(argc, argv));
+  if (!action) return fail(cli::kUsage, "a subcommand is required (see flaunay-bench --help)");
+  return action(fmt::format("flaunay-bench {}", fmt::join(argv + 1, argv + argc, " ")));
 }
 
 }  // namespace
+}  // namespace flaunay::bench
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return flaunay::bench::run(argc, argv);
   } catch (const flaunay::Error& error) {
-    return fail(flaunay::cli::exit_code(error.kind()), error.what());
+    return flaunay::bench::fail(flaunay::cli::exit_code(error.kind()), error.what());
   } catch (const std::exception& error) {
-    return fail(kFailure, error.what());
+    return flaunay::bench::fail(flaunay::cli::kFailure, error.what());
   }
 }

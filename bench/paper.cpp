@@ -1,223 +1,381 @@
-// flaunay-bench paper: the experiments of Blelloch, Miller and Talmor (1996), made again.
+// flaunay-bench paper: the experiments of Blelloch, Miller and Talmor (1996), made again. Counts operations;
+// bench/plot.py sets the paper's claims beside them and draws the figures.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
-#include <filesystem>
-#include <memory>
+#include <future>
+#include <mutex>
 #include <thread>
 
-#include "commands.hpp"
-#include "io/file.hpp"
-#include "options.hpp"
-#include "paper_figures.hpp"
-#include "paper_report.hpp"
-#include "paper_runs.hpp"
-#include "record.hpp"
+#include "calls.hpp"
+#include "command.hpp"
+#include "inputs.hpp"
 
 namespace flaunay::bench {
 namespace {
 
-using namespace paper;
+using research::Component;
+using research::Cut;
 
-struct Request {
-  Plan plan;
-  std::string directory = "bench/results";
-  std::string device;
+/// Exponents of two, and host threads; `runs` is the number of point sets of each distribution and size.
+struct Request : Measurement {
+  int smallest = 10, largest = 17;
+  unsigned threads = std::max(1U, std::thread::hardware_concurrency());
 };
 
-// ---- Data
+/// How a set of points is triangulated.
+struct Method {
+  std::string algorithm;  ///< "dwyer", or the hull that computes the dividing paths
+  Cut cut;
+  bool at_all_sizes = false;  ///< if not, at the largest only
+  bool by_level = false;      ///< whether the record has it level by level
+};
 
-constexpr const char* kCountColumns =
-    "arithmetic,depths,orientations,circles,operations,operations_with_bounds,critical_path";
+/// Dwyer's algorithm is the first, because all others are set beside it.
+const std::vector<Method> kMethods = {
+    {"dwyer", Cut::alternate, true},          {"quickhull", Cut::interquartile},
+    {"balanced", Cut::interquartile},         {"prune", Cut::interquartile, true, true},
+    {"monotone-chain", Cut::interquartile},   {"quickhull", Cut::alternate},
+    {"balanced", Cut::alternate, true, true}, {"prune", Cut::alternate, false, true},
+};
+constexpr std::size_t kDefaultMethod = 3;
 
-std::string key_of(const Run& run) {
-  return fmt::format("{},{},{},{},{}", run.distribution, run.n, run.instance, run.method.algorithm,
-                     cut_name(run.method.cut));
+bool is_measured(const Method& method, std::size_t n, const Request& request) {
+  return method.at_all_sizes || n == std::size_t{1} << request.largest;
 }
 
-/// A row for each component that did something.
-void append_rows(io::OutputFile& file, const Run& run, const std::string& level,
-                 const Work::Components& components) {
-  for (std::size_t c = 0; c < kComponents; ++c) {
-    const OperationCounts& counts = components[c];
-    if (counts.operations() == 0 && counts.critical_path == 0) continue;
-    file.print("{},{},{},{},{},{},{},{},{},{}\n", key_of(run), component_name(c), level, counts.arithmetic,
-               counts.depths, counts.orientations, counts.circles, counts.operations(),
-               counts.operations_with_bounds(), counts.critical_path);
+research::Options options_of(const Method& method) {
+  const bool dwyer = method.algorithm == "dwyer";
+  research::Options options = bench::options_of(dwyer ? "dwyer" : "recursive");
+  if (!dwyer) options.hull = hull_named(method.algorithm);
+  options.count = true;
+  options.neighbors = false;
+  options.cut = method.cut;
+  return options;
+}
+
+/// One method on one set of points.
+struct Run {
+  research::Work work;
+  std::vector<research::LevelStatistics> levels;
+};
+
+/// The runs of all methods on one set of points.
+using Runs = std::vector<Run>;
+
+// ---- Quantities of a run, given Dwyer's run on the same points
+
+double operations(const research::Work::Components& components) {
+  return static_cast<double>(total(components).operations());
+}
+
+double operations(const Run& run) { return operations(totals(run.work)); }
+
+double depth(const Run& run) { return static_cast<double>(total(totals(run.work)).critical_path); }
+
+double operations_of(const Run& run, Component component) {
+  return static_cast<double>(totals(run.work)[static_cast<std::size_t>(component)].operations());
+}
+
+/// Comparisons before the first cut, which bring the points in order.
+double sorting(const Run& run) {
+  return static_cast<double>(run.work.start[static_cast<std::size_t>(Component::cut)].operations());
+}
+
+/// Operations of what precedes the first cut and of so many levels.
+double operations_until(const Run& run, std::size_t levels) {
+  double sum = operations(run.work.start);
+  for (std::size_t l = 0; l < std::min(levels, run.work.levels.size()); ++l) {
+    sum += operations(run.work.levels[l]);
   }
+  return sum;
 }
 
-/// Whether the tables have this run level by level.
-bool by_level(const Experiment& experiment, const Run& run) {
-  return run.n == experiment.largest() && run.method.algorithm == kDefault.algorithm;
+/// Levels until there are as many regions as a coarse partition would have; all if there never are.
+std::size_t coarse_levels(const Run& run) {
+  constexpr std::size_t kCoarseRegions = 16;
+  std::size_t level = 0;
+  while (level < run.levels.size() && run.levels[level].regions < kCoarseRegions) ++level;
+  return level;
 }
 
-void write_runs(const std::string& path, const Experiment& experiment) {
-  io::OutputFile file(path);
-  file.print("distribution,n,instance,algorithm,cut,component,level,{}\n", kCountColumns);
-  for (const Run& run : experiment.runs()) {
-    append_rows(file, run, "all", totals(run.work));
-    if (!by_level(experiment, run)) continue;
-    append_rows(file, run, "start", run.work.start);
-    for (std::size_t l = 0; l < run.work.levels.size(); ++l) {
-      append_rows(file, run, fmt::format("{}", l), run.work.levels[l]);
+/// Zero where a run has no such level.
+double largest_region(const Run& run, std::size_t level) {
+  return level < run.levels.size() ? static_cast<double>(run.levels[level].largest_region) : 0;
+}
+
+double region_sizes(const Run& run, std::size_t level) {
+  if (level >= run.levels.size()) return 0;
+  return static_cast<double>(run.levels[level].internal_points + run.levels[level].corners);
+}
+
+double most_corners(const Run& run) {
+  std::size_t most = 0;
+  for (const research::LevelStatistics& level : run.levels) most = std::max(most, level.corners);
+  return static_cast<double>(most);
+}
+
+/// By what the largest region shrinks from level to level, at worst.
+double worst_decline(const Run& run) {
+  double worst = 0;
+  for (std::size_t l = 1; l < run.levels.size(); ++l) {
+    worst = std::max(worst, largest_region(run, l) / largest_region(run, l - 1));
+  }
+  return worst;
+}
+
+/// The same, the geometric mean.
+double mean_decline(const Run& run) {
+  const std::size_t last = std::max<std::size_t>(run.levels.size(), 1) - 1;
+  if (last == 0) return 1;
+  return std::pow(largest_region(run, last) / largest_region(run, 0), 1 / static_cast<double>(last));
+}
+
+using Quantity = std::function<double(const Run& run, const Run& dwyer, double n)>;
+using NamedQuantity = std::pair<const char*, Quantity>;
+
+const std::vector<NamedQuantity> kOfAllSizes = {
+    {"operations_per_point", [](const Run& run, const Run&, double n) { return operations(run) / n; }},
+    {"over_dwyer",
+     [](const Run& run, const Run& dwyer, double) { return operations(run) / operations(dwyer); }},
+    {"depth", [](const Run& run, const Run&, double) { return depth(run); }},
+    {"parallelism", [](const Run& run, const Run&, double) { return operations(run) / depth(run); }},
+};
+
+Quantity per_point(Component component) {
+  return [component](const Run& run, const Run&, double n) { return operations_of(run, component) / n; };
+}
+
+const std::vector<NamedQuantity> kOfTheLargest = {
+    {"sorting", [](const Run& run, const Run&, double n) { return sorting(run) / n; }},
+    {"cuts", [](const Run& run, const Run&,
+                double n) { return (operations_of(run, Component::cut) - sorting(run)) / n; }},
+    {"hull", per_point(Component::hull)},
+    {"merge", per_point(Component::merge)},
+    {"split", per_point(Component::split)},
+    {"endgame", per_point(Component::endgame)},
+};
+
+const std::vector<NamedQuantity> kByLevels = {
+    {"sorting_over_dwyer",
+     [](const Run& run, const Run& dwyer, double) { return sorting(run) / operations(dwyer); }},
+    {"coarse_levels",
+     [](const Run& run, const Run&, double) { return static_cast<double>(coarse_levels(run)); }},
+    {"coarse_over_dwyer",
+     [](const Run& run, const Run& dwyer, double) {
+       return operations_until(run, coarse_levels(run)) / operations(dwyer);
+     }},
+    {"coarse_unsorted_over_dwyer",
+     [](const Run& run, const Run& dwyer, double) {
+       return (operations_until(run, coarse_levels(run)) - sorting(run)) / operations(dwyer);
+     }},
+    {"most_corners_per_point", [](const Run& run, const Run&, double n) { return most_corners(run) / n; }},
+    {"largest_endgame",
+     [](const Run& run, const Run&, double) {
+       return static_cast<double>(std::max<std::size_t>(run.work.endgame_sizes.size(), 1) - 1);
+     }},
+    {"worst_decline", [](const Run& run, const Run&, double) { return worst_decline(run); }},
+    {"mean_decline", [](const Run& run, const Run&, double) { return mean_decline(run); }},
+};
+
+// ---- Rows
+
+/// All instances of a distribution and size.
+struct Inputs {
+  std::string distribution;
+  std::size_t n;
+  std::vector<Runs> instances;
+
+  Summary summarize(const Quantity& quantity, std::size_t method) const {
+    std::vector<double> values;
+    for (const Runs& runs : instances) {
+      values.push_back(quantity(runs[method], runs[0], static_cast<double>(n)));
     }
+    return summary(values);
   }
-  file.commit();
+  /// Adds a quantity: the median of the instances, the minimum and the maximum.
+  void add(Json& row, const NamedQuantity& quantity, std::size_t method) const {
+    const Summary of_all = summarize(quantity.second, method);
+    row[quantity.first] = {of_all.median, of_all.low, of_all.high};
+  }
+  Json identity(std::size_t method) const {
+    const bool alternate = kMethods[method].cut == Cut::alternate;
+    return {{"distribution", distribution},
+            {"n", n},
+            {"algorithm", kMethods[method].algorithm},
+            {"cut", alternate ? "alternate" : "interquartile"}};
+  }
+};
+
+/// Medians, level by level: what was done before the level, and the regions that are cut at it.
+Json levels_row(const Inputs& inputs, std::size_t method) {
+  std::size_t most = 0;
+  for (const Runs& runs : inputs.instances) most = std::max(most, runs[method].work.levels.size());
+  Json row = inputs.identity(method);
+  for (std::size_t level = 0; level <= most; ++level) {
+    const auto add = [&](const char* name, const Quantity& quantity) {
+      row[name].push_back(inputs.summarize(quantity, method).median);
+    };
+    add("work_before_over_dwyer", [level](const Run& run, const Run& dwyer, double) {
+      return operations_until(run, level) / operations(dwyer);
+    });
+    if (level == most) break;
+    add("largest_region", [level](const Run& run, const Run&, double) { return largest_region(run, level); });
+    add("region_sizes_per_point",
+        [level](const Run& run, const Run&, double n) { return region_sizes(run, level) / n; });
+  }
+  return row;
 }
 
-void write_levels(const std::string& path, const Experiment& experiment) {
-  io::OutputFile file(path);
-  file.print(
-      "distribution,n,instance,algorithm,cut,level,regions,internal_points,corners,largest_region,"
-      "path_vertices,operations,operations_so_far,critical_path\n");
-  for (const Run& run : experiment.runs()) {
-    if (!by_level(experiment, run)) continue;
-    for (std::size_t l = 0; l < run.levels.size(); ++l) {
-      const LevelStatistics& level = run.levels[l];
-      const OperationCounts counts = total(run.work.levels[l]);
-      file.print("{},{},{},{},{},{},{},{},{:.0f},{}\n", key_of(run), l, level.regions, level.internal_points,
-                 level.corners, level.largest_region, level.path_vertices, counts.operations(),
-                 operations_until(run, l + 1), counts.critical_path);
-    }
+/// How many regions have how many corners when the end game begins, all instances together.
+Json endgame_row(const Inputs& inputs, std::size_t method) {
+  std::vector<std::uint64_t> histogram;
+  for (const Runs& runs : inputs.instances) {
+    const std::vector<std::uint64_t>& sizes = runs[method].work.endgame_sizes;
+    histogram.resize(std::max(histogram.size(), sizes.size()));
+    for (std::size_t k = 0; k < sizes.size(); ++k) histogram[k] += sizes[k];
   }
-  file.commit();
-}
-
-void write_endgame_sizes(const std::string& path, const Experiment& experiment) {
-  io::OutputFile file(path);
-  file.print("distribution,n,cut,corners,regions\n");
-  for (const std::string& distribution : distributions()) {
-    for (const Cut cut : {Cut::interquartile, Cut::alternate}) {
-      const auto histogram =
-          endgame_histogram(experiment, distribution, experiment.largest(), {kDefault.algorithm, cut});
-      for (std::size_t k = 0; k < histogram.size(); ++k) {
-        if (histogram[k] == 0) continue;
-        file.print("{},{},{},{},{}\n", distribution, experiment.largest(), cut_name(cut), k, histogram[k]);
-      }
-    }
+  Json row = inputs.identity(method);
+  row["corners"] = Json::array();
+  row["regions"] = Json::array();
+  for (std::size_t k = 0; k < histogram.size(); ++k) {
+    if (histogram[k] == 0) continue;
+    row["corners"].push_back(k);
+    row["regions"].push_back(histogram[k]);
   }
-  file.commit();
+  return row;
 }
 
 // ---- The kernels beside the twin
 
-Work::Components without_sorting(const Work& work) {
-  Work unsorted = work;
-  unsorted.start[at(Component::cut)] = {};
-  return totals(unsorted);
+/// The kernels' operations on one input relative to those of the recursive twin. Sorting is left out, because
+/// devices sort by radix.
+Json cross_check_row(Triangulator& triangulator, const std::string& distribution, std::size_t n) {
+  const auto unsorted = [](research::Work work) {
+    work.start[static_cast<std::size_t>(Component::cut)] = {};
+    return totals(work);
+  };
+  const auto ratio_of = [](const research::OperationCounts& a, const research::OperationCounts& b) {
+    return b.operations() == 0 ? 1
+                               : static_cast<double>(a.operations()) / static_cast<double>(b.operations());
+  };
+  const Input input = make_input(distribution, n);
+  const research::Options of_twin = options_of(kMethods[kDefaultMethod]);
+  research::Options of_kernels = of_twin;
+  of_kernels.mode = research::Mode::flattened;
+  const auto kernels = unsorted(call(triangulator, input, of_kernels).work);
+  const auto twin = unsorted(call_on_host(input, of_twin).work);
+  Json row{{"distribution", distribution}, {"n", n}, {"all", ratio_of(total(kernels), total(twin))}};
+  for (std::size_t c = 0; c < research::kComponents; ++c) {
+    row[component_name(c)] = ratio_of(kernels[c], twin[c]);
+  }
+  return row;
 }
 
-double ratio(const OperationCounts& a, const OperationCounts& b) {
-  return b.operations() == 0 ? 1 : static_cast<double>(a.operations()) / static_cast<double>(b.operations());
-}
+// ---- The experiment
 
-CrossCheck cross_check(Triangulator& triangulator, const Run& twin) {
-  Options options = options_of(twin.method);
-  options.mode = Mode::flattened;
-  const std::vector<double> coordinates = instance_coordinates(twin.distribution, twin.n, twin.instance);
-  const Work work = triangulator.triangulate(coordinates.data(), twin.n, options).statistics.work;
-  const Work::Components of_kernels = without_sorting(work), of_twin = without_sorting(twin.work);
-  CrossCheck check{twin.distribution, twin.n, ratio(total(of_kernels), total(of_twin)), {}};
-  for (std::size_t c = 0; c < kComponents; ++c) check.by_component[c] = ratio(of_kernels[c], of_twin[c]);
-  return check;
-}
-
-std::vector<CrossCheck> cross_checks(Triangulator& triangulator, const Experiment& experiment) {
-  constexpr int kEnough = 14;
-  const Plan& plan = experiment.plan();
-  const std::size_t n = std::size_t{1} << std::max(plan.smallest, std::min(plan.largest, kEnough));
-  std::vector<CrossCheck> checks;
-  for (const std::string& distribution : distributions()) {
-    checks.push_back(cross_check(triangulator, experiment.run(distribution, n, kDefault, 0)));
-    fmt::print("kernels / twin, {} {} points: {:.4f} of the operations\n", n, distribution,
-               checks.back().all);
-    if (std::abs(checks.back().all - 1) > kAgreeingRatio) {
-      fmt::print(stderr, "WARNING: kernels and twin count differently on {} points\n", distribution);
+/// Triangulates everything on several threads, the largest inputs first, so that no thread begins a long one
+/// when the others have ended.
+std::vector<Inputs> triangulate_all(const Request& request) {
+  const auto instances = static_cast<std::size_t>(request.runs);
+  std::vector<Inputs> all;
+  for (const std::size_t n : powers_of_two(request.smallest, request.largest)) {
+    for (const std::string& distribution : kPaperDistributions) {
+      all.push_back({distribution, n, std::vector<Runs>(instances)});
     }
   }
-  return checks;
+  const std::size_t count = all.size() * instances;
+  Progress progress(count);
+  std::mutex progress_mutex;
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t k = next++; k < count; k = next++) {
+      Inputs& inputs = all[(count - 1 - k) / instances];
+      const std::size_t instance = k % instances;
+      {
+        const std::lock_guard<std::mutex> lock(progress_mutex);
+        progress.step(fmt::format("{}, {} points, instance {}", inputs.distribution, inputs.n, instance + 1));
+      }
+      const Input input = make_input(inputs.distribution, inputs.n, instance + 1);
+      for (const Method& method : kMethods) {
+        Run& run = inputs.instances[instance].emplace_back();
+        if (!is_measured(method, inputs.n, request)) continue;
+        research::Triangulation mesh = call_on_host(input, options_of(method));
+        run = {std::move(mesh.work), std::move(mesh.levels)};
+      }
+    }
+  };
+  std::vector<std::future<void>> threads;
+  for (unsigned t = 0; t < request.threads; ++t) threads.push_back(std::async(std::launch::async, work));
+  for (std::future<void>& thread : threads) thread.get();
+  return all;
 }
 
-// ---- The command
-
-void make_directory(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) io::fail(path, "cannot be made: {}", error.message());
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  io::OutputFile file(path);
-  file.write(text.data(), text.size());
-  file.commit();
-}
-
-int run(const Request& request, const std::string& command) {
-  const auto path = [&](const std::string& name) { return request.directory + "/" + name; };
-  make_directory(request.directory);
-  check_writable({path("paper.md")});
-  const Experiment experiment(request.plan);
-
-  DeviceInfo device;
-  std::vector<CrossCheck> checks;
-  std::string unchecked;
+Result measure_paper(const Request& request) {
+  constexpr int kCheckedExponent = 14;
+  if (request.smallest > request.largest)
+    throw Error(ErrorKind::usage, "--smallest is greater than --largest");
+  const std::vector<Inputs> all = triangulate_all(request);
+  Result result;
+  Json& tables = result.tables;
+  for (const char* table : {"results", "levels", "endgame", "cross_check"}) tables[table] = Json::array();
+  for (const Inputs& inputs : all) {
+    const bool largest = inputs.n == std::size_t{1} << request.largest;
+    for (std::size_t m = 0; m < kMethods.size(); ++m) {
+      if (!is_measured(kMethods[m], inputs.n, request)) continue;
+      Json row = inputs.identity(m);
+      for (const NamedQuantity& quantity : kOfAllSizes) inputs.add(row, quantity, m);
+      if (largest) {
+        for (const NamedQuantity& quantity : kOfTheLargest) inputs.add(row, quantity, m);
+      }
+      if (largest && kMethods[m].by_level) {
+        for (const NamedQuantity& quantity : kByLevels) inputs.add(row, quantity, m);
+        tables["levels"].push_back(levels_row(inputs, m));
+        // The regions depend on the cuts alone.
+        if (kMethods[m].algorithm == kMethods[kDefaultMethod].algorithm) {
+          tables["endgame"].push_back(endgame_row(inputs, m));
+        }
+      }
+      tables["results"].push_back(row);
+    }
+  }
   try {
     Triangulator triangulator(request.device);
-    device = triangulator.device();
-    checks = cross_checks(triangulator, experiment);
+    result.device = triangulator.device();
+    const std::size_t n = std::size_t{1}
+                          << std::max(request.smallest, std::min(request.largest, kCheckedExponent));
+    for (const std::string& distribution : kPaperDistributions) {
+      tables["cross_check"].push_back(cross_check_row(triangulator, distribution, n));
+    }
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::device || !request.device.empty()) throw;
-    unchecked = error.what();
-    fmt::print(stderr, "the kernels are not checked against the twin: {}\n", unchecked);
+    fmt::print(stderr, "the kernels are not checked against the twin: {}\n", error.what());
   }
-
-  write_runs(path("paper-runs.csv"), experiment);
-  write_levels(path("paper-levels.csv"), experiment);
-  write_endgame_sizes(path("paper-endgame.csv"), experiment);
-  const std::vector<NamedFigure> all_figures = figures(experiment);
-  for (const NamedFigure& figure : all_figures) plot::write(path(figure.file), figure.figure);
-  write_text(path("paper.md"), report(experiment, all_figures, checks, unchecked,
-                                      record(device, command, request.plan.instances)));
-  fmt::print("{} and its figures are written\n", path("paper.md"));
-  return kSuccess;
+  return result;
 }
 
 }  // namespace
 
 void add_paper(CLI::App& app, Action& action) {
+  const CLI::Range exponents(6, 24);
   const auto request = std::make_shared<Request>();
-  request->plan.threads = std::max(1u, std::thread::hardware_concurrency());
-  CLI::App* command =
-      app.add_subcommand("paper", "the experiments of Blelloch, Miller and Talmor (1996), made again");
-  command->footer(
+  CLI::App* command = add_command(
+      app, action, "paper", "the experiments of Blelloch, Miller and Talmor (1996), made again",
       "Counts operations in the recursive twin and in Dwyer's algorithm, both on the host, on the paper's "
-      "four "
-      "distributions at every power of two from the smallest to the largest; writes paper.md, which sets the "
-      "paper's claims beside what was measured, its figures (SVG), and the data (CSV). The kernels are "
-      "checked "
-      "against the twin once, if there is a device.");
-  command->add_option("--output", request->directory, "the folder to write into")->capture_default_str();
-  command->add_option("--instances", request->plan.instances, "point sets of each distribution and size")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--smallest", request->plan.smallest, "least number of points, as a power of two")
-      ->check(CLI::Range(6, 24))
-      ->capture_default_str();
-  command->add_option("--largest", request->plan.largest, "greatest number of points, as a power of two")
-      ->check(CLI::Range(6, 24))
-      ->capture_default_str();
-  command->add_option("--threads", request->plan.threads, "host threads")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  add_device_option(command, request->device);
-  command->callback([request, &action] {
-    if (request->plan.smallest > request->plan.largest) {
-      throw CLI::ValidationError("--smallest", "is greater than --largest");
-    }
-    action = [request](const std::string& line) { return run(*request, line); };
-  });
+      "four distributions at every power of two from the smallest to the largest (variants that the paper "
+      "has not, at the largest only). bench/plot.py RECORD.json -o FILE.md sets the paper's claims beside "
+      "what was measured, and draws the figures. The kernels are checked against the twin once, if there is "
+      "a device.",
+      request, measure_paper);
+  add_option(command, "--instances", request->runs, "point sets of each distribution and size");
+  add_option(command, "--smallest", request->smallest, "least number of points, as a power of two")
+      ->check(exponents);
+  add_option(command, "--largest", request->largest, "greatest number of points, as a power of two")
+      ->check(exponents);
+  add_option(command, "--threads", request->threads, "host threads");
 }
 
 }  // namespace flaunay::bench

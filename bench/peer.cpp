@@ -2,11 +2,10 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "child.hpp"
-#include "flaunay/flaunay.hpp"
 
 namespace flaunay::bench {
 namespace {
@@ -21,69 +20,67 @@ std::size_t status_bytes(const std::string& name) {
   return 0;
 }
 
-/// Runs the peer in this process, which must be a child: what was resident before counts as the parent's.
-nlohmann::json run_measured(const Peer& peer, const Input& input) {
-  // Freed memory that the allocator keeps would be used again without being seen; and the highest mark is
-  // still the parent's until it is reset.
-  malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";
-  const std::size_t before = status_bytes("VmRSS");
-  const Outcome outcome = peer.run(input);
-  const std::size_t peak = status_bytes("VmHWM");
-  return {{"seconds", outcome.seconds},
-          {"triangles", outcome.triangles},
-          {"bytes_peak", peak > before ? peak - before : 0}};
-}
-
-std::function<Outcome(const Input&)> if_built(bool built, Outcome (*run)(const Input&)) {
-  if (!built) return {};
-  return run;
-}
-
 }  // namespace
 
 // Peers that were not found when this was built.
 #ifndef FLAUNAY_BENCH_CGAL
-#define FLAUNAY_BENCH_CGAL 0
-Outcome run_cgal(const Input&) { throw Error(ErrorKind::usage, "built without CGAL"); }
+constexpr auto run_cgal_if_built = nullptr;
+std::unique_ptr<CgalQueries> make_cgal_queries(const std::vector<double>&) { return nullptr; }
+#else
+constexpr auto run_cgal_if_built = run_cgal;
 #endif
 #ifndef FLAUNAY_BENCH_QHULL
-#define FLAUNAY_BENCH_QHULL 0
-Outcome run_qhull(const Input&) { throw Error(ErrorKind::usage, "built without Qhull"); }
+constexpr auto run_qhull_if_built = nullptr;
+#else
+constexpr auto run_qhull_if_built = run_qhull;
 #endif
 #ifndef FLAUNAY_BENCH_GTS
-#define FLAUNAY_BENCH_GTS 0
-Outcome run_gts(const Input&) { throw Error(ErrorKind::usage, "built without GTS"); }
+constexpr auto run_gts_if_built = nullptr;
+#else
+constexpr auto run_gts_if_built = run_gts;
 #endif
 
 const std::vector<Peer>& all_peers() {
   static const std::vector<Peer> kPeers = {
-      {"cgal",
+      {kCgal,
        "CGAL's Delaunay_triangulation_2 with Exact_predicates_inexact_constructions_kernel, exact, one "
-       "thread: "
-       "copying the points, sorting them spatially with their indices, inserting them, writing triangles and "
-       "neighbours into arrays",
-       if_built(FLAUNAY_BENCH_CGAL, run_cgal)},
+       "thread: copying the points, sorting them spatially with their indices, inserting them, writing "
+       "triangles and neighbours into arrays",
+       run_cgal_if_built},
       {"qhull",
        "libqhull_r with 'd Qt Qbb Qc Qz Q12', not exact (it merges facets that it cannot tell apart), one "
        "thread: lifting the points, their convex hull in three dimensions, splitting merged facets",
-       if_built(FLAUNAY_BENCH_QHULL, run_qhull)},
+       run_qhull_if_built},
       {"gts",
        "GTS's gts_delaunay_add_vertex, exact predicates, one thread: making its vertices, sorting them "
-       "(rounds "
-       "that double in size, in each along a Hilbert curve), inserting each near the one before, removing "
-       "the "
-       "enclosing triangle",
-       if_built(FLAUNAY_BENCH_GTS, run_gts)},
+       "(rounds that double in size, in each along a Hilbert curve), inserting each near the one before, "
+       "removing the enclosing triangle",
+       run_gts_if_built},
   };
   return kPeers;
 }
 
-Trial try_peer(const Peer& peer, const Input& input, double limit) {
-  const Answer answer = ask_child([&] { return run_measured(peer, input).dump(); }, limit);
-  if (!answer.failure.empty()) return {{0, 0}, 0, answer.failure};
-  const auto json = nlohmann::json::parse(answer.text);
-  return {{json.at("seconds"), json.at("triangles")}, json.at("bytes_peak"), ""};
+Trial try_peer(const std::function<Outcome(const Input&)>& run, const Input& input, double limit) {
+  const Answer answer = ask_child(
+      [&] {
+        // Freed memory that the allocator keeps would be used again without being seen; and the highest mark
+        // is still the parent's until it is reset.
+        malloc_trim(0);
+        std::ofstream("/proc/self/clear_refs") << "5";
+        const std::size_t before = status_bytes("VmRSS");
+        run(input);
+        const std::size_t peak = status_bytes("VmHWM");
+        return std::to_string(peak > before ? peak - before : 0);
+      },
+      limit);
+  if (!answer.failure.empty()) return {0, answer.failure};
+  return {std::stoull(answer.text), ""};
+}
+
+Corners sorted_corners(const std::int32_t* triangle) {
+  Corners corners{triangle[0], triangle[1], triangle[2]};
+  std::sort(corners.begin(), corners.end());
+  return corners;
 }
 
 }  // namespace flaunay::bench

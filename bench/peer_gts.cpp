@@ -4,9 +4,7 @@
 #include <numeric>
 #include <random>
 
-#include "flaunay/flaunay.hpp"
 #include "peer.hpp"
-#include "timing.hpp"
 
 namespace flaunay::bench {
 namespace {
@@ -15,9 +13,9 @@ struct Box {
   double left, bottom, side;
 };
 
-Box bounding_box(const io::Points& points) {
+Box bounding_box(const Input& points) {
   double left = points.coordinates[0], right = left, bottom = points.coordinates[1], top = bottom;
-  for (std::size_t i = 1; i < points.size(); ++i) {
+  for (std::size_t i = 1; i < points.n; ++i) {
     left = std::min(left, points.coordinates[2 * i]);
     right = std::max(right, points.coordinates[2 * i]);
     bottom = std::min(bottom, points.coordinates[2 * i + 1]);
@@ -32,7 +30,7 @@ using Order = std::vector<std::size_t>::iterator;
 /// places have as many steps of their own as others.
 class HilbertSort {
  public:
-  explicit HilbertSort(const io::Points& points) : points_(points) {}
+  explicit HilbertSort(const Input& points) : points_(points) {}
 
   /// axis: the one that is halved first; up, other_up: whether the curve begins at small coordinates of it
   /// and of the other one.
@@ -59,14 +57,14 @@ class HilbertSort {
     return middle;
   }
 
-  const io::Points& points_;
+  const Input& points_;
 };
 
 /// Random rounds, each twice as large as the one before and sorted along the curve. Random, so that the
 /// expected number of flips is linear; along the curve, so that each point is near the one before.
-std::vector<std::size_t> insertion_order(const io::Points& points) {
+std::vector<std::size_t> insertion_order(const Input& points) {
   constexpr std::size_t kFirstRound = 64;
-  std::vector<std::size_t> order(points.size());
+  std::vector<std::size_t> order(points.n);
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937_64(1));
   const HilbertSort curve(points);
@@ -99,7 +97,7 @@ GtsFace* face_at(GtsVertex* vertex, GtsSurface* surface) {
   return nullptr;
 }
 
-void insert_all(const io::Points& points, GtsSurface* surface) {
+void insert_all(const Input& points, GtsSurface* surface) {
   GtsFace* near = nullptr;
   for (const std::size_t i : insertion_order(points)) {
     GtsVertex* vertex =
@@ -115,9 +113,8 @@ void insert_all(const io::Points& points, GtsSurface* surface) {
 
 }  // namespace
 
-Outcome run_gts(const Input& input) {
-  const io::Points& points = input.points;
-  if (points.size() == 0) return {0, 0};
+Outcome run_gts(const Input& points) {
+  if (points.n == 0) return {0, 0};
   const Stopwatch watch;
   GtsSurface* surface =
       gts_surface_new(gts_surface_class(), gts_face_class(), gts_edge_class(), gts_vertex_class());

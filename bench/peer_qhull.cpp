@@ -6,9 +6,7 @@ extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
 
-#include "flaunay/flaunay.hpp"
 #include "peer.hpp"
-#include "timing.hpp"
 
 namespace flaunay::bench {
 namespace {
@@ -34,8 +32,7 @@ void release(qhT* qh) {
 
 }  // namespace
 
-Outcome run_qhull(const Input& input) {
-  const io::Points& points = input.points;
+Outcome run_qhull(const Input& points) {
   const auto state = std::make_unique<qhT>();
   qhT* qh = state.get();
   // d: Delaunay; Qt: splits merged facets into triangles; Qbb: scales the lifted coordinate; Qc: keeps points
@@ -44,8 +41,8 @@ Outcome run_qhull(const Input& input) {
   const Stopwatch watch;
   qh_zero(qh, stderr);
   const int code =
-      qh_new_qhull(qh, 2, static_cast<int>(points.size()), const_cast<coordT*>(points.coordinates.data()),
-                   False, options, nullptr, stderr);
+      qh_new_qhull(qh, 2, static_cast<int>(points.n), const_cast<coordT*>(points.coordinates.data()), False,
+                   options, nullptr, stderr);
   const double seconds = watch.seconds();
   const std::size_t triangles = code == 0 ? count_triangles(qh) : 0;
   release(qh);

@@ -14,6 +14,15 @@ namespace {
 
 constexpr double kSecondsBetweenLines = 10;
 
+/// Runs it again until the clock and a cold cache do not matter; the mean.
+double repeat(const Job& job) {
+  constexpr double kEnoughSeconds = 0.05;
+  double seconds = 0;
+  int times = 0;
+  for (; seconds < kEnoughSeconds; ++times) seconds += job.run();
+  return seconds / times;
+}
+
 /// The uncounted run of each job. Afterwards the jobs that will not be counted are marked as skipped.
 void warm_up(std::vector<Job>& jobs, std::size_t runs, double limit, Progress& progress) {
   std::map<std::string, std::string> ended;  // why, by series
@@ -25,7 +34,7 @@ void warm_up(std::vector<Job>& jobs, std::size_t runs, double limit, Progress& p
     }
     progress.step(fmt::format("first run, not counted: {}", job.name));
     try {
-      const double seconds = job.run();
+      const double seconds = repeat(job);
       if (limit > 0 && seconds > limit) {
         ended[job.series] = fmt::format("{} took {:.3g} s, more than {:g} s", job.name, seconds, limit);
       }
@@ -74,20 +83,9 @@ void run_interleaved(std::vector<Job>& jobs, int runs, double limit) {
     for (Job& job : jobs) {
       if (!job.skipped.empty()) continue;
       progress.step(fmt::format("run {} of {}: {}", run, runs, job.name));
-      job.seconds.push_back(job.run());
+      job.seconds.push_back(repeat(job));
     }
   }
-}
-
-double mean_of_repeated(const std::function<double()>& run) {
-  constexpr double kEnoughSeconds = 0.05;
-  double seconds = 0;
-  int times = 0;
-  while (seconds < kEnoughSeconds) {
-    seconds += run();
-    ++times;
-  }
-  return seconds / times;
 }
 
 Summary summary(std::vector<double> values) {
@@ -95,12 +93,6 @@ Summary summary(std::vector<double> values) {
   const std::size_t middle = values.size() / 2;
   const double median = values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
   return {median, values.front(), values.back()};
-}
-
-void add_seconds(nlohmann::json& row, const Summary& seconds) {
-  row["seconds_median"] = seconds.median;
-  row["seconds_min"] = seconds.low;
-  row["seconds_max"] = seconds.high;
 }
 
 }  // namespace flaunay::bench

@@ -1,9 +1,8 @@
-// Interleaved runs, and what is said about them.
+// Runs that take turns, and what is said about their times.
 #pragma once
 
 #include <chrono>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -46,8 +45,7 @@ class Progress {
 /// Something to run again and again.
 struct Job {
   std::string name;
-  /// Runs once and returns the seconds that count.
-  std::function<double()> run;
+  std::function<double()> run;  ///< runs once and returns the seconds that count
   /// Jobs of a series differ in size only and stand in ascending order.
   std::string series = {};
   std::vector<double> seconds = {};  ///< of the counted runs
@@ -55,12 +53,10 @@ struct Job {
 };
 
 /// Runs all jobs in turn, once without counting and then `runs` times, so that a machine's changing speed
-/// meets all alike. A job that throws Error is skipped, with its message; so are the jobs of a series
-/// after one whose uncounted run took longer than the limit in seconds (0: none).
+/// affects all alike. Whatever takes less than 0.05 s is repeated within a run, which then gives the mean. A
+/// job that throws Error is skipped, with its message; so are the jobs of a series after one whose uncounted
+/// run took longer than the limit in seconds (0: no limit).
 void run_interleaved(std::vector<Job>& jobs, int runs, double limit = 0);
-
-/// Runs what returns seconds again until the clock and a cold cache do not matter; the mean.
-double mean_of_repeated(const std::function<double()>& run);
 
 struct Summary {
   double median = 0, low = 0, high = 0;
@@ -68,8 +64,5 @@ struct Summary {
 
 /// Of at least one value; the median of an even number is the mean of the middle two.
 Summary summary(std::vector<double> values);
-
-/// Adds seconds_median, seconds_min and seconds_max to a row of results.
-void add_seconds(nlohmann::json& row, const Summary& seconds);
 
 }  // namespace flaunay::bench

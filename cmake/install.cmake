@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(FLAUNAY_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/flaunay)
-# The folder of the headers once more, for users' CMake before 3.23, which knows no file sets.
+# The folder of the headers, for users' CMake before 3.23, which does not support file sets.
 install(TARGETS flaunay EXPORT flaunay-targets FILE_SET HEADERS INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(TARGET flaunay_cli)
   install(TARGETS flaunay_cli)
@@ -17,7 +17,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/flaunay-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/flaunay-config.cmake ${PROJECT_BINARY_DIR}/flaunay-config-version.cmake
         DESTINATION ${FLAUNAY_CONFIG_DIR})
 
-# The paths in flaunay.pc start from where it lies, so that the installation can be moved.
+# The paths in flaunay.pc are relative to the file, so that the installation can be moved.
 file(RELATIVE_PATH PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 string(REGEX REPLACE "/$" "" PC_TO_PREFIX "${PC_TO_PREFIX}")
 set(PC_LIBDIR "\${prefix}")

@@ -1,4 +1,4 @@
-// Thousands of small point sets in one call: each cell of a map its own triangulation.
+// Triangulates thousands of small point sets in one call, such as the cells of a map.
 //
 //   batch [SETS]
 

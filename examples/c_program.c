@@ -2,10 +2,9 @@
  *
  *   c_program
  */
+#include <flaunay/flaunay.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <flaunay/flaunay.h>
 
 #define SIDE 20
 #define QUERIES 3

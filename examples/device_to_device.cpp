@@ -1,5 +1,5 @@
-// Points that a kernel makes, triangulated, and triangles that another kernel uses, all in the memory of the
-// device: the host sees sizes and, at the end, one number.
+// A kernel makes points, flaunay triangulates them, and another kernel uses the triangles, all in device
+// memory. The host receives only sizes and, at the end, one number.
 //
 //   device_to_device [N]
 
@@ -8,7 +8,7 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <flaunay/flaunay.hpp>
+#include <flaunay/device_memory.hpp>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -17,7 +17,7 @@
 namespace {
 
 const char* const kSource = R"(
-// A point of the unit square from its number (splitmix64's mixing).
+// Makes a random point of the unit square from its number (by the mixing function of SplitMix64).
 ulong mixed(ulong x) {
   x += 0x9e3779b97f4a7c15UL;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9UL;
@@ -102,7 +102,7 @@ void run(std::size_t n) {
   input.count = n;
   flaunay::Enqueue enqueue;
   enqueue.queue = program.queue.get();
-  flaunay::DeviceTriangulation mesh;  // its buffers are made by the first call, and used again by the next
+  flaunay::DeviceTriangulation mesh;  // the first call makes its buffers, and later calls use them again
   triangulator.triangulate(input, mesh, flaunay::Parts(), enqueue);
 
   const std::size_t count = mesh.triangle_offsets.back();

@@ -1,4 +1,4 @@
-// Points in a vector to a picture.
+// Triangulates points in a vector and draws a picture.
 //
 //   vector_to_svg [FILE.svg]
 

@@ -44,7 +44,7 @@ void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_
 Arena::Arena(boost::compute::context context, const boost::compute::device& device)
     : context_(std::move(context)),
       in_host_memory_(device.type() & CL_DEVICE_TYPE_CPU),
-      // At least a cache line, so that kernels' vector loads never straddle a neighbour's.
+      // At least a cache line, so that vector loads of one array never share a cache line with another array.
       alignment_(std::max<std::size_t>(128, device.get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8)),
       largest_(device.max_memory_alloc_size()),
       blocks_(1) {}
@@ -61,7 +61,7 @@ std::size_t Arena::held_bytes() const {
 std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, [[maybe_unused]] bool in_host_memory,
                                                 std::size_t bytes) {
 #ifdef __linux__
-  // Kernels jump about in these blocks: with pages of 4 KiB the translation of addresses would cost more than
+  // Kernels access these blocks irregularly: with pages of 4 KiB, address translation would take longer than
   // the loads.
   if (in_host_memory && bytes >= kHugePage) {
     const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
@@ -69,7 +69,7 @@ std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, [[maybe_unus
       prefer_huge_pages(pages, rounded);
       cl_int code = CL_SUCCESS;
       cl_mem memory = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
-      // The pages go with the buffer, which lives on while work that uses it is enqueued.
+      // The pages are freed with the buffer, which OpenCL keeps while enqueued work uses it.
       if (code == CL_SUCCESS) {
         code = clSetMemObjectDestructorCallback(
             memory, [](cl_mem, void* freed) { std::free(freed); }, pages);
@@ -115,7 +115,7 @@ void Arena::lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std
   is_lent_ = memory != nullptr;
   if (!is_lent_) return;
   own_blocks_ = std::exchange(blocks_, std::vector<Block>(1));
-  // Sub-buffers must begin at multiples of it.
+  // OpenCL requires sub-buffers to begin at multiples of the alignment.
   const std::size_t begin = (offset + alignment_ - 1) / alignment_ * alignment_;
   blocks_[0] = {memory, begin, offset + bytes < begin ? 0 : offset + bytes - begin, 0};
 }
@@ -131,13 +131,13 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
     ++block_allocations_;
     return create_buffer(context_.get(), std::max<std::size_t>(bytes, 1));
   }
-  // OpenCL has no empty buffers; an array of no elements still needs an address.
+  // OpenCL has no empty buffers, so an empty array gets some bytes, too.
   const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
   while (blocks_[current_].used + rounded > blocks_[current_].size) {
     if (current_ + 1 == blocks_.size()) blocks_.emplace_back();
     Block& next = blocks_[current_ + 1];
     if (next.size < rounded) {
-      // An eighth of what is held now: few blocks, and not too much in vain.
+      // An eighth of the memory held now, so that there are few blocks and little unused memory.
       std::size_t block_size = std::max({rounded, kSmallestBlock, held_bytes() / 8});
       block_size = std::max(rounded, std::min(block_size, largest_));
       next.memory.reset();

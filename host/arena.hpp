@@ -1,4 +1,4 @@
-// Device memory: one stack of typed buffers, carved from blocks that live as long as the arena.
+// Device memory: a stack of typed buffers inside of larger blocks that live as long as the arena.
 #pragma once
 
 #include <CL/cl.h>
@@ -11,23 +11,30 @@
 
 namespace flaunay::host {
 
-/// A run of T in device memory. A handle: copies refer to the same memory.
+/// An array of T in device memory. Copies of this handle refer to the same memory.
 template <typename T>
 class Buffer {
  public:
   Buffer() = default;
   Buffer(std::shared_ptr<_cl_mem> memory, std::size_t size) : memory_(std::move(memory)), size_(size) {}
   cl_mem memory() const { return memory_.get(); }
+  /// The memory, which a copy of this pointer keeps alive.
+  const std::shared_ptr<_cl_mem>& kept_memory() const { return memory_; }
   std::size_t size() const { return size_; }
+  /// Returns the same memory as an array of another type.
+  template <typename U>
+  Buffer<U> as() const {
+    return {memory_, size_ * sizeof(T) / sizeof(U)};
+  }
 
  private:
   std::shared_ptr<_cl_mem> memory_;
   std::size_t size_ = 0;
 };
 
-/// A stack: what was allocated last is released first, by scopes. Work already enqueued on an in-order queue
-/// may go on using released memory, since whatever reuses it is enqueued later. If the blocks do not suffice,
-/// a further block is allocated, and kept. A CPU's blocks are in huge pages where the system gives them.
+/// A stack allocator: scopes release what was allocated last. Work that is enqueued on an in-order queue may
+/// go on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
+/// further block is allocated and kept. On a CPU, blocks use huge pages if the system provides them.
 class Arena {
  public:
   Arena(boost::compute::context context, const boost::compute::device& device);
@@ -35,16 +42,18 @@ class Arena {
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
-  /// Makes one block of `bytes`, or of as many as the device allows in one piece, if nothing is allocated and
-  /// the blocks hold less. Throws DeviceError if the device cannot give it.
+  /// If nothing is allocated and the blocks hold less than `bytes`, replaces them by one block of that size,
+  /// or of the largest size that the device allows for one buffer. Throws DeviceError if the device has not
+  /// enough memory.
   void reserve(std::size_t bytes);
 
-  /// From now on, `bytes` of that buffer from `offset` on take the place of the own blocks, and there are no
-  /// others: allocate throws DeviceError where they do not suffice. Null ends that. Nothing may be allocated.
+  /// Makes allocations use `bytes` bytes of the given buffer from `offset` on, and no other memory: allocate
+  /// throws DeviceError if they do not suffice. Null: the arena uses its own blocks again. Must not be called
+  /// while anything is allocated.
   void lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std::size_t bytes);
 
-  /// From now on every allocation is an OpenCL buffer of its own and of its own size, so that a simulator
-  /// sees every access beyond it. Slow.
+  /// Makes every later allocation a separate OpenCL buffer of exactly its size, so that a simulator such as
+  /// oclgrind detects every access out of bounds. Slow.
   void separate_buffers() { separate_ = true; }
 
   template <typename T>
@@ -52,7 +61,7 @@ class Arena {
     return Buffer<T>(allocate_bytes(count, sizeof(T)), count);
   }
 
-  /// Releases, at its end, all that was allocated since its begin.
+  /// Its destructor releases everything that was allocated since its construction.
   class Scope {
    public:
     explicit Scope(Arena& arena) : arena_(arena), block_(arena.current_), used_(arena.blocks_[block_].used) {}
@@ -66,20 +75,20 @@ class Arena {
     std::size_t used_;
   };
 
-  /// Every array begins at a multiple of so many bytes.
+  /// Every array begins at a multiple of this many bytes.
   std::size_t alignment() const { return alignment_; }
-  /// Bytes in use at most since reset_peak, without gaps at the ends of blocks.
+  /// The largest number of bytes in use since reset_peak, without unused ends of blocks.
   std::size_t peak_bytes() const { return peak_; }
-  /// Bytes of all blocks, own and lent.
+  /// The bytes of all blocks, the arena's own and lent ones.
   std::size_t held_bytes() const;
-  /// Blocks, and separate buffers, made so far: no more blocks for the same work done again.
+  /// The number of blocks and separate buffers made so far. Repeating the same work makes no more blocks.
   std::size_t block_allocations() const { return block_allocations_; }
   void reset_peak() { peak_ = 0; }
 
  private:
   struct Block {
     std::shared_ptr<_cl_mem> memory;
-    std::size_t offset = 0;  // where it begins in that
+    std::size_t offset = 0;  // of the block in its memory
     std::size_t size = 0;
     std::size_t used = 0;
   };
@@ -95,16 +104,16 @@ class Arena {
   std::size_t alignment_;
   std::size_t largest_;
   std::vector<Block> blocks_;
-  std::vector<Block> own_blocks_;  // while others are lent
+  std::vector<Block> own_blocks_;  // kept here while a buffer is lent
   std::size_t current_ = 0;
   std::size_t peak_ = 0;
   std::size_t block_allocations_ = 0;
 };
 
-/// A buffer for kernels to read and write; a CPU's in huge pages where the system gives them.
+/// Makes a buffer that kernels read and write. On a CPU it uses huge pages if the system provides them.
 std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host_memory, std::size_t bytes);
 
-/// Asks the system for huge pages in [begin, begin + bytes), memory not yet touched.
+/// Asks the system to use huge pages for [begin, begin + bytes), memory that was not accessed before.
 void prefer_huge_pages(void* begin, std::size_t bytes);
 
 }  // namespace flaunay::host

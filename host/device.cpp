@@ -52,7 +52,7 @@ std::vector<boost::compute::device> all_devices() {
 }
 
 bool has_fp64(const boost::compute::device& device) {
-  // Before OpenCL 1.2, devices without it may answer CL_INVALID_VALUE.
+  // Before OpenCL 1.2, devices without fp64 may answer CL_INVALID_VALUE.
   cl_device_fp_config config = 0;
   return clGetDeviceInfo(device.id(), CL_DEVICE_DOUBLE_FP_CONFIG, sizeof config, &config, nullptr) ==
              CL_SUCCESS &&

@@ -5,7 +5,7 @@
 namespace flaunay::host {
 
 std::string error_name(cl_int code) {
-  // Boost.Compute knows the names of OpenCL 1.x, but says it in words; the constants are what one searches
+  // Boost.Compute describes the codes of OpenCL 1.x in words; the names of the constants are easier to search
   // for.
   switch (code) {
 #define FLAUNAY_NAME(constant) \

@@ -1,4 +1,4 @@
-// OpenCL failures as exceptions that name the call, the code, and what to do.
+// Failures of OpenCL as exceptions that name the call, the error code and a remedy.
 #pragma once
 
 #include <CL/cl.h>
@@ -14,7 +14,7 @@ class DeviceError : public std::runtime_error {
   explicit DeviceError(const std::string& message, cl_int code = CL_SUCCESS, const std::string& call = {})
       : std::runtime_error(message), code_(code), call_(call) {}
   cl_int code() const noexcept { return code_; }
-  /// The name of the OpenCL call; empty if none failed.
+  /// The name of the OpenCL call that failed; empty if none did.
   const std::string& call() const noexcept { return call_; }
 
  private:
@@ -22,13 +22,14 @@ class DeviceError : public std::runtime_error {
   std::string call_;
 };
 
-/// "CL_OUT_OF_RESOURCES" for -5, and so on; "unknown OpenCL error -1234" otherwise.
+/// The name of an error code, "CL_OUT_OF_RESOURCES" for -5; "unknown OpenCL error -1234" if it has none.
 std::string error_name(cl_int code);
 
-/// What a user can do about the code; empty if nothing helpful is known.
+/// What a user can do about this error; empty if no remedy is known.
 std::string error_advice(cl_int code);
 
-/// Throws DeviceError for a code other than CL_SUCCESS. call: the call's own text; kernel: its name or "".
+/// Throws DeviceError unless the code is CL_SUCCESS. call: the source text of the call; kernel: the name of
+/// the kernel that it is about, or "".
 void check_call(cl_int code, const char* call, const std::string& kernel = {});
 
 }  // namespace flaunay::host

@@ -32,7 +32,7 @@ std::string read_kernel_file(const std::string& name) {
   throw DeviceError(fmt::format("no kernel file {} in this build", name));
 }
 
-// Puts included files in place, each once: the driver never looks for files.
+// Inserts included files, each once, so that the driver does not have to find files.
 void append_with_includes(const std::string& name, std::set<std::string>& seen, std::string& out) {
   if (!seen.insert(name).second) return;
   std::istringstream lines(read_kernel_file(name));
@@ -59,16 +59,18 @@ std::string kernel_source(const std::string& file) {
   return source;
 }
 
-Runtime::Runtime(const boost::compute::device& device) : Runtime(boost::compute::context(device), device) {}
+Runtime::Runtime(const boost::compute::device& device, std::shared_ptr<const Sizes> sizes)
+    : Runtime(boost::compute::context(device), device, std::move(sizes)) {}
 
-Runtime::Runtime(const boost::compute::context& context, const boost::compute::device& device)
+Runtime::Runtime(const boost::compute::context& context, const boost::compute::device& device,
+                 std::shared_ptr<const Sizes> sizes)
     : device_(device),
-      tuning_(tuning_for(device)),
+      sizes_(std::move(sizes)),
       context_(context),
       own_queues_{make_queue(false), {}},
       queue_(own_queues_[0]),
       arena_(context_, device) {
-  if (tuning_.separate_buffers) arena_.separate_buffers();
+  if (sizes_->separate_buffers != 0) arena_.separate_buffers();
 }
 
 Runtime::~Runtime() {
@@ -76,7 +78,7 @@ Runtime::~Runtime() {
   for (const auto& [event, name] : events_) clReleaseEvent(event);
 }
 
-// In order. Time stamps are not free on every device, so there are none unless they are read.
+// Makes an in-order queue. Time stamps slow some devices down, so they are only enabled for profiling.
 boost::compute::command_queue Runtime::make_queue(bool profiling) const {
   return {context_, device_, profiling ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0}};
 }
@@ -90,7 +92,7 @@ void Runtime::use_queue(cl_command_queue wanted, bool profiling) {
   const boost::compute::command_queue before = queue_;
   queue_ = boost::compute::command_queue(wanted);
   if (before != queue_) follow(before.get());
-  // Its owner knows the other one, and may have enqueued there what this is to follow.
+  // Work that was enqueued on the other queue must be complete before later work begins.
   if (wanted == own_queues_[1].get() && before != own_queues_[0]) follow(own_queues_[0].get());
   profiling_ = profiling;
   is_unordered_ = queue_.get_info<cl_command_queue_properties>(CL_QUEUE_PROPERTIES) &
@@ -124,10 +126,10 @@ void Runtime::keep_order() {
   if (is_unordered_) FLAUNAY_CL(clEnqueueBarrierWithWaitList(queue_.get(), 0, nullptr, nullptr));
 }
 
-void Runtime::set_tuning(const Tuning& tuning) {
+void Runtime::set_sizes(std::shared_ptr<const Sizes> sizes) {
   // Pending events refer to kernels by name.
   collect_times();
-  tuning_ = tuning;
+  sizes_ = std::move(sizes);
   for (auto& kernels : kernels_) kernels.clear();
   for (auto& programs : programs_) programs.clear();
 }
@@ -143,9 +145,8 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   if (found != programs.end()) return found->second;
   const double begin = now();
   auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
-  const std::string options = fmt::format(
-      "-cl-std=CL1.2 -DSORT_BITS={} -DSORT_GROUP={} -DSMALL_REGION={} -DFETCH_AHEAD={}{}", tuning_.sort_bits,
-      tuning_.sort_group, tuning_.small_region, tuning_.fetch_ahead, counting_ ? " -DFLAUNAY_COUNT" : "");
+  const std::string options =
+      fmt::format("-cl-std=CL1.2 {}{}", sizes_->build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");
   const cl_device_id id = device_.id();
   const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
@@ -161,10 +162,10 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   return programs.emplace(file, std::move(program)).first->second;
 }
 
-Runtime::Kernel& Runtime::find_kernel(const char* file, const char* name) {
-  const auto key = std::make_pair(file, name);
+Runtime::Kernel& Runtime::find_kernel(const KernelName& wanted) {
+  const auto [file, name] = wanted;
   auto& kernels = kernels_[counting_];
-  const auto found = kernels.find(key);
+  const auto found = kernels.find(&wanted);
   if (found != kernels.end()) return found->second;
   const boost::compute::program& program = find_program(file);
   cl_int code = CL_SUCCESS;
@@ -182,11 +183,11 @@ Runtime::Kernel& Runtime::find_kernel(const char* file, const char* name) {
   query(CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof required, required);
   query(CL_KERNEL_LOCAL_MEM_SIZE, sizeof local_memory, &local_memory);
   if (local_memory > device_.get_info<cl_ulong>(CL_DEVICE_LOCAL_MEM_SIZE)) largest = 0;
-  return kernels.emplace(key, Kernel{owned, name, arguments, largest, required[0] != 0}).first->second;
+  return kernels.emplace(&wanted, Kernel{owned, name, arguments, largest, required[0] != 0}).first->second;
 }
 
 void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group) {
-  if (work_items == 0) return;  // which OpenCL 1.2 does not allow
+  if (work_items == 0) return;  // OpenCL 1.2 does not allow empty launches
   if (!kernel.requires_group) group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
   cl_event event = nullptr;
   ++launches_;
@@ -194,7 +195,8 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
     const std::size_t global = (work_items + group - 1) / group * group;
     const cl_int code = clEnqueueNDRangeKernel(queue_.get(), kernel.kernel.get(), 1, nullptr, &global, &group,
                                                0, nullptr, profiling_ ? &event : nullptr);
-    // Registers may run out for groups that the driver has called possible.
+    // The launch may need more registers than the device has, although the driver reported the group size as
+    // possible.
     const bool is_too_large = code == CL_INVALID_WORK_GROUP_SIZE || code == CL_OUT_OF_RESOURCES;
     if (!is_too_large || group == 1 || kernel.requires_group) {
       check_call(code, "clEnqueueNDRangeKernel", kernel.name);
@@ -279,7 +281,7 @@ void Runtime::collect_times() {
         clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr) |
         clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr);
     clReleaseEvent(event);
-    if (code != CL_SUCCESS) continue;  // of a kernel that failed, which other calls tell
+    if (code != CL_SUCCESS) continue;  // the kernel failed, which other calls report
     KernelTime& time = times_[*name];
     ++time.launches;
     time.seconds += 1e-9 * static_cast<double>(end - begin);

@@ -1,4 +1,4 @@
-// A device ready for work: context, queue, programs, kernels, memory, and the accounts of what was done.
+// A device that is ready for work: its context, queue, kernels and memory, and counts of what was done.
 #pragma once
 
 #include <boost/compute/command_queue.hpp>
@@ -9,86 +9,108 @@
 #include <cstddef>
 #include <exception>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "host/arena.hpp"
 #include "host/error.hpp"
-#include "host/tuning.hpp"
+#include "host/kernel_arguments.hpp"
+#include "host/sizes.hpp"
 
 namespace flaunay::host {
 
-/// What one kernel cost, if profiling is on.
+/// The launches of one kernel and their time, if profiling is on.
 struct KernelTime {
   std::size_t launches = 0;
   double seconds = 0;
 };
 
-/// Owns everything that belongs to one device. One thread at a time: kernel objects carry their arguments.
+/// Owns everything that belongs to one device. Must be used by one thread at a time, because OpenCL's kernel
+/// objects hold their arguments.
 class Runtime {
  public:
-  explicit Runtime(const boost::compute::device& device);
-  /// In a context that the device belongs to.
-  Runtime(const boost::compute::context& context, const boost::compute::device& device);
+  /// sizes: the sizes that kernels are compiled for and launched with; not null.
+  Runtime(const boost::compute::device& device, std::shared_ptr<const Sizes> sizes);
+  /// Uses the given context, which the device must belong to.
+  Runtime(const boost::compute::context& context, const boost::compute::device& device,
+          std::shared_ptr<const Sizes> sizes);
   ~Runtime();
 
   const boost::compute::device& device() const { return device_; }
   const boost::compute::context& context() const { return context_; }
-  const Tuning& tuning() const { return tuning_; }
-  /// For tests of boundaries: results must not depend on it.
-  void set_tuning(const Tuning& tuning);
+  const Sizes& sizes() const { return *sizes_; }
+  /// Changes the sizes. Kernels are compiled again.
+  void set_sizes(std::shared_ptr<const Sizes> sizes);
   Arena& arena() { return arena_; }
   const Arena& arena() const { return arena_; }
   cl_command_queue queue() const { return queue_.get(); }
   cl_command_queue own_queue() const { return own_queues_[0].get(); }
-  /// From now on work goes to the caller's queue, which is retained, or with null to the runtime's own. Each
-  /// command begins when the one before has ended, also where the queue may reorder and across a change of
-  /// queues. profiling: whether kernels are timed, which the caller's queue must be made for.
+  /// Makes later work use the caller's queue, which is retained, or the runtime's own queue if it is null.
+  /// Each command begins when the previous one has ended, even on an out-of-order queue and when the queue
+  /// changes. profiling: whether to time kernels; the caller's queue must support that.
   void use_queue(cl_command_queue wanted, bool profiling);
-  /// The runtime's own queue, with or without.
+  /// Uses the runtime's own queue, and times kernels or not.
   void set_profiling(bool on) { use_queue(nullptr, on); }
-  /// What is enqueued from now on waits for the events.
+  /// Makes later commands wait for the events.
   void wait_for(const std::vector<cl_event>& events);
-  /// An event that is complete when all that was enqueued is; to be released.
+  /// Returns an event that completes when everything enqueued so far is complete. The caller releases it.
   cl_event mark();
 
-  /// Launches a kernel with one work-item per element. file: "scan" for kernels/scan.cl; both names are
-  /// literals, whose addresses kernels are found by. The kernel's first argument is the number of elements as
-  /// int; surplus work-items of the last group must do nothing.
-  template <typename... Arguments>
-  void map(const char* file, const char* name, std::size_t n, const Arguments&... arguments) {
-    if (n == 0) return;
-    launch(file, name, n, tuning_.map_group, static_cast<cl_int>(n), arguments...);
+  /// Launches a kernel with one work-item per element. The kernel must ignore the surplus work-items of the
+  /// last group.
+  template <typename Kernel>
+  void map(std::size_t n, const Kernel& kernel) {
+    launch(n, sizes_->map_group, n, kernel);
   }
 
-  /// Launches a kernel with one work-item per chunk. Its first two arguments are the number of elements and
-  /// the number of elements per chunk, as int.
-  template <typename... Arguments>
-  void chunks(const char* file, const char* name, std::size_t n, std::size_t chunk,
-              const Arguments&... arguments) {
+  /// Launches a kernel with one work-item per chunk of elements.
+  template <typename Kernel>
+  void chunks(std::size_t n, std::size_t chunk, const Kernel& kernel) {
+    static_assert(Kernel::form == Form::PerChunk);
     if (n == 0) return;
-    launch(file, name, (n + chunk - 1) / chunk, tuning_.chunk_group, static_cast<cl_int>(n),
-           static_cast<cl_int>(chunk), arguments...);
+    launch_with((n + chunk - 1) / chunk, sizes_->chunk_group, kernel, Value<cl_int>(n), Value<cl_int>(chunk));
   }
 
-  /// Launches a kernel over work_items, padded to whole groups: of the size given, or smaller ones if the
-  /// device takes no such groups of this kernel, unless the kernel itself requires a size.
+  /// Launches a kernel with this many work-items, rounded up to whole groups. Groups are smaller than given
+  /// if the device does not support that size for this kernel, unless the kernel requires the size.
+  template <typename Kernel>
+  void launch(std::size_t work_items, std::size_t group, const Kernel& kernel) {
+    static_assert(Kernel::form == Form::Plain);
+    launch_with(work_items, group, kernel);
+  }
+  /// Launches a kernel whose number of elements n differs from its number of work-items.
+  template <typename Kernel>
+  void launch(std::size_t work_items, std::size_t group, std::size_t n, const Kernel& kernel) {
+    static_assert(Kernel::form == Form::PerElement);
+    launch_with(work_items, group, kernel, Value<cl_int>(n));
+  }
+
+  /// Launches one pass of segmented_arg_reduce (host/vector_operations.hpp).
+  template <typename Kernel>
+  void arg_reduce(std::size_t n, std::size_t chunk, bool is_first_pass, const In<cl_int>& segment,
+                  const In<cl_int>& candidate, const Out<cl_int>& partial_segment,
+                  const Out<cl_int>& partial_candidate, const Kernel& kernel) {
+    static_assert(Kernel::form == Form::ArgReduce);
+    launch_with((n + chunk - 1) / chunk, sizes_->chunk_group, kernel, Value<cl_int>(n), Value<cl_int>(chunk),
+                Value<cl_int>(is_first_pass), segment, candidate, partial_segment, partial_candidate,
+                kernel.result);
+  }
+
+  /// Launches a kernel that has no launcher, such as those of tests. The arguments are not checked.
   template <typename... Arguments>
-  void launch(const char* file, const char* name, std::size_t work_items, std::size_t group,
-              const Arguments&... arguments) {
-    Kernel& kernel = find_kernel(file, name);
+  void launch_unchecked(const KernelName& name, std::size_t work_items, std::size_t group,
+                        const Arguments&... arguments) {
+    Kernel& kernel = find_kernel(name);
     cl_uint index = 0;
     (set_argument(kernel, index++, arguments), ...);
-    if (counting_ && index < kernel.arguments) set_argument(kernel, index, counters_);
-    enqueue(kernel, work_items, group);
+    finish_launch(kernel, index, work_items, group);
   }
 
-  /// The most work-items in a group of this kernel; 0 if it needs more local memory than there is.
-  std::size_t largest_group(const char* file, const char* name) {
-    return find_kernel(file, name).largest_group;
-  }
+  /// The largest work-group size of this kernel; 0 if it needs more local memory than the device has.
+  std::size_t largest_group(const KernelName& name) { return find_kernel(name).largest_group; }
 
-  /// Copies from the device and waits; one host wait.
+  /// Copies from the device to the host, and waits for it.
   template <typename T>
   void read(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
@@ -100,62 +122,66 @@ class Runtime {
     read(from, index, 1, &value);
     return value;
   }
-  /// Copies to the device; from may be reused at once.
+  /// Copies to the device. `from` may be changed when the call returns.
   template <typename T>
   void write(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
     enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_TRUE);
   }
-  /// The same without waiting, for what is read together: `to` has the values after the next wait.
+  /// Enqueues a copy to the host without waiting, so that several copies share a wait. `to` has the values
+  /// after the next wait.
   template <typename T>
   void read_later(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
     enqueue_read(from.memory(), first * sizeof(T), count * sizeof(T), to, CL_FALSE);
   }
-  /// The same without waiting: `from` must stay until the next wait.
+  /// Enqueues a copy to the device without waiting. `from` must not be changed until the next wait.
   template <typename T>
   void write_later(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
     enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_FALSE);
   }
-  /// The same, and the values are kept for as long as it takes.
+  /// Enqueues a copy to the device without waiting, and keeps the values until it is done.
   template <typename T>
   void write_kept(const Buffer<T>& to, std::vector<T> values) {
     const auto kept = std::make_shared<std::vector<T>>(std::move(values));
     write_later(to, 0, kept->size(), kept->data());
     kept_.push_back(kept);
   }
-  /// A buffer of the arena with the values.
+  /// Returns a buffer from the arena that holds the values.
   template <typename T>
   Buffer<T> upload(Arena& arena, std::vector<T> values) {
     const auto buffer = arena.allocate<T>(values.size());
     write_kept(buffer, std::move(values));
     return buffer;
   }
-  /// Host memory as kernels read it: in place on a device that works in host memory, else a copy, which comes
-  /// from the arena. The memory must stay until the work is done.
+  /// Returns a buffer from which kernels read host memory. On a device that works in host memory it is that
+  /// memory itself, otherwise a copy in the arena. The host memory must not be changed until the work is
+  /// done.
   template <typename T>
   Buffer<T> view(const T* values, std::size_t count) {
-    if (tuning_.in_host_memory && count > 0) {
+    if (sizes_->in_host_memory && count > 0) {
       return {wrap(const_cast<T*>(values), count * sizeof(T), CL_MEM_READ_ONLY), count};
     }
     const auto copy = arena_.allocate<T>(count);
     write(copy, 0, count, values);
     return copy;
   }
-  /// What kernels write for values: its own memory, or a buffer from the arena; fetch_later() ends it.
+  /// Returns a buffer in which kernels write results for `values`. On a device that works in host memory it
+  /// is the vector's own memory, otherwise it comes from the arena. Call fetch_later after the kernels.
   template <typename T>
   Buffer<T> output(std::vector<T>& values) {
-    if (tuning_.in_host_memory && !values.empty()) {
+    if (sizes_->in_host_memory && !values.empty()) {
       return {wrap(values.data(), values.size() * sizeof(T), CL_MEM_READ_WRITE), values.size()};
     }
     return arena_.allocate<T>(values.size());
   }
-  /// After the next wait, values are what kernels have written until now.
+  /// Enqueues the transfer from a buffer that output() has made: after the next wait, `values` has what
+  /// kernels have written until now.
   template <typename T>
   void fetch_later(const Buffer<T>& from, std::vector<T>& values) {
     if (values.empty()) return;
-    if (tuning_.in_host_memory) {
+    if (sizes_->in_host_memory) {
       hand_over(from.memory(), values.size() * sizeof(T));
     } else {
       read_later(from, 0, values.size(), values.data());
@@ -172,11 +198,11 @@ class Runtime {
     enqueue_copy(from.memory(), from_first * sizeof(T), to.memory(), to_first * sizeof(T), count * sizeof(T));
   }
   void finish();
-  /// Lets the device begin with what was enqueued.
+  /// Submits the enqueued commands to the device, which may then begin.
   void flush();
 
-  /// Waits, if an exception ends its scope, for what was to be read or written later: the memory that is
-  /// meant must be declared before.
+  /// If an exception ends its scope, waits for the copies of read_later, write_later and fetch_later, so that
+  /// none uses host memory that is gone. Must be declared after the vectors that they use.
   class Settled {
    public:
     explicit Settled(const Runtime& runtime) : runtime_(runtime), exceptions_(std::uncaught_exceptions()) {}
@@ -191,10 +217,10 @@ class Runtime {
     int exceptions_;
   };
 
-  /// From now on kernels are built with FLAUNAY_COUNT, and those that count get these counters as their last
-  /// argument; see kernels/shared/counting.h. An empty buffer ends that.
+  /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
+  /// counters as their last argument; see kernels/shared/counting.h. An empty buffer ends this.
   void set_counters(const Buffer<cl_uint>& counters);
-  /// Per kernel, since the last reset; empty without profiling.
+  /// The times per kernel since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();
   std::size_t launches() const { return launches_; }
   std::size_t waits() const { return waits_; }
@@ -208,23 +234,52 @@ class Runtime {
     boost::compute::kernel kernel;
     std::string name;
     cl_uint arguments;
-    std::size_t largest_group;  ///< work-items
-    bool requires_group;        ///< has an attribute reqd_work_group_size
+    std::size_t largest_group;  ///< largest work-group size
+    bool requires_group;        ///< whether it has the attribute reqd_work_group_size
   };
+  template <typename Launcher, typename... Leading>
+  void launch_with(std::size_t work_items, std::size_t group, const Launcher& launcher,
+                   const Leading&... leading) {
+    if (work_items == 0) return;
+    Kernel& kernel = find_kernel(Launcher::kernel_name);
+    cl_uint index = 0;
+    (set_argument(kernel, index++, leading), ...);
+    launcher.for_each_argument([&](const auto& argument) { set_argument(kernel, index++, argument); });
+    finish_launch(kernel, index, work_items, group);
+  }
+  /// arguments: the number of arguments that are set. If the kernel has one more, that is the counters.
+  void finish_launch(Kernel& kernel, cl_uint arguments, std::size_t work_items, std::size_t group) {
+    if (counting_ && arguments < kernel.arguments) set_argument(kernel, arguments, counters_);
+    enqueue(kernel, work_items, group);
+  }
+  void set_memory(Kernel& kernel, cl_uint index, cl_mem memory) {
+    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(cl_mem), &memory), kernel.name);
+  }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
-    const cl_mem memory = buffer.memory();
-    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(cl_mem), &memory), kernel.name);
+    set_memory(kernel, index, buffer.memory());
+  }
+  template <typename T>
+  void set_argument(Kernel& kernel, cl_uint index, const In<T>& array) {
+    set_memory(kernel, index, array.memory.get());
+  }
+  template <typename T>
+  void set_argument(Kernel& kernel, cl_uint index, const Out<T>& array) {
+    set_memory(kernel, index, array.memory.get());
+  }
+  template <typename T>
+  void set_argument(Kernel& kernel, cl_uint index, const Value<T>& value) {
+    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(T), &value.value), kernel.name);
   }
   template <typename T, typename = std::enable_if_t<std::is_arithmetic_v<T>>>
   void set_argument(Kernel& kernel, cl_uint index, T value) {
-    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(T), &value), kernel.name);
+    set_argument(kernel, index, Value<T>(value));
   }
 
   boost::compute::command_queue make_queue(bool profiling) const;
-  /// What is enqueued from now on waits for what was enqueued there.
+  /// Makes later commands wait for what was enqueued on the other queue.
   void follow(cl_command_queue other);
-  Kernel& find_kernel(const char* file, const char* name);
+  Kernel& find_kernel(const KernelName& name);
   const boost::compute::program& find_program(const std::string& file);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
   void enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait);
@@ -234,22 +289,22 @@ class Runtime {
   void enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes, std::size_t bytes);
   void enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
                     std::size_t bytes);
-  /// After each command.
+  /// To be called after each command: on an out-of-order queue, makes the next command wait for it.
   void keep_order();
   void collect_times();
 
   boost::compute::device device_;
-  Tuning tuning_;
+  std::shared_ptr<const Sizes> sizes_;
   boost::compute::context context_;
-  boost::compute::command_queue own_queues_[2];  // the second times kernels; made when it is needed
+  boost::compute::command_queue own_queues_[2];  // the second one times kernels, and is made on first use
   boost::compute::command_queue queue_;
   bool profiling_ = false;
   bool is_unordered_ = false;
-  std::vector<std::shared_ptr<void>> kept_;  // what is written later
+  std::vector<std::shared_ptr<void>> kept_;  // values of write_kept
   Arena arena_;
-  // Two of each: kernels that count and kernels that do not.
+  // Two of each: without counting, and with it.
   std::map<std::string, boost::compute::program> programs_[2];
-  std::map<std::pair<const char*, const char*>, Kernel> kernels_[2];
+  std::map<const KernelName*, Kernel> kernels_[2];
   Buffer<cl_uint> counters_{};
   bool counting_ = false;
   std::vector<std::pair<cl_event, const std::string*>> events_;
@@ -261,8 +316,9 @@ class Runtime {
   double build_seconds_ = 0;
 };
 
-/// The text of kernels/<file>.cl with its includes in place: from FLAUNAY_KERNEL_PATH if that is set, else as
-/// embedded when the library was built. Throws DeviceError if there is no such file.
+/// The text of kernels/<file>.cl with all included files inserted. It is read from the folder
+/// FLAUNAY_KERNEL_PATH if that is set; otherwise it is the text that was embedded when the library was built.
+/// Throws DeviceError if there is no such file.
 std::string kernel_source(const std::string& file);
 
 }  // namespace flaunay::host

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Triangulates a million points, checks the result exactly, and draws a smaller triangulation.
-# Needs nothing but a Debian 12: installs and builds first. Results: build/demo.
+# Needs only Debian 12: installs and builds everything else first. Results: build/demo.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Installs what flaunay needs on Debian 12 to build, run and test. Does nothing if all is there.
+# Installs what flaunay needs on Debian 12 to build, run and test. Does nothing if everything is installed.
 set -euo pipefail
 
 packages=(
   # building
   ca-certificates git cmake g++ ninja-build pkg-config
-  # OpenCL: the loader, the headers, and a device that every machine has, its CPU
+  # OpenCL: the loader, the headers, and PoCL, which makes the CPU a device
   ocl-icd-opencl-dev opencl-headers pocl-opencl-icd
   # libraries
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   # tests
-  libgtest-dev libgmp-dev libcgal-dev oclgrind
-  # benchmarks: those that flaunay is measured beside, with CGAL
-  libqhull-dev libgts-dev
+  libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
+  # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
+  libqhull-dev libgts-dev python3-matplotlib
   # the Python module and its tests
-  python3-dev python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-matplotlib python3-pytest
+  python3-dev python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
   # the documentation
   doxygen
   # the demonstration's picture

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the Python module, installs it in a virtual environment of its own (build/python) and runs its tests and the
+# Builds the Python module, installs it in a separate virtual environment (build/python) and runs its tests and the
 # examples in its documentation. Arguments go to pytest. Needs what scripts/install-deps.sh installs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -12,7 +12,8 @@ if ! "$python" -c '' 2>/dev/null; then
   "$system_python" -m venv --clear --system-site-packages "$environment"
 fi
 
-# What pyproject.toml names, kept in the environment: with build isolation, everything would be compiled anew each time.
+# The build tools that pyproject.toml names, kept in the environment: with build isolation, everything would be compiled
+# again each time.
 mapfile -t build_requirements < <("$python" -c '
 import tomllib
 with open("pyproject.toml", "rb") as file:
@@ -23,6 +24,6 @@ pip=("$python" -m pip --disable-pip-version-check --no-input)
 "${pip[@]}" install --quiet --no-build-isolation .
 
 # The programs in the guide.
-WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md
+WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md
 
 exec "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"

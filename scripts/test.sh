@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and runs all tests. Needs nothing but a Debian 12: installs first.
+# Builds and runs all tests. Needs only Debian 12: installs everything else first.
 #   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers
 #   scripts/test.sh --quick   without the sanitizers
 set -euo pipefail
@@ -16,6 +16,7 @@ case "${1-}" in
 esac
 
 scripts/install-deps.sh
+scripts/format.sh --check
 
 jobs="$(nproc)"
 build() {
@@ -26,8 +27,8 @@ build() {
 build release
 if ! $quick; then
   build asan
-  # PoCL and the compiler in it leak. Leaks of our own are looked for in the tests that open no device: those
-  # turn the detection on again.
+  # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
+  # detection on again.
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.

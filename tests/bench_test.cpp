@@ -1,12 +1,9 @@
-// flaunay-bench on tiny inputs: exit codes, what its records hold, and that its plots are what they should
-// be.
+// flaunay-bench on tiny inputs: exit codes, what its records hold, and that bench/plot.py draws them.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -14,55 +11,18 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "bench/plot.hpp"
 #include "tests/support/paths.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-namespace plot = flaunay::bench::plot;
 
 std::string contents(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// What is wrong with an XML text's tags, quotes or numbers; empty if nothing is.
-std::string xml_fault(const std::string& text) {
-  std::vector<std::string> open;
-  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
-    const std::size_t end = text.find('>', at);
-    if (end == std::string::npos) return "a tag without an end";
-    const std::string tag = text.substr(at + 1, end - at - 1);
-    at = end;
-    if (tag.empty() || tag[0] == '?') continue;
-    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return "odd quotes in <" + tag + ">";
-    if (tag.find('<') != std::string::npos) return "a tag in a tag: <" + tag + ">";
-    const auto name_end = std::find_if(tag.begin() + 1, tag.end(),
-                                       [](unsigned char c) { return !std::isalnum(c) && c != ':'; });
-    if (tag[0] == '/') {
-      if (open.empty() || open.back() != tag.substr(1)) return "<" + tag + "> closes nothing";
-      open.pop_back();
-    } else if (tag.back() != '/') {
-      open.emplace_back(tag.begin(), name_end);
-    }
-  }
-  if (!open.empty()) return "<" + open.back() + "> is not closed";
-  for (const char* number : {"\"nan", "\"-nan", "\"inf", "\"-inf", ",nan", ",inf"}) {
-    if (text.find(number) != std::string::npos) return "a coordinate that is no number";
-  }
-  return text.find("<svg ") == std::string::npos ? "no <svg>" : "";
-}
-
-TEST(Xml, FaultsAreFound) {
-  EXPECT_EQ(xml_fault("<svg a=\"1\"><g/></svg>"), "");
-  EXPECT_NE(xml_fault("<svg a=\"1\"><g></svg>"), "");
-  EXPECT_NE(xml_fault("<svg a=\"1><g/></svg>"), "");
-  EXPECT_NE(xml_fault("<svg a=\"nan\"></svg>"), "");
 }
 
 class BenchTest : public testing::Test {
@@ -76,27 +36,66 @@ class BenchTest : public testing::Test {
 
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
 
-  /// Runs flaunay-bench and returns its exit code; standard output and error are in files "out" and "err".
-  int run(const std::string& arguments) const {
-    const std::string command =
-        flaunay::bench_executable() + " " + arguments + " >" + path("out") + " 2>" + path("err");
-    const int status = std::system(command.c_str());
+  /// Runs a command and returns its exit code; standard output and error are in files "out" and "err".
+  int run_command(const std::string& command) const {
+    const int status = std::system((command + " >" + path("out") + " 2>" + path("err")).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
+  int run(const std::string& arguments) const {
+    return run_command(flaunay::bench_executable() + " " + arguments);
+  }
 
-  /// Runs with a record and a plot, checks what all of them have, and returns the record.
-  nlohmann::json run_well(const std::string& arguments) const {
-    const std::string json = path("record.json"), svg = path("plot.svg");
-    EXPECT_EQ(run(arguments + " --runs 1 --json " + json + " --plot " + svg), 0) << contents(path("err"));
-    EXPECT_EQ(xml_fault(contents(svg)), "");
+  /// Runs and returns the record, after a check of what all of them have.
+  nlohmann::json run_and_read(const std::string& arguments) const {
+    const std::string json = path("record.json");
+    EXPECT_EQ(run(arguments + " --json " + json), 0) << contents(path("err"));
     const auto record = nlohmann::json::parse(contents(json), nullptr, false);
     EXPECT_TRUE(record.is_object());
-    for (const char* key :
-         {"device", "driver", "platform", "host", "commit", "command", "date", "runs", "results"}) {
+    for (const char* key : {"subcommand", "device", "driver", "platform", "host", "commit", "command", "date",
+                            "runs", "agree", "results"}) {
       EXPECT_TRUE(record.contains(key)) << key;
     }
+    EXPECT_EQ(arguments.find(record.value("subcommand", "?")), 0u);
+    EXPECT_TRUE(record.value("agree", false));
+    return record;
+  }
+  nlohmann::json run_well(const std::string& arguments) const {
+    const auto record = run_and_read(arguments + " --runs 1");
     EXPECT_EQ(record.value("runs", 0), 1);
     return record;
+  }
+
+  /// Whether this machine has what bench/plot.py needs.
+  bool can_draw() const {
+    const std::string err = contents(path("err")), out = contents(path("out"));
+    const bool can = run_command(flaunay::plot_program() + " --help") == 0;
+    std::ofstream(path("err")) << err;
+    std::ofstream(path("out")) << out;
+    return can;
+  }
+
+  /// That a file is XML and a picture, with all labels and with numbers for coordinates.
+  void expect_picture(const std::string& svg, const std::vector<std::string>& labels) const {
+    const std::string text = contents(svg);
+    EXPECT_NE(text.find("<svg "), std::string::npos) << svg;
+    for (const std::string& label : labels) {
+      EXPECT_NE(text.find(">" + label + "<"), std::string::npos) << svg << ": " << label;
+    }
+    for (const char* number : {"\"nan", "\"inf", " nan", " inf"}) {
+      EXPECT_EQ(text.find(number), std::string::npos) << svg;
+    }
+    EXPECT_EQ(run_command("python3 -c 'import sys, xml.etree.ElementTree as t; t.parse(sys.argv[1])' " + svg),
+              0)
+        << contents(path("err"));
+  }
+
+  /// That the last record can be drawn.
+  void expect_drawn(const std::vector<std::string>& labels) const {
+    if (!can_draw()) return;
+    const std::string svg = path("plot.svg");
+    EXPECT_EQ(run_command(flaunay::plot_program() + " " + path("record.json") + " -o " + svg), 0)
+        << contents(path("err"));
+    expect_picture(svg, labels);
   }
 
   fs::path directory_;
@@ -130,7 +129,7 @@ TEST_F(BenchTest, Usage) {
   EXPECT_EQ(run("threads --counts 0"), 2);
   EXPECT_EQ(run("targets --modes nothing"), 2);
   EXPECT_EQ(run("paper --smallest 9 --largest 8"), 2);
-  EXPECT_EQ(run("paper --output " + path("err") + "/folder --smallest 6 --largest 6"), 3);
+  EXPECT_EQ(run("paper --smallest 6 --largest 6 --json " + path("no/such/folder.json")), 3);
   EXPECT_EQ(run("modes --sizes 100 --json " + path("no/such/folder.json")), 3);
   EXPECT_EQ(run("primitives --sizes 100 --device no-such-device"), 4);
 }
@@ -147,6 +146,7 @@ TEST_F(BenchTest, PeersAgreeAndAreRecorded) {
   }
   EXPECT_EQ(of_flaunay, 8u);  // two modes on four inputs
   EXPECT_EQ(record["best"].size(), 4u);
+  expect_drawn({"uniform", "grid", "flaunay-flattened", "time per point"});
 }
 
 TEST_F(BenchTest, SlowPeersAreSkippedAndSaidSo) {
@@ -178,10 +178,10 @@ TEST_F(BenchTest, ModesAreRecorded) {
   EXPECT_EQ(record["results"].size() + record["skipped"].size(), 8u);
   EXPECT_FALSE(record["results"].empty());
   for (const auto& row : record["results"]) {
-    expect_keys(row,
-                {"mode", "distribution", "n", "kernel_launches", "host_waits", "bytes_peak", "undecided"});
+    expect_keys(row, {"implementation", "distribution", "n", "kernel_launches", "host_waits", "undecided"});
     expect_times(row);
   }
+  expect_drawn({"line", "flaunay-dwyer"});
 }
 
 TEST_F(BenchTest, SlowModesEnd) {
@@ -189,7 +189,7 @@ TEST_F(BenchTest, SlowModesEnd) {
   EXPECT_EQ(record["results"].size(), 1u);
   ASSERT_EQ(record["skipped"].size(), 1u);
   EXPECT_EQ(record["skipped"][0].value("n", 0), 512);
-  EXPECT_NE(contents(path("out")).find("not measured"), std::string::npos);
+  EXPECT_NE(contents(path("err")).find("not measured"), std::string::npos);
 }
 
 TEST_F(BenchTest, PrimitivesAreRecorded) {
@@ -201,9 +201,10 @@ TEST_F(BenchTest, PrimitivesAreRecorded) {
     names.push_back(row.value("operation", ""));
   }
   for (const char* name :
-       {"plain copy", "exclusive_scan uint8", "sort_by_key", "segmented_select", "permute"}) {
+       {"plain copy", "exclusive_scan uint8", "sort_by_key", "count_flags", "segmented_arg_reduce"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
+  expect_drawn({"1000 elements", "plain copy", "segments of 10"});
 }
 
 /// Rows of measured times; of how many implementations.
@@ -244,6 +245,7 @@ TEST_F(BenchTest, TargetsAreMeasured) {
   const std::map<std::string, int> expected = {{"1.15", 2}, {"1.1", 4}, {"0.7", 1}, {"1.0", 1}, {"140.0", 1}};
   EXPECT_EQ(of_goal["3.5"], cgal ? 8 : 0);
   for (const auto& [goal, count] : expected) EXPECT_EQ(of_goal[goal], count) << goal;
+  expect_drawn({"goal", "grid / uniform, 2k"});
 }
 
 TEST_F(BenchTest, TargetsWithoutTheLargestInput) {
@@ -264,6 +266,7 @@ TEST_F(BenchTest, ScalingIsRecorded) {
   EXPECT_EQ(expect_entries(record), cgal ? 3u : 2u);
   EXPECT_EQ(record["results"].size(), cgal ? 16u : 12u);
   EXPECT_EQ(record["skipped"].size(), cgal ? 2u : 0u);
+  expect_drawn({"Time per point by number of points", "points", "flaunay-dwyer"});
 }
 
 TEST_F(BenchTest, CliffsAreBesideUniform) {
@@ -279,6 +282,7 @@ TEST_F(BenchTest, CliffsAreBesideUniform) {
     }
   }
   EXPECT_EQ(record["worst"][0].value("times_uniform", -1.0), worst);
+  expect_drawn({"300 points", "mostly-equal", "times its own uniform time"});
 }
 
 TEST_F(BenchTest, SlowInputsEnd) {
@@ -294,6 +298,7 @@ TEST_F(BenchTest, SmallCallsAreRecorded) {
   const auto record = run_well("small --sizes 32,100 --modes flattened");
   const std::size_t implementations = expect_entries(record);
   EXPECT_EQ(record["results"].size(), 2 * implementations);
+  expect_drawn({"Few points in a call", "flaunay-flattened"});
 }
 
 TEST_F(BenchTest, BatchesAreBesideLoops) {
@@ -313,6 +318,7 @@ TEST_F(BenchTest, BatchesAreBesideLoops) {
   }
   ASSERT_EQ(record["targets"].size(), 1u);
   EXPECT_EQ(record["targets"][0].value("goal", 0.0), 3);
+  expect_drawn({"30 sets of 100", "time"});
 }
 
 // The numbers of triangles agree all the same.
@@ -323,13 +329,11 @@ TEST_F(BenchTest, LongLoopsAreScaled) {
     EXPECT_LE(row.value("loop_sets_measured", 0), 7);
     EXPECT_GT(row.value("loop_sets_measured", 0), 0);
   }
-  EXPECT_NE(contents(path("out")).find("scaled from"), std::string::npos);
 }
 
 TEST_F(BenchTest, EmbeddingIsMeasured) {
   const auto record = run_well("embedding --quick --far-walks 100");
   const bool cgal = !without_cgal(contents(path("err")));
-  EXPECT_TRUE(record.value("agrees", false));
   std::map<std::string, int> of_operation;
   for (const auto& row : record["results"]) {
     expect_keys(row, {"operation", "implementation", "precision", "n", "count", "measured"});
@@ -350,18 +354,16 @@ TEST_F(BenchTest, EmbeddingIsMeasured) {
     EXPECT_GT(row.value("device_over_host_kernels", 0.0), 0);
   }
   EXPECT_EQ(record["targets"].size(), 3u);
+  expect_drawn({"triangulate", "what is derived", "locate", "all, float32"});
 }
 
 TEST_F(BenchTest, SecondEmbeddedCallsAllocateNothing) {
   const auto record = run_well("embedding --quick --far-walks 1");
-  ASSERT_EQ(record["calls"].size(), 2u * 3 * 2);
-  for (const auto& both : record["calls"]) {
-    for (const char* call : {"first", "second"}) {
-      expect_keys(both[call], {"host_waits", "kernel_launches", "bytes_to_host", "bytes_to_device"});
-      EXPECT_GT(both[call].value("kernel_launches", 0), 0);
-    }
-    EXPECT_GT(both["first"].value("device_allocations", 0), 0);
-    EXPECT_EQ(both["second"].value("device_allocations", -1), 0) << both;
+  ASSERT_EQ(record["calls"].size(), 2u * 3 * 2 * 2);
+  for (const auto& call : record["calls"]) {
+    expect_keys(call, {"parts", "precision", "host_waits", "bytes_to_host", "bytes_to_device"});
+    EXPECT_GT(call.value("kernel_launches", 0), 0);
+    EXPECT_EQ(call.value("device_allocations", -1) > 0, call.value("call", "") == "first") << call;
   }
 }
 
@@ -375,114 +377,73 @@ TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
     EXPECT_GT(speedup.value("speedup", 0.0), 0);
     EXPECT_NEAR(speedup.value("goal", 0.0), 0.9 * speedup.value("to_threads", 0), 1e-9);
   }
+  expect_drawn({"uniform, threads: 3", "flaunay-partition"});
 }
 
-/// Rows of a CSV file by the names of its columns.
-using Rows = std::vector<std::map<std::string, std::string>>;
+// ---- The paper
 
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> result;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) result.push_back(cell);
-  return result;
-}
-
-Rows read_csv(const std::string& path, const std::string& expected_header) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, expected_header) << path;
-  const std::vector<std::string> names = cells(line);
-  Rows rows;
-  while (std::getline(file, line)) {
-    const std::vector<std::string> values = cells(line);
-    EXPECT_EQ(values.size(), names.size()) << path << ": " << line;
-    rows.emplace_back();
-    for (std::size_t c = 0; c < std::min(names.size(), values.size()); ++c) rows.back()[names[c]] = values[c];
-  }
-  return rows;
-}
-
-std::uint64_t number(const std::map<std::string, std::string>& row, const std::string& column) {
-  const auto found = row.find(column);
-  return found == row.end() ? 0 : std::strtoull(found->second.c_str(), nullptr, 10);
-}
-
-std::string joined(const std::map<std::string, std::string>& row, const std::vector<std::string>& columns) {
-  std::string result;
-  for (const std::string& column : columns) result += row.at(column) + " ";
-  return result;
+/// A list of a median, a minimum and a maximum.
+void expect_spread(const nlohmann::json& row, const char* key) {
+  ASSERT_TRUE(row.contains(key)) << key << " in " << row;
+  EXPECT_LE(row[key][1].get<double>(), row[key][0].get<double>()) << key;
+  EXPECT_LE(row[key][0].get<double>(), row[key][2].get<double>()) << key;
 }
 
 class PaperTest : public BenchTest {
  protected:
   void SetUp() override {
     BenchTest::SetUp();
-    ASSERT_EQ(run("paper --smallest 8 --largest 9 --instances 2 --threads 3 --output " + path("paper")), 0)
-        << contents(path("err"));
+    record_ = run_and_read("paper --smallest 8 --largest 9 --instances 2 --threads 3");
   }
+  nlohmann::json record_;
 };
 
-constexpr std::size_t kInputsOfASize = 4 * 2;  // distributions, instances
-
-void expect_counts(const Rows& rows) {
-  const std::vector<std::string> kinds = {"arithmetic", "depths", "orientations", "circles"};
-  for (const auto& row : rows) {
-    std::uint64_t counted = 0;
-    for (const std::string& kind : kinds) counted += number(row, kind);
-    EXPECT_GE(number(row, "operations"), counted) << joined(row, {"algorithm", "component", "level"});
-    EXPECT_GE(number(row, "operations_with_bounds"), number(row, "operations"));
-    EXPECT_GT(number(row, "operations") + number(row, "critical_path"), 0u);
-  }
-}
-
-/// What precedes the first cut and all levels make the sum, for runs that are there level by level.
-void expect_levels_add_up(const Rows& rows) {
-  const std::vector<std::string> key = {"distribution", "n", "instance", "algorithm", "cut", "component"};
-  std::map<std::string, std::uint64_t> all, of_levels;
-  for (const auto& row : rows) {
-    (row.at("level") == "all" ? all : of_levels)[joined(row, key)] += number(row, "operations");
-  }
-  EXPECT_EQ(of_levels.size(), kInputsOfASize * 2 * 5);  // cuts, components
-  for (const auto& [name, operations] : of_levels) EXPECT_EQ(operations, all[name]) << name;
-}
-
-TEST_F(PaperTest, RunsAreWritten) {
-  const Rows rows = read_csv(path("paper/paper-runs.csv"),
-                             "distribution,n,instance,algorithm,cut,component,level,arithmetic,depths,"
-                             "orientations,circles,operations,operations_with_bounds,critical_path");
-  const auto totals =
-      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.at("level") == "all"; });
-  // Seven variants of the algorithm with five components, and Dwyer's with cuts and merges.
-  EXPECT_EQ(static_cast<std::size_t>(totals), 2 * kInputsOfASize * (7 * 5 + 2));
-  expect_counts(rows);
-  expect_levels_add_up(rows);
-}
-
-TEST_F(PaperTest, LevelsAndEndGamesAreWritten) {
-  const Rows levels = read_csv(path("paper/paper-levels.csv"),
-                               "distribution,n,instance,algorithm,cut,level,regions,internal_points,corners,"
-                               "largest_region,path_vertices,operations,operations_so_far,critical_path");
-  EXPECT_EQ(
-      std::count_if(levels.begin(), levels.end(), [](const auto& row) { return row.at("level") == "0"; }),
-      static_cast<std::ptrdiff_t>(kInputsOfASize * 2));
-  for (const auto& row : levels) {
-    for (const char* column : {"regions", "internal_points", "corners", "largest_region", "path_vertices"}) {
-      EXPECT_GT(number(row, column), 0u) << column;
+TEST_F(PaperTest, CountsAreRecorded) {
+  // Seven variants of the algorithm and Dwyer's on four distributions; three of them at the smaller size,
+  // too.
+  ASSERT_EQ(record_["results"].size(), (8u + 3) * 4);
+  for (const auto& row : record_["results"]) {
+    for (const char* key : {"operations_per_point", "over_dwyer", "depth", "parallelism"}) {
+      expect_spread(row, key);
+      EXPECT_GT(row[key][1].get<double>(), 0) << key;
     }
-    EXPECT_LE(number(row, "internal_points"), 512u);
-    EXPECT_GT(number(row, "operations_so_far"), number(row, "operations"));
+    if (row["algorithm"] == "dwyer") EXPECT_EQ(row["over_dwyer"][0], 1);
+    if (row["n"] != 512) continue;
+    double sum = 0;
+    for (const char* key : {"sorting", "cuts", "hull", "merge", "split", "endgame"}) {
+      expect_spread(row, key);
+      sum += row[key][0].get<double>();
+    }
+    // Of two instances, medians add up like means.
+    EXPECT_NEAR(sum, row["operations_per_point"][0].get<double>(), 1e-3 * sum);
   }
-  const Rows endgames = read_csv(path("paper/paper-endgame.csv"), "distribution,n,cut,corners,regions");
-  EXPECT_GE(endgames.size(), kInputsOfASize);
-  for (const auto& row : endgames) {
-    EXPECT_GE(number(row, "corners"), 3u);
-    EXPECT_GT(number(row, "regions"), 0u);
+}
+
+// What precedes the first cut and all levels make the sum.
+TEST_F(PaperTest, LevelsAndEndGamesAreRecorded) {
+  std::map<std::string, double> over_dwyer;
+  const auto key_of = [](const nlohmann::json& row) {
+    return row["distribution"].dump() + row["algorithm"].dump() + row["cut"].dump();
+  };
+  for (const auto& row : record_["levels"]) over_dwyer[key_of(row)] = row["work_before_over_dwyer"].back();
+  EXPECT_EQ(over_dwyer.size(), 3u * 4);
+  for (const auto& row : record_["results"]) {
+    if (row["n"] != 512 || over_dwyer.count(key_of(row)) == 0) continue;
+    EXPECT_NEAR(over_dwyer[key_of(row)], row["over_dwyer"][0].get<double>(), 1e-3);
   }
+  EXPECT_EQ(record_["endgame"].size(), 2u * 4);
+  for (const auto& row : record_["endgame"]) {
+    EXPECT_GE(row["corners"][0], 3);
+    EXPECT_EQ(row["corners"].size(), row["regions"].size());
+  }
+  EXPECT_EQ(record_["cross_check"].size(), 4u);
 }
 
 TEST_F(PaperTest, ReportHasClaimsAndFigures) {
-  const std::string report = contents(path("paper/paper.md"));
+  if (!can_draw()) GTEST_SKIP() << "no Matplotlib";
+  ASSERT_EQ(run_command(flaunay::plot_program() + " " + path("record.json") + " -o " + path("paper.md")), 0)
+      << contents(path("err"));
+  const std::string report = contents(path("paper.md"));
   for (const char* part :
        {"within a factor of about 2 of Dwyer's", "work efficiency", "75 % dearer than uniform with quickhull",
         "25 % dearer than uniform with the balanced hull", "work / depth about 10^4", "fewer than 10 corners",
@@ -492,75 +453,19 @@ TEST_F(PaperTest, ReportHasClaimsAndFigures) {
     EXPECT_NE(report.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(report.find("nan"), std::string::npos);
-  std::size_t verdicts = 0;
-  for (const std::string verdict : {"**agree**", "**partly**", "**disagree**"}) {
-    for (std::size_t at = report.find(verdict); at != std::string::npos; at = report.find(verdict, at + 1)) {
-      ++verdicts;
-    }
+  const auto count = [&](const std::string& text) {
+    std::size_t times = 0;
+    for (std::size_t at = report.find(text); at != std::string::npos; at = report.find(text, at + 1)) ++times;
+    return times;
+  };
+  EXPECT_EQ(count("**agree**") + count("**partly**") + count("**disagree**"), 10u);
+  std::size_t figures = 0;
+  for (std::size_t at = report.find("](paper-"); at != std::string::npos;
+       at = report.find("](paper-", at + 1)) {
+    expect_picture(path(report.substr(at + 2, report.find(')', at) - at - 2)), {});
+    ++figures;
   }
-  EXPECT_EQ(verdicts, 10u);
-  for (int figure = 6; figure <= 14; ++figure) {
-    const std::string start = "](paper-figure-" + std::to_string(figure) + "-";
-    const std::size_t at = report.find(start);
-    ASSERT_NE(at, std::string::npos) << start;
-    const std::string name = report.substr(at + 2, report.find(')', at) - at - 2);
-    EXPECT_EQ(xml_fault(contents(path("paper/" + name))), "") << name;
-  }
-}
-
-plot::Lines some_lines() {
-  plot::Lines lines;
-  lines.title = "a < b & c";
-  lines.x = {"points", plot::Scale::log2};
-  lines.y = {"time", plot::Scale::log10, plot::Unit::seconds};
-  lines.series = {{"first", {1024, 4096, 16384, 65536}, {1e-3, 1e-2, 1e-1, 1}}};
-  lines.references = {{"here", 2000}};
-  return lines;
-}
-
-TEST(Plot, TicksOfLogarithmicAxes) {
-  plot::Figure figure;
-  figure.panels = {some_lines()};
-  const std::string svg = plot::render(figure);
-  EXPECT_EQ(xml_fault(svg), "");
-  for (const char* label :
-       {">1 ms<", ">10 ms<", ">100 ms<", ">1 s<", ">12<", ">first<", ">here<", "a &lt; b &amp; c"}) {
-    EXPECT_NE(svg.find(label), std::string::npos) << label;
-  }
-}
-
-TEST(Plot, WhatALogarithmCannotShowIsLeftOut) {
-  plot::Lines lines = some_lines();
-  lines.series[0].y = {0, std::nan(""), 1, -1};
-  lines.series[0].low = {0, 0, 0, 0};
-  lines.series[0].high = {1, 1, 2, 2};
-  plot::Figure figure;
-  figure.panels = {lines};
-  EXPECT_EQ(xml_fault(plot::render(figure)), "");
-}
-
-TEST(Plot, BarsHaveTheirHeights) {
-  plot::Bars bars;
-  bars.y = {"operations", plot::Scale::linear};
-  bars.parts = {"hull", "merge"};
-  bars.comparison_name = "published";
-  bars.groups = {{"uniform", {{"a", {30, 10}, {}, {}, 50}, {"b", {15, 5}}}}};
-  bars.groups[0].bars.push_back({"c", {1234, 0}});
-  bars.values = true;
-  plot::Figure figure;
-  figure.panels = {bars};
-  const std::string svg = plot::render(figure);
-  EXPECT_EQ(xml_fault(svg), "");
-  for (const char* label : {">hull<", ">merge<", ">published<", ">40<", ">20<", ">1234<", ">uniform<"}) {
-    EXPECT_NE(svg.find(label), std::string::npos) << label;
-  }
-}
-
-TEST(Plot, NothingIsNoFault) {
-  plot::Figure figure;
-  EXPECT_EQ(xml_fault(plot::render(figure)), "");
-  figure.panels = {plot::Lines{}, plot::Bars{}, plot::Scatter{}};
-  EXPECT_EQ(xml_fault(plot::render(figure)), "");
+  EXPECT_EQ(figures, 6u);
 }
 
 }  // namespace

@@ -242,7 +242,7 @@ static void test_batches(void) {
 }
 
 static void test_modes(void) {
-  for (int mode = FLAUNAY_MODE_HYBRID; mode <= FLAUNAY_MODE_DWYER; ++mode) {
+  for (int mode = FLAUNAY_MODE_BLOCKS; mode <= FLAUNAY_MODE_DWYER; ++mode) {
     flaunay_options options = {.mode = mode, .cut = FLAUNAY_CUT_ALTERNATE};
     flaunay_triangulation* mesh = NULL;
     REQUIRE(flaunay_triangulate(triangulator, kSets, 10, kSetOffsets, 4, &options, &mesh) == FLAUNAY_SUCCESS);
@@ -293,7 +293,7 @@ static void check_is_empty(flaunay_triangulation* mesh, size_t sets) {
 
 static void test_no_points(void) {
   const size_t zeros[3] = {0};
-  for (int mode = FLAUNAY_MODE_HYBRID; mode <= FLAUNAY_MODE_DWYER; ++mode) {
+  for (int mode = FLAUNAY_MODE_BLOCKS; mode <= FLAUNAY_MODE_DWYER; ++mode) {
     const flaunay_options options = {.mode = mode};
     flaunay_triangulation* mesh = NULL;
     REQUIRE(flaunay_triangulate(triangulator, NULL, 0, NULL, 0, &options, &mesh) == FLAUNAY_SUCCESS);
@@ -771,9 +771,7 @@ static void test_bad_queues(void) {
   CHECK(triangulate_square(square, 0, &enqueue) == FLAUNAY_SUCCESS);
   CHECK(clFinish(enqueue.queue) == CL_SUCCESS);
   clReleaseCommandQueue(enqueue.queue);
-  // The triangulator still holds it; whether it can be seen is up to the OpenCL implementation.
-  const flaunay_status released = triangulate_square(square, 0, &enqueue);
-  CHECK(released == FLAUNAY_SUCCESS || fails(released, usage, "released"));
+  // The triangulator still holds it.
   CHECK(triangulate_square(square, 0, NULL) == FLAUNAY_SUCCESS);
   clReleaseMemObject(square.memory);
   clReleaseContext(foreign);

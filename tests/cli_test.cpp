@@ -18,10 +18,12 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "flaunay/research.hpp"
 #include "tests/support/paths.hpp"
 
 extern char** environ;
@@ -29,6 +31,7 @@ extern char** environ;
 namespace {
 
 namespace fs = std::filesystem;
+namespace research = flaunay::research;
 using Arguments = std::vector<std::string>;
 using Environment = std::map<std::string, std::string>;
 
@@ -247,6 +250,13 @@ TEST_F(CommandUsageTest, VersionAndHelpSucceed) {
   EXPECT_NE(run_well({"triangulate", "--help"}, kNoPlatform).out.find("--neighbors"), std::string::npos);
 }
 
+TEST_F(CommandUsageTest, TriangulateHelpListsTheModes) {
+  const std::string help = run_well({"triangulate", "--help"}, kNoPlatform).out;
+  for (const research::ModeInfo& info : research::list_modes()) {
+    EXPECT_NE(help.find(info.description), std::string::npos) << info.name;
+  }
+}
+
 TEST_F(CommandUsageTest, GenerateHelpListsTheDistributions) {
   const std::string help = run_well({"generate", "--help"}, kNoPlatform).out;
   for (const char* name : {"uniform", "normal", "kuzmin", "line", "grid"}) {
@@ -277,23 +287,27 @@ TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
     arguments.insert(arguments.begin(), {"triangulate", path("missing.xy")});
     expect_error(kUsage, {option, reason}, arguments);
   };
-  for (const char* mode : {"recursive", "dwyer"}) {
-    refused("--device", mode, {"--mode", mode, "--device", "#0"});
-    refused("--profile", mode, {"--mode", mode, "--profile"});
-  }
-  for (const char* mode : {"hybrid", "flattened", "recursive-device", "partition", "dwyer"}) {
-    refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "monotone-chain"});
-  }
-  for (const char* mode : {"hybrid", "dwyer"}) {
-    refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "prune"});
-    refused("--cut", mode, {"--mode", mode, "--cut", "iqr"});
+  for (const research::ModeInfo& info : research::list_modes()) {
+    const std::string mode = info.name;
+    if (info.on_host) {
+      refused("--device", mode, {"--mode", mode, "--device", "#0"});
+      refused("--profile", mode, {"--mode", mode, "--profile"});
+    }
+    if (!info.cuts_regions) {
+      refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "prune"});
+      refused("--cut", mode, {"--mode", mode, "--cut", "iqr"});
+    }
+    if (!info.counts) refused("--count", mode, {"--mode", mode, "--count"});
+    if (info.mode != research::Mode::recursive) {
+      refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "monotone-chain"});
+    }
+    if (info.mode != research::Mode::partition) {
+      refused("--partition-levels", "--mode partition", {"--mode", mode, "--partition-levels", "2"});
+      refused("--threads", "--mode partition", {"--mode", mode, "--threads", "2"});
+    }
   }
   refused("--cut", "--mode flattened", {"--cut", "alternate"});
   refused("--count", "--mode flattened", {"--count"});
-  for (const char* mode : {"hybrid", "flattened", "recursive-device", "recursive", "dwyer"}) {
-    refused("--partition-levels", "--mode partition", {"--mode", mode, "--partition-levels", "2"});
-    refused("--threads", "--mode partition", {"--mode", mode, "--threads", "2"});
-  }
   refused("--threads", "0", {"--mode", "partition", "--threads", "0"});
   refused("--partition-levels", "0", {"--mode", "partition", "--partition-levels", "0"});
 }
@@ -767,9 +781,8 @@ TEST_F(CommandTriangulateTest, ThreePointsAreOneTriangle) {
 
 TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   run_well({"generate", "uniform", "2000", "-o", path("points.npy")}, kNoPlatform);
-  const Outcome outcome = run_well(
-      {"triangulate", path("points.npy"), "--mode", "flattened", "--cut", "alternate", "--stats",
-                path("stats.json"), "--profile"});
+  const Outcome outcome = run_well({"triangulate", path("points.npy"), "--mode", "flattened", "--cut",
+                                    "alternate", "--stats", path("stats.json"), "--profile"});
   EXPECT_NE(outcome.out.find("kernel"), std::string::npos) << outcome.out;
   const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
   ASSERT_FALSE(stats.is_discarded());
@@ -800,11 +813,11 @@ TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   EXPECT_GT(stats["kernels"][0].value("launches", 0), 0);
 }
 
-TEST_F(CommandTriangulateTest, HybridIsTheDefault) {
+TEST_F(CommandTriangulateTest, BlocksIsTheDefault) {
   run_well({"triangulate", data("ukraine.xy"), "--stats", path("stats.json"), "--profile"});
   const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
   ASSERT_FALSE(stats.is_discarded());
-  EXPECT_EQ(stats.value("mode", ""), "hybrid");
+  EXPECT_EQ(stats.value("mode", ""), "blocks");
   EXPECT_TRUE(stats["cut"].is_null());
   EXPECT_EQ(stats["phases"].size(), 3U);
   EXPECT_GT(stats["kernels"].size(), 5U);
@@ -857,27 +870,26 @@ TEST_F(CommandTriangulateTest, AFailedWriteLeavesNoFileBehind) {
 }
 
 TEST_F(CommandTriangulateTest, EveryModeGivesTheSameTriangles) {
-  const std::vector<Arguments> modes = {
-      {"--mode", "flattened"},
+  std::vector<Arguments> modes = {
       {"--mode", "flattened", "--hull-variant", "quickhull"},
       {"--mode", "flattened", "--hull-variant", "balanced"},
-      {"--mode", "recursive-device"},
-      {"--mode", "recursive"},
       {"--mode", "recursive", "--hull-variant", "monotone-chain", "--cut", "alternate"},
-      {"--mode", "partition", "--partition-levels", "3", "--threads", "2"},
-      {"--mode", "partition"},
-      {"--mode", "dwyer"}};
+      {"--mode", "partition", "--partition-levels", "3", "--threads", "2"}};
+  std::set<std::string> on_host;
+  for (const research::ModeInfo& info : research::list_modes()) {
+    modes.push_back({"--mode", info.name});
+    if (info.on_host) on_host.insert(info.name);
+  }
   for (const char* distribution : {"kuzmin", "grid", "half-duplicates", "collinear"}) {
     SCOPED_TRACE(distribution);
     run_well({"generate", distribution, "400", "-o", path("points.npy")}, kNoPlatform);
     run_well({"triangulate", path("points.npy"), "--triangles", path("expected.npy")});
     for (const Arguments& mode : modes) {
       SCOPED_TRACE(mode[1] + " " + mode.back());
-      const bool host = mode[1] == "recursive" || mode[1] == "dwyer";
       Arguments command = {"triangulate", path("points.npy"), "--triangles",
                            path("t.npy"), "--neighbors",      path("n.npy")};
       command.insert(command.end(), mode.begin(), mode.end());
-      run_well(command, host ? kNoPlatform : Environment{});
+      run_well(command, on_host.count(mode[1]) > 0 ? kNoPlatform : Environment{});
       EXPECT_EQ(sorted_rows(path("t.npy")), sorted_rows(path("expected.npy")));
       run_well({"verify", path("points.npy"), path("t.npy"), "--neighbors", path("n.npy")}, kNoPlatform);
     }

@@ -3,56 +3,86 @@
 #ifndef FLAUNAY_COUNTING_H
 #define FLAUNAY_COUNTING_H
 
-// As flaunay::Component and the members of flaunay::OperationCounts.
-#define COMPONENT_CUT 0
-#define COMPONENT_HULL 1
-#define COMPONENT_MERGE 2
-#define COMPONENT_SPLIT 3
-#define COMPONENT_ENDGAME 4
-#define KIND_ARITHMETIC 0
-#define KIND_DEPTH 1
-#define KIND_ORIENTATION 2
-#define KIND_CIRCLE 3
+#include "shared/costs.h"
+#include "shared/language.h"
 
-// Operations of one evaluation; tests/counting_test.cpp holds them to the code.
-#define DEPTH_OPERATIONS 12
-#define ORIENT_OPERATIONS 8
-#define CIRCLE_OPERATIONS 30
-// The dot product that goes with an orientation, and the comparison of two angles.
-#define DOT_OPERATIONS 3
-#define ANGLE_OPERATIONS 4
+BEGIN_SHARED
 
-// The counters are pairs of low and high halves, a pair a component and kind; behind them the largest number of
-// weighted operations that one region of the end game took, and how many regions it had by their number of corners.
-#define KINDS 4
-#define COUNTER_DEAREST 40
-#define COUNTER_SIZES 41
-#define MOST_COUNTED_SIZE 1023
+// What is counted for each component of the algorithm: operations of each kind.
+INTEGER_CONSTANT(COMPONENT_CUT, 0);
+INTEGER_CONSTANT(COMPONENT_HULL, 1);
+INTEGER_CONSTANT(COMPONENT_MERGE, 2);
+INTEGER_CONSTANT(COMPONENT_SPLIT, 3);
+INTEGER_CONSTANT(COMPONENT_ENDGAME, 4);
+INTEGER_CONSTANT(COMPONENTS, 5);
+INTEGER_CONSTANT(KIND_ARITHMETIC, 0);
+INTEGER_CONSTANT(KIND_DEPTH, 1);
+INTEGER_CONSTANT(KIND_ORIENTATION, 2);
+INTEGER_CONSTANT(KIND_CIRCLE, 3);
+INTEGER_CONSTANT(KINDS, 4);
 
+// Counters are pairs of low and high halves, one pair for each component and kind. Behind them stand the largest number
+// of weighted operations that one region of the end game took, and how many of its regions had each number of corners:
+// more than MOST_COUNTED_SIZE count as that many.
+INTEGER_CONSTANT(COUNTER_DEAREST, 2 * COMPONENTS * KINDS);
+INTEGER_CONSTANT(COUNTER_SIZES, COUNTER_DEAREST + 1);
+INTEGER_CONSTANT(MOST_COUNTED_SIZE, 1023);
+INTEGER_CONSTANT(COUNTERS_LENGTH, COUNTER_SIZES + MOST_COUNTED_SIZE + 1);
+
+// What one work-item counts in a variable of its own, before COUNT_TALLY adds it to the counters.
+typedef struct {
+  uint arithmetic, orientations, circles;
+} tally;
+
+// Kernels count in three ways. COUNT and COUNT_TALLY add to the counters, once or twice in each kernel. A struct with
+// TALLY_MEMBER has a tally, which TALLY adds to where the struct's predicates are evaluated. The predicates at the end
+// of shared/hull_height.h count each of their calls. COUNTERS stands behind the last parameter of each kernel and each
+// function that counts, and WITH_COUNTERS behind the last argument of such a function; the host sets the kernels'.
 #ifdef FLAUNAY_COUNT
-// Stands behind a kernel's last parameter; the host sets it.
-#define COUNTERS , global volatile uint *counters
+#define COUNTERS , global volatile uint* counters
 #define WITH_COUNTERS , counters
+#define COUNT(component, kind, amount) count_up(counters + 2 * (KINDS * COMPONENT_##component + KIND_##kind), amount)
+#define COUNT_SIZE(corners) atomic_inc(counters + COUNTER_SIZES + min(corners, MOST_COUNTED_SIZE))
+#define COUNT_TALLY(component, of) count_tally(counters, COMPONENT_##component, (of).counted)
+
 static inline void count_up(global volatile uint* counter, uint amount) {
+  if (amount == 0) return;
   const uint old = atomic_add(counter, amount);
   if (old + amount < old) atomic_inc(counter + 1);
 }
-#define COUNT(component, kind, amount) count_up(counters + 2 * (KINDS * (component) + (kind)), amount)
-#define COUNT_REGION(corners, operations)                                     \
-  {                                                                           \
-    atomic_inc(counters + COUNTER_SIZES + min(corners, MOST_COUNTED_SIZE));   \
-    atomic_max(counters + COUNTER_DEAREST, (uint)(operations));               \
+
+static inline void count_tally(global volatile uint* counters, int component, tally counted) {
+  global volatile uint* const kinds = counters + 2 * KINDS * component;
+  count_up(kinds + 2 * KIND_ARITHMETIC, counted.arithmetic);
+  count_up(kinds + 2 * KIND_ORIENTATION, counted.orientations);
+  count_up(kinds + 2 * KIND_CIRCLE, counted.circles);
+  if (component == COMPONENT_ENDGAME) {
+    atomic_max(counters + COUNTER_DEAREST,
+               counted.arithmetic + ORIENT_OPERATIONS * counted.orientations + CIRCLE_OPERATIONS * counted.circles);
   }
-#define COUNTED(statement) statement
+}
 #else
 #define COUNTERS
 #define WITH_COUNTERS
 #define COUNT(component, kind, amount)
-#define COUNT_REGION(corners, operations)
-#define COUNTED(statement)
+#define COUNT_SIZE(corners)
+#define COUNT_TALLY(component, of)
+#endif
+
+// The host always has tallies: they take no time worth mentioning there.
+#if defined(FLAUNAY_COUNT) || defined(__cplusplus)
+#define TALLY_MEMBER tally counted;
+#define TALLY(of, kind, amount) (of).counted.kind += (amount)
+#define CLEAR_TALLY(of) (of).counted.arithmetic = (of).counted.orientations = (of).counted.circles = 0
+#else
+#define TALLY_MEMBER
+#define TALLY(of, kind, amount)
+#define CLEAR_TALLY(of)
 #endif
 
 // Comparisons of a binary search among m elements: the ceiling of log2 m.
 static inline int search_comparisons(int m) { return m <= 1 ? 0 : 32 - clz(m - 1); }
+
+END_SHARED
 
 #endif

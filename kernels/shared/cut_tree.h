@@ -3,13 +3,15 @@
 #define FLAUNAY_CUT_TREE_H
 
 #include "shared/coordinates.h"
+#include "shared/language.h"
+#include "shared/records.h"
 
-// A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
-// has all bits set; without branches, since each would be taken by chance. Nodes are in the order of a heap, from 1 on.
-typedef struct {
-  ulong major, minor, turn;
-} cut_node;
+BEGIN_SHARED
+
 static inline int cut_axis(cut_node cut) { return cut.turn != 0; }
+
+// Whether a point goes high, by its coordinates as orderable numbers. Without branches, since they could not be
+// predicted.
 static inline int goes_high(ulong x, ulong y, cut_node cut) {
   const ulong swapped = (x ^ y) & cut.turn;
   const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;
@@ -20,7 +22,7 @@ static inline int goes_high(ulong x, ulong y, cut_node cut) {
 #define DESCENTS 16
 
 // The leaves of points [first, last) of the input, DESCENTS at most, counted from 0.
-static inline void find_leaves(int first, int last, global const double* input, global const cut_node* tree, int depth,
+static inline void find_leaves(int first, int last, GLOBAL const double* input, GLOBAL const cut_node* tree, int depth,
                                int* leaves) {
   ulong x[DESCENTS], y[DESCENTS];
   int node[DESCENTS];
@@ -35,5 +37,7 @@ static inline void find_leaves(int first, int last, global const double* input, 
   }
   for (int k = 0; k < DESCENTS; ++k) leaves[k] = node[k] - (1 << depth);
 }
+
+END_SHARED
 
 #endif

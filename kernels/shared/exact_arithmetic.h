@@ -6,24 +6,26 @@
 
 #include "shared/language.h"
 
+BEGIN_SHARED
+
 // x + y = a + b exactly, x = fl(a + b).
 static inline double2 two_sum(double a, double b) {
   const double x = a + b;
   const double b_virtual = x - a;
   const double a_virtual = x - b_virtual;
-  return PAIR(x, (a - a_virtual) + (b - b_virtual));
+  return VECTOR(double2, x, (a - a_virtual) + (b - b_virtual));
 }
 
 // The same for |a| >= |b| or a = 0.
 static inline double2 fast_two_sum(double a, double b) {
   const double x = a + b;
-  return PAIR(x, b - (x - a));
+  return VECTOR(double2, x, b - (x - a));
 }
 
 // x + y = a * b exactly, x = fl(a * b).
 static inline double2 two_product(double a, double b) {
   const double x = a * b;
-  return PAIR(x, fma(a, b, -x));
+  return VECTOR(double2, x, fma(a, b, -x));
 }
 
 static inline int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
@@ -102,5 +104,7 @@ static inline void expansion_multiply(expansion* e, const double* factor, int co
   e->size = result.size;
   for (int i = 0; i < result.size; ++i) e->part[i] = result.part[i];
 }
+
+END_SHARED
 
 #endif

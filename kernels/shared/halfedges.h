@@ -1,12 +1,22 @@
-// Half-edges of a triangle array: half-edge 3t + j is the edge opposite to vertex j of triangle t, from vertex
-// j + 1 to vertex j + 2, with the triangle on its left.
+// Half-edges of a list of triangles: half-edge 3t + k runs from vertex k of triangle t to the next one, with the
+// triangle on its left. Corner 3t + k is the triangle's angle at vertex k.
 #ifndef FLAUNAY_HALFEDGES_H
 #define FLAUNAY_HALFEDGES_H
 
+#include "shared/language.h"
+
+BEGIN_SHARED
+
 static inline int next_halfedge(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
-static inline int halfedge_from(global const int* restrict triangles, int h) { return triangles[next_halfedge(h)]; }
-static inline int halfedge_to(global const int* restrict triangles, int h) {
-  return triangles[next_halfedge(next_halfedge(h))];
-}
+static inline int previous_halfedge(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+// A corner and the half-edge of its triangle that does not touch it.
+static inline int opposite_halfedge(int corner) { return next_halfedge(corner); }
+static inline int opposite_corner(int h) { return previous_halfedge(h); }
+
+static inline int halfedge_from(GLOBAL const int* RESTRICT triangles, int h) { return triangles[h]; }
+static inline int halfedge_to(GLOBAL const int* RESTRICT triangles, int h) { return triangles[next_halfedge(h)]; }
+
+END_SHARED
 
 #endif

@@ -2,8 +2,12 @@
 #ifndef FLAUNAY_HULL_HEIGHT_H
 #define FLAUNAY_HULL_HEIGHT_H
 
+#include "shared/counting.h"
 #include "shared/frame.h"
+#include "shared/language.h"
 #include "shared/planar.h"
+
+BEGIN_SHARED
 
 // With h(p) the height of p's projection, and A, B the chord's ends, u_A < u_B: positive iff p lies strictly below
 // the chord, in a floating-point value that is also good to rank points by. For the cut at q,
@@ -15,14 +19,13 @@
 // Each of the four terms is a product of at most five rounded factors and sums; with unit roundoff e = 2^-53 its
 // relative error is below 6e(1 + 5e), the three additions add 3e of the sum of magnitudes. So
 // |depth - exact| <= 10 e * magnitude with room for rounding the bound itself, where magnitude is the computed sum
-// of the terms' magnitudes. Nothing underflows: see docs/exactness.md.
-#define HULL_DEPTH_BOUND (10.0 * 0x1p-53)
+// of the terms' magnitudes: HULL_DEPTH_BOUND. Nothing underflows: see docs/exactness.md.
 
-// A point (s, u) as it is projected: (h, u), h = (s - q)^2 being the height but for what depends on u alone; for a planar
-// hull s - q, q being any height near by. Rounded.
+// A point (s, u) as it is projected: (h, u), h = (s - q)^2 being the height but for what depends on u alone; for a
+// planar hull s - q, q being any height near by. Rounded.
 static inline double2 project(double2 p, double q, int planar) {
   const double across = p.x - q;
-  return PAIR(planar ? across : across * across, p.y);
+  return VECTOR(double2, planar ? across : across * across, p.y);
 }
 
 // (depth, magnitude). a, b, p projected.
@@ -34,7 +37,7 @@ static inline double2 hull_depth(double2 a, double2 b, double2 p, int planar) {
   const double tb = b.x * from_a;
   const double tu = planar ? 0.0 : length * (from_a * to_b);
   const double tp = length * p.x;
-  return PAIR(((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
+  return VECTOR(double2, ((ta + tb) + tu) - tp, ((fabs(ta) + fabs(tb)) + fabs(tu)) + fabs(tp));
 }
 
 // The exact sign of depth for the cut at q: bu * pu * (bu - pu) + pu * (bs^2 - as^2) - bu * (ps^2 - as^2), where u is
@@ -77,15 +80,16 @@ OUT_OF_LINE static inline int depth_by_expansions(double2 a, double2 b, double2 
   return expansion_sign(&sum);
 }
 
-// The same in integers below 2^NARROW_BITS or 2^WIDE_BITS, as pu * (bs^2 - as^2 + bu^2) - bu * (ps^2 - as^2 + pu^2): the
-// sums of squares are below 2^63, or 2^125.
+// The same in integers below 2^NARROW_BITS or 2^WIDE_BITS, as pu * (bs^2 - as^2 + bu^2) - bu * (ps^2 - as^2 + pu^2):
+// the sums of squares are below 2^63, or 2^125.
 static inline int depth_narrow(long as, long bs, long bu, long ps, long pu) {
-  return sign_of_128(difference_128(product_128(pu, bs * bs - as * as + bu * bu),
-                                    product_128(bu, ps * ps - as * as + pu * pu)));
+  return sign_of_128(
+      difference_128(product_128(pu, bs * bs - as * as + bu * bu), product_128(bu, ps * ps - as * as + pu * pu)));
 }
 
 static inline integer256 depth_term(long u, long as, long ps, long pu) {
-  return product_256(widened(u), sum_128(difference_128(product_128(ps, ps), product_128(as, as)), product_128(pu, pu)));
+  return product_256(widened(u),
+                     sum_128(difference_128(product_128(ps, ps), product_128(as, as)), product_128(pu, pu)));
 }
 
 static inline int depth_wide(long as, long bs, long bu, long ps, long pu) {
@@ -98,8 +102,8 @@ OUT_OF_LINE static inline int depth_exact(double2 a, double2 b, double2 p, doubl
   const double2 ps = two_sum(p.x, -q);
   const double2 bu = two_sum(b.y, -a.y);
   const double2 pu = two_sum(p.y, -a.y);
-  const double largest = larger_magnitude(larger_magnitude(as.x, larger_magnitude(bs.x, ps.x)),
-                                          larger_magnitude(bu.x, pu.x));
+  const double largest =
+      larger_magnitude(larger_magnitude(as.x, larger_magnitude(bs.x, ps.x)), larger_magnitude(bu.x, pu.x));
   if (largest == 0.0) return 0;
   for (int bits = NARROW_BITS; bits <= WIDE_BITS; bits += WIDE_BITS - NARROW_BITS) {
     const double factor = unit_factor(largest, bits);
@@ -127,5 +131,13 @@ static inline int is_lower(double2 p, double2 v, double q, int planar) {
   const int side = sign_of_sum(p.x, v.x, -2.0 * q);
   return ps < 0 ? side >= 0 : side < 0;
 }
+
+#ifdef FLAUNAY_COUNT
+// From here on each call counts. Callers have COUNTERS.
+#define project(...) (COUNT(HULL, ARITHMETIC, PROJECT_OPERATIONS), project(__VA_ARGS__))
+#define hull_depth(...) (COUNT(HULL, DEPTH, 1), hull_depth(__VA_ARGS__))
+#endif
+
+END_SHARED
 
 #endif

@@ -6,6 +6,8 @@
 
 #include "shared/language.h"
 
+BEGIN_SHARED
+
 // Modulo 2^128 and 2^256, and so in two's complement.
 typedef struct {
   ulong low, high;
@@ -114,5 +116,7 @@ static inline int is_integer(double2 difference, double factor, long* integer) {
 }
 
 static inline double larger_magnitude(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }
+
+END_SHARED
 
 #endif

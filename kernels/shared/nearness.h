@@ -2,11 +2,13 @@
 #ifndef FLAUNAY_NEARNESS_H
 #define FLAUNAY_NEARNESS_H
 
+#include "shared/language.h"
 #include "shared/planar.h"
 
+BEGIN_SHARED
+
 // |a - q|^2 - |b - q|^2 is the dot product of a - b and (a - q) + (b - q). Its rounded value is wrong by less than
-// 5.1 e of the magnitude below, which is rounded too (docs/exactness.md).
-#define NEARNESS_BOUND (6.0 * 0x1p-53)
+// 5.1 e of the magnitude below, which is rounded too, with e = 2^-53 (docs/exactness.md): NEARNESS_BOUND.
 
 // 1 if b is nearer to q than a is, -1 if a is, 0 if neither, UNDECIDED.
 static inline int nearness_filtered(double2 a, double2 b, double2 q, double bound) {
@@ -33,8 +35,7 @@ OUT_OF_LINE static inline int nearness_exact(double2 a, double2 b, double2 q) {
   const double2 qax = two_sum(a.x, -q.x), qay = two_sum(a.y, -q.y);
   const double2 qbx = two_sum(b.x, -q.x), qby = two_sum(b.y, -q.y);
   const double largest = larger_magnitude(
-      larger_magnitude(abx.x, aby.x),
-      larger_magnitude(larger_magnitude(qax.x, qay.x), larger_magnitude(qbx.x, qby.x)));
+      larger_magnitude(abx.x, aby.x), larger_magnitude(larger_magnitude(qax.x, qay.x), larger_magnitude(qbx.x, qby.x)));
   if (largest == 0.0) return 0;
   const double factor = unit_factor(largest, WIDE_BITS);
   long abxi, abyi, qaxi, qayi, qbxi, qbyi;
@@ -54,5 +55,7 @@ static inline int nearness_sign(double2 a, double2 b, double2 q, double bound) {
   const int sign = nearness_filtered(a, b, q, bound);
   return sign != UNDECIDED ? sign : nearness_exact(a, b, q);
 }
+
+END_SHARED
 
 #endif

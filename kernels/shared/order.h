@@ -3,11 +3,14 @@
 #define FLAUNAY_ORDER_H
 
 #include "shared/coordinates.h"
+#include "shared/language.h"
 #include "shared/planar.h"
+
+BEGIN_SHARED
 
 // The orders of axis 0, by (x, y), and of axis 1, by (y, -x).
 static inline int precedes(double2 p, double2 q, int axis) {
-  return axis ? comes_before((double2)(p.y, -p.x), (double2)(q.y, -q.x)) : comes_before(p, q);
+  return axis ? comes_before(VECTOR(double2, p.y, -p.x), VECTOR(double2, q.y, -q.x)) : comes_before(p, q);
 }
 
 // Elements to sort: a coarse key and the place of the point.
@@ -16,7 +19,7 @@ typedef uint2 keyed;
 #define COARSE_DIGIT 8
 #define COARSE_DIGITS (1 << COARSE_DIGIT)
 
-static inline void stable_pass(global const keyed* restrict from, global keyed* restrict to, int n, int shift) {
+static inline void stable_pass(GLOBAL const keyed* RESTRICT from, GLOBAL keyed* RESTRICT to, int n, int shift) {
   uint place[COARSE_DIGITS];
   for (int d = 0; d < COARSE_DIGITS; ++d) place[d] = 0;
   for (int i = 0; i < n; ++i) ++place[from[i].x >> shift & (COARSE_DIGITS - 1)];
@@ -34,8 +37,8 @@ static inline void stable_pass(global const keyed* restrict from, global keyed* 
 
 // Sorts elements stably by the leading bits of a coordinate, as many as tell points of this block apart. Returns
 // elements or spare, whichever holds the result.
-static inline global keyed* sort_coarsely(global keyed* elements, global keyed* spare, int n,
-                                          global const double2* points, int axis) {
+static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
+                                          GLOBAL const double2* points, int axis) {
   ulong least = ~0UL, most = 0;
   for (int i = 0; i < n; ++i) {
     const double2 p = points[i];
@@ -51,7 +54,7 @@ static inline global keyed* sort_coarsely(global keyed* elements, global keyed* 
   }
   for (int shift = 0; shift < bits - dropped; shift += COARSE_DIGIT) {
     stable_pass(elements, spare, n, shift);
-    global keyed* const sorted = spare;
+    GLOBAL keyed* const sorted = spare;
     spare = elements;
     elements = sorted;
   }
@@ -60,7 +63,7 @@ static inline global keyed* sort_coarsely(global keyed* elements, global keyed* 
 
 // Sorts elements of equal coarse keys by insertion; gives up, returning 0, where that would take long.
 #define INSERTIONS_A_POINT 4
-static inline int sort_ties(global keyed* elements, int n, global const double2* points, int axis) {
+static inline int sort_ties(GLOBAL keyed* elements, int n, GLOBAL const double2* points, int axis) {
   int left = INSERTIONS_A_POINT * n;
   for (int i = 1; i < n; ++i) {
     const keyed element = elements[i];
@@ -82,19 +85,19 @@ static inline int sort_ties(global keyed* elements, int n, global const double2*
 }
 
 // Bottom-up merge sort, stable, by comparisons. Returns elements or spare.
-static inline global keyed* sort_by_merging(global keyed* elements, global keyed* spare, int n,
-                                            global const double2* points, int axis) {
+static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
+                                            GLOBAL const double2* points, int axis) {
   for (int width = 1; width < n; width *= 2) {
     for (int begin = 0; begin < n; begin += 2 * width) {
       const int middle = min(n, begin + width), end = min(n, begin + 2 * width);
       int low = begin, high = middle;
       for (int to = begin; to < end; ++to) {
-        const int take_high = low == middle || (high < end && precedes(points[elements[high].y],
-                                                                         points[elements[low].y], axis));
+        const int take_high =
+            low == middle || (high < end && precedes(points[elements[high].y], points[elements[low].y], axis));
         spare[to] = take_high ? elements[high++] : elements[low++];
       }
     }
-    global keyed* const sorted = spare;
+    GLOBAL keyed* const sorted = spare;
     spare = elements;
     elements = sorted;
   }
@@ -103,11 +106,13 @@ static inline global keyed* sort_by_merging(global keyed* elements, global keyed
 
 // Sorts elements, whose places stand in [0, n), by the order of the axis; those of equal points stay in their order.
 // Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at worst.
-static inline global keyed* sort_along(global keyed* elements, global keyed* spare, int n,
-                                       global const double2* points, int axis) {
-  global keyed* sorted = sort_coarsely(elements, spare, n, points, axis);
+static inline GLOBAL keyed* sort_along(GLOBAL keyed* elements, GLOBAL keyed* spare, int n, GLOBAL const double2* points,
+                                       int axis) {
+  GLOBAL keyed* sorted = sort_coarsely(elements, spare, n, points, axis);
   if (sort_ties(sorted, n, points, axis)) return sorted;
   return sort_by_merging(sorted, sorted == elements ? spare : elements, n, points, axis);
 }
+
+END_SHARED
 
 #endif

@@ -3,13 +3,14 @@
 #ifndef FLAUNAY_PLANAR_H
 #define FLAUNAY_PLANAR_H
 
+#include "shared/bounds.h"
 #include "shared/exact_arithmetic.h"
 #include "shared/integer_arithmetic.h"
+#include "shared/language.h"
 
-// Shewchuk's (1997) bounds for the straightforward evaluation, e = 2^-53: (3 + 16e)e and (10 + 96e)e, times the sum
-// of magnitudes. A bound of 0 says that the input is so coarse that nothing is rounded (docs/exactness.md).
-#define ORIENT_BOUND ((3.0 + 16.0 * 0x1p-53) * 0x1p-53)
-#define CIRCLE_BOUND ((10.0 + 96.0 * 0x1p-53) * 0x1p-53)
+BEGIN_SHARED
+
+// The sign that floating point cannot tell. Every filter takes its bound, see shared/bounds.h.
 #define UNDECIDED 2
 
 // 1 if a, b, c turn left, -1 right, 0 straight, UNDECIDED.
@@ -67,8 +68,7 @@ static inline int circle_filtered(double2 a, double2 b, double2 c, double2 d, do
   const double bl = bd.x * bd.x + bd.y * bd.y;
   const double cl = cd.x * cd.x + cd.y * cd.y;
   const double det = al * (bc - cb) + bl * (ca - ac) + cl * (ab - ba);
-  const double magnitude =
-      (fabs(bc) + fabs(cb)) * al + (fabs(ca) + fabs(ac)) * bl + (fabs(ab) + fabs(ba)) * cl;
+  const double magnitude = (fabs(bc) + fabs(cb)) * al + (fabs(ca) + fabs(ac)) * bl + (fabs(ab) + fabs(ba)) * cl;
   const double error = bound * magnitude;
   return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
@@ -100,16 +100,18 @@ static inline int angle_side(angle seen, double bound) {
 }
 
 // 1 if a point left of the edge sees it under a wider angle than another, which is to lie inside the circle through the
-// edge and that one; -1 if narrower, 0 if it lies on the circle, UNDECIDED. The error of a cross or dot product is below
-// 4.02 e times its magnitude, that of the products below 9.1 e times theirs, that of the difference below 10.2 e of the
-// sum: see docs/exactness.md.
-#define ANGLE_BOUND (11.0 * 0x1p-53)
+// edge and that one; -1 if narrower, 0 if it lies on the circle, UNDECIDED. The error of a cross or dot product is
+// below 4.02 e times its magnitude, that of the products below 9.1 e times theirs, that of the difference below 10.2 e
+// of the sum, with e = 2^-53: see docs/exactness.md.
 static inline int angle_compared(angle seen, angle other, double bound) {
   const double det = other.dot * seen.cross - seen.dot * other.cross;
   const double error =
       bound * (other.dot_magnitude * seen.cross_magnitude + seen.dot_magnitude * other.cross_magnitude);
   return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
+
+// The bound of angle_compared where the in-circle test has the given one.
+static inline double angle_bound(double circle_bound) { return circle_bound == 0.0 ? 0.0 : ANGLE_BOUND; }
 
 // The in-circle determinant of differences from the fourth point: integers below 2^NARROW_BITS, or 2^WIDE_BITS, or what
 // two_sum gives. A term of the first is below 2^126, and their sum is less than 2^127 (docs/exactness.md); of the
@@ -197,12 +199,12 @@ static inline int circle_sign(double2 a, double2 b, double2 c, double2 d, double
 static inline int comes_before(double2 p, double2 q) { return (p.x < q.x) | ((p.x == q.x) & (p.y < q.y)); }
 
 // circle_sign that is never 0, of four different points: on a tie it is as if the first of the four (comes_before) were
-// lowered a little below the paraboloid that all are lifted to. The Delaunay triangulation so defined is unique, and makes
-// of each polygon of cocircular points a fan from its first vertex: the canonical form.
+// lowered a little below the paraboloid that all are lifted to. The Delaunay triangulation so defined is unique, and
+// makes of each polygon of cocircular points a fan from its first vertex: the canonical form.
 //
-// With a the first of the triangle's vertices: if d comes before it, d is what is lowered, and lies below the plane through
-// the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now above it, unless b
-// and c separate it from a (it cannot lie on their line). See docs/exactness.md.
+// With a the first of the triangle's vertices: if d comes before it, d is what is lowered, and lies below the plane
+// through the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now above
+// it, unless b and c separate it from a (it cannot lie on their line). See docs/exactness.md.
 static inline int circle_canonical(double2 a, double2 b, double2 c, double2 d, double bound) {
   const int sign = circle_sign(a, b, c, d, bound);
   if (sign != 0) return sign;
@@ -215,5 +217,7 @@ static inline int circle_canonical(double2 a, double2 b, double2 c, double2 d, d
   if (comes_before(d, a)) return 1;
   return orient_sign(b, c, d, bound == 0.0 ? 0.0 : ORIENT_BOUND) < 0 ? 1 : -1;
 }
+
+END_SHARED
 
 #endif

@@ -4,10 +4,16 @@
 #define FLAUNAY_REGION_TRIANGLES_H
 
 #include "shared/counting.h"
+#include "shared/language.h"
+#include "shared/limits.h"
 #include "shared/planar.h"
+#include "shared/records.h"
 
+BEGIN_SHARED
+
+// Corners of the largest region.
 #ifndef SMALL_REGION
-#define SMALL_REGION 48  // corners; what a work-item keeps in private memory
+#define SMALL_REGION DEFAULT_SMALL_REGION
 #endif
 #define REGION_UNDECIDED -1
 #define REGION_BROKEN -2
@@ -22,25 +28,27 @@
 typedef struct {
   double2 p[SMALL_REGION];
   uchar chain[SMALL_REGION];
-  double orient_bound, circle_bound, angle_bound;
-  COUNTED(uint orientations; uint arithmetic; uint circles;)
+  filter_bounds bounds;
+  double angle_bound;
+  TALLY_MEMBER
 } region_cycle;
 
 static inline double2 on_chain(const region_cycle* g, int k) { return g->p[g->chain[k]]; }
 
 static inline int turn_of(region_cycle* g, double2 a, double2 b, double2 c) {
-  COUNTED(++g->orientations;)
-  const int sign = orient_filtered(a, b, c, g->orient_bound);
+  TALLY(*g, orientations, 1);
+  const int sign = orient_filtered(a, b, c, g->bounds.orient);
   return DECIDE(sign, orient_exact(a, b, c));
 }
 
 static inline int in_circle(region_cycle* g, double2 a, double2 b, double2 c, double2 d) {
-  COUNTED(++g->circles;)
-  const int sign = circle_filtered(a, b, c, d, g->circle_bound);
+  TALLY(*g, circles, 1);
+  const int sign = circle_filtered(a, b, c, d, g->bounds.circle);
   return DECIDE(sign, circle_exact(a, b, c, d));
 }
 
-// Of the vertices on the circle through base, chain i to j, and apex, one that no edge of the chain hides from the base.
+// Of the vertices on the circle through base, chain i to j, and apex, one that no edge of the chain hides from the
+// base.
 static inline int visible_apex(region_cycle* g, int i, int j, int apex) {
   const double2 a = on_chain(g, j);
   const double2 b = on_chain(g, i);
@@ -74,8 +82,8 @@ static inline int visible_apex(region_cycle* g, int i, int j, int apex) {
   return REGION_BROKEN;
 }
 
-// The apex of the triangle on the edge from chain j to chain i, the polygon of i to j on its left: the vertex left of it
-// that sees it under the largest angle, which is the one whose circle holds no other.
+// The apex of the triangle on the edge from chain j to chain i, the polygon of i to j on its left: the vertex left of
+// it that sees it under the largest angle, which is the one whose circle holds no other.
 static inline int apex_of(region_cycle* g, int i, int j) {
   if (j == i + 2) return i + 1;
   const double2 a = on_chain(g, j);
@@ -86,14 +94,15 @@ static inline int apex_of(region_cycle* g, int i, int j) {
   for (int v = i + 1; v < j; ++v) {
     const double2 p = on_chain(g, v);
     const angle seen = angle_at(p, a, b);
-    COUNTED(++g->orientations; g->arithmetic += DOT_OPERATIONS;)
-    const int left = angle_side(seen, g->orient_bound);
+    TALLY(*g, orientations, 1);
+    TALLY(*g, arithmetic, DOT_OPERATIONS);
+    const int left = angle_side(seen, g->bounds.orient);
     const int turn = DECIDE(left, orient_exact(a, b, p));
     if (turn == UNDECIDED) return REGION_UNDECIDED;
     if (turn <= 0) continue;
     int wider = 1;
     if (apex >= 0) {
-      COUNTED(g->arithmetic += ANGLE_OPERATIONS;)
+      TALLY(*g, arithmetic, ANGLE_OPERATIONS);
       const int sign = angle_compared(seen, widest, g->angle_bound);
       wider = DECIDE(sign, circle_exact(a, b, on_chain(g, apex), p));
       if (wider == UNDECIDED) return REGION_UNDECIDED;
@@ -113,23 +122,21 @@ static inline int apex_of(region_cycle* g, int i, int j) {
 // read first and holds count - 2 triangles at least); returns their number, or REGION_UNDECIDED if a predicate was.
 //
 // The corners link into simple cycles. Of each, the triangle on one edge leaves two chains, which their own edges close
-// to polygons again. Border edges are Delaunay edges, so no vertex in a circle hides behind one; but of several vertices on
-// one circle some may. A region that is left undecided is not counted. O(count^2) predicates at worst.
-static inline int region_triangles(global const int* corners, int count, global const double2* restrict points,
-                                   double orient_bound, double circle_bound, global int* triangles COUNTERS) {
+// to polygons again. Border edges are Delaunay edges, so no vertex in a circle hides behind one; but of several
+// vertices on one circle some may. A region that is left undecided is not counted. O(count^2) predicates at worst.
+static inline int region_triangles(GLOBAL const int* corners, int count, GLOBAL const double2* RESTRICT points,
+                                   filter_bounds bounds, GLOBAL int* triangles COUNTERS) {
   if (count == 3) {
-    const int3 t = (int3)(corners[0], corners[1], corners[2]);
+    const int3 t = VECTOR(int3, corners[0], corners[1], corners[2]);
     triangles[0] = t.x;
     triangles[1] = t.y;
     triangles[2] = t.z;
-    COUNT_REGION(count, 0)
     return 1;
   }
   region_cycle g;
-  g.orient_bound = orient_bound;
-  g.circle_bound = circle_bound;
-  g.angle_bound = circle_bound == 0.0 ? 0.0 : ANGLE_BOUND;
-  COUNTED(g.orientations = g.arithmetic = g.circles = 0;)
+  g.bounds = bounds;
+  g.angle_bound = angle_bound(bounds.circle);
+  CLEAR_TALLY(g);
   int ids[SMALL_REGION];
   uchar after[SMALL_REGION];
   for (int v = 0; v < count; ++v) {
@@ -156,7 +163,7 @@ static inline int region_triangles(global const int* corners, int count, global 
     }
     if (length < 3) return REGION_BROKEN;
     int depth = 0;
-    pending[depth++] = (uchar2)(0, length - 1);
+    pending[depth++] = VECTOR(uchar2, 0, (uchar)(length - 1));
     while (depth > 0) {
       const uchar2 ends = pending[--depth];
       const int apex = apex_of(&g, ends.x, ends.y);
@@ -165,16 +172,15 @@ static inline int region_triangles(global const int* corners, int count, global 
       made[3 * total + 1] = g.chain[apex];
       made[3 * total + 2] = g.chain[ends.y];
       ++total;
-      if (apex - ends.x > 1) pending[depth++] = (uchar2)(ends.x, apex);
-      if (ends.y - apex > 1) pending[depth++] = (uchar2)(apex, ends.y);
+      if (apex - ends.x > 1) pending[depth++] = VECTOR(uchar2, ends.x, (uchar)apex);
+      if (ends.y - apex > 1) pending[depth++] = VECTOR(uchar2, (uchar)apex, ends.y);
     }
   }
-  COUNT(COMPONENT_ENDGAME, KIND_ARITHMETIC, g.arithmetic);
-  COUNT(COMPONENT_ENDGAME, KIND_ORIENTATION, g.orientations);
-  COUNT(COMPONENT_ENDGAME, KIND_CIRCLE, g.circles);
-  COUNT_REGION(count, g.arithmetic + ORIENT_OPERATIONS * g.orientations + CIRCLE_OPERATIONS * g.circles)
+  COUNT_TALLY(ENDGAME, g);
   for (int k = 0; k < 3 * total; ++k) triangles[k] = ids[made[k]];
   return total;
 }
+
+END_SHARED
 
 #endif

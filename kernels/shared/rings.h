@@ -1,79 +1,74 @@
-// Delaunay triangulations as rings of edges, and Guibas and Stolfi's merge of two of them (ACM Transactions on Graphics 4,
-// 1985). RINGS_CIRCLE breaks the ties of cocircular points: by circle_canonical, so that the result is the canonical one,
-// unless it says otherwise.
+// Delaunay triangulations as rings of edges, and Guibas and Stolfi's merge of two of them (ACM Transactions on Graphics
+// 4, 1985). RINGS_CIRCLE breaks the ties of cocircular points: by circle_canonical, so that the result is the canonical
+// one, unless it says otherwise.
 #ifndef FLAUNAY_RINGS_H
 #define FLAUNAY_RINGS_H
 
 #include "shared/counting.h"
+#include "shared/language.h"
+#include "shared/limits.h"
 #include "shared/order.h"
 #include "shared/planar.h"
+#include "shared/records.h"
 
-// A directed edge e in the ring of its origin; its reverse is e ^ 1. (Quad-edges without the dual half.)
-typedef struct {
-  int to;        // vertex, or NO_VERTEX for a free edge
-  int next;      // counter-clockwise about the origin; of a free edge the next free one
-  int previous;  // clockwise
-} ring_edge;
+BEGIN_SHARED
 
-#define NO_VERTEX -1
-#define NO_EDGE -1
-// Directed edges that a vertex brings: a planar graph has less than 3 edges a vertex.
-#define EDGES_PER_VERTEX 6
-// Where it is 0, edges stay as they are.
+INTEGER_CONSTANT(NO_VERTEX, -1);
+INTEGER_CONSTANT(NO_EDGE, -1);
+// Where it returns 0, edges stay as they are.
 #ifndef RINGS_CIRCLE
 #define RINGS_CIRCLE circle_canonical
 #endif
-// The most vertices that make_leaf takes.
-#define LEAF_VERTICES 4
 
-// What one work-item works on: edges of its own, all free at first.
+// What one work-item works on: its own edges, all free at first.
 typedef struct {
-  global ring_edge* edges;
-  global const double2* points;  // by vertex
+  GLOBAL ring_edge* edges;
+  GLOBAL const double2* points;  // by vertex
   // An edge out of each vertex: of a hull's strict corner the counter-clockwise hull edge; NO_EDGE if there is none.
-  global int* vertex_edge;
-  double orient_bound, circle_bound;
+  GLOBAL int* vertex_edge;
+  filter_bounds bounds;
   int free_first, free_last;  // of the list of free edges
   int unused;                 // the first that was never used
   uint undecided;             // predicates that floating point could not decide
-  COUNTED(uint orientations; uint circles;)
+  TALLY_MEMBER
 } rings;
 
-static inline rings rings_on(global ring_edge* edges, global const double2* points, global int* vertex_edge,
-                             double orient_bound, double circle_bound) {
+static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const double2* points, GLOBAL int* vertex_edge,
+                             filter_bounds bounds) {
   rings g;
   g.edges = edges;
   g.points = points;
   g.vertex_edge = vertex_edge;
-  g.orient_bound = orient_bound;
-  g.circle_bound = circle_bound;
+  g.bounds = bounds;
   g.free_first = g.free_last = g.unused = NO_EDGE;
   g.undecided = 0;
-  COUNTED(g.orientations = g.circles = 0;)
+  CLEAR_TALLY(g);
   return g;
 }
 
-// The first and the last vertex in the orders (x, y) and (y, -x): first x, last x, first y, last y. All are corners of the
-// hull, strictly convex. NO_VERTEX, all of them, if there is no vertex.
-typedef int4 ends;
+static inline hull_ends ends_of(int first_x, int last_x, int first_y, int last_y) {
+  const hull_ends ends = {first_x, last_x, first_y, last_y};
+  return ends;
+}
+static inline hull_ends no_ends(void) { return ends_of(NO_VERTEX, NO_VERTEX, NO_VERTEX, NO_VERTEX); }
 
-static inline int first_along(ends all, int axis) { return axis ? all.z : all.x; }
-static inline int last_along(ends all, int axis) { return axis ? all.w : all.y; }
+static inline int first_along(hull_ends ends, int axis) { return axis ? ends.first_y : ends.first_x; }
+static inline int last_along(hull_ends ends, int axis) { return axis ? ends.last_y : ends.last_x; }
 
-static inline ends joined_ends(const rings* g, ends low, ends high, int axis) {
-  if (low.x == NO_VERTEX) return high;
-  if (high.x == NO_VERTEX) return low;
+static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends high, int axis) {
+  if (low.first_x == NO_VERTEX) return high;
+  if (high.first_x == NO_VERTEX) return low;
   const int along = !axis;
   const int first = first_along(low, along), other_first = first_along(high, along);
   const int last = last_along(low, along), other_last = last_along(high, along);
   const int least = precedes(g->points[other_first], g->points[first], along) ? other_first : first;
   const int most = precedes(g->points[last], g->points[other_last], along) ? other_last : last;
-  return axis ? (ends)(least, most, low.z, high.w) : (ends)(low.x, high.y, least, most);
+  return axis ? ends_of(least, most, low.first_y, high.last_y) : ends_of(low.first_x, high.last_x, least, most);
 }
 
 static inline int side_of(rings* g, double2 a, double2 b, double2 c) {
-  COUNTED(++g->orientations;)
-  const int sign = orient_filtered(a, b, c, g->orient_bound);
+  TALLY(*g, orientations, 1);
+  const int sign = orient_filtered(a, b, c, g->bounds.orient);
   if (sign != UNDECIDED) return sign;
   ++g->undecided;
   return orient_exact(a, b, c);
@@ -82,11 +77,11 @@ static inline int turns_left(rings* g, double2 a, double2 b, double2 c) { return
 
 // Is d inside of the circle through a, b, c (counter-clockwise)?
 static inline int in_circle(rings* g, double2 a, double2 b, double2 c, double2 d) {
-  COUNTED(++g->circles;)
-  const int sign = circle_filtered(a, b, c, d, g->circle_bound);
+  TALLY(*g, circles, 1);
+  const int sign = circle_filtered(a, b, c, d, g->bounds.circle);
   if (sign == 1 || sign == -1) return sign > 0;
   g->undecided += sign == UNDECIDED;
-  return RINGS_CIRCLE(a, b, c, d, g->circle_bound) > 0;
+  return RINGS_CIRCLE(a, b, c, d, g->bounds.circle) > 0;
 }
 
 static inline void put_edge(rings* g, int e, int to, int next, int previous) {
@@ -114,16 +109,19 @@ static inline void free_edge(rings* g, int e) {
   g->free_first = e;
 }
 
-static inline int2 free_list(const rings* g) { return (int2)(g->free_first, g->free_last); }
-
-// The free edges of two parts that are to be merged.
-static inline void join_free_lists(rings* g, int2 low, int2 high) {
-  g->free_first = low.x == NO_EDGE ? high.x : low.x;
-  g->free_last = high.x == NO_EDGE ? low.y : high.y;
-  if (low.x != NO_EDGE && high.x != NO_EDGE) g->edges[low.y].next = high.x;
+static inline free_edges free_list(const rings* g) {
+  const free_edges list = {g->free_first, g->free_last};
+  return list;
 }
 
-// Lists those from the first unused one to end - 1.
+// The free edges of two parts that are to be merged.
+static inline void join_free_lists(rings* g, free_edges low, free_edges high) {
+  g->free_first = low.first == NO_EDGE ? high.first : low.first;
+  g->free_last = high.first == NO_EDGE ? low.last : high.last;
+  if (low.first != NO_EDGE && high.first != NO_EDGE) g->edges[low.last].next = high.first;
+}
+
+// Adds the edges from the first unused one to end - 1 to the free list.
 static inline void free_unused(rings* g, int end) {
   for (int e = g->unused; e < end; e += 2) {
     put_edge(g, e, NO_VERTEX, e, e);
@@ -228,7 +226,7 @@ static inline void make_star(rings* g, int4 q) {
 
 // An edge from the right triangulation to the left one that has both above it.
 static inline int lower_tangent(rings* g, int left, int right) {
-  global const ring_edge* edges = g->edges;
+  GLOBAL const ring_edge* edges = g->edges;
   int left_edge = g->vertex_edge[left], right_edge = g->vertex_edge[right];
   // The clockwise hull edge out of the left vertex; a vertex alone has none.
   if (left_edge != NO_EDGE) left_edge = edges[left_edge].previous;
@@ -254,13 +252,13 @@ static inline int lower_tangent(rings* g, int left, int right) {
 // Merges two triangulations that a cut separates, named as if it were vertical. left: the left one's last vertex along
 // the axis; right: the right one's first.
 static inline void merge_triangulations(rings* g, int left, int right) {
-  global const ring_edge* edges = g->edges;
+  GLOBAL const ring_edge* edges = g->edges;
   int base = lower_tangent(g, left, right);
   left = edges[base].to;
   right = edges[base ^ 1].to;
   double2 left_point = g->points[left], right_point = g->points[right];
   for (int rises = 1; rises;) {
-    // Either side's candidate: the next edge that rises above the base, but for those that its circle rules out.
+    // Each side's candidate: the next edge that rises above the base, after removal of those that its circle rules out.
     int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
     double2 left_apex = g->points[edges[left_edge].to], right_apex = g->points[edges[right_edge].to];
     const int left_rises = turns_left(g, left_apex, left_point, right_point);
@@ -310,20 +308,20 @@ static inline void make_four(rings* g, int v) {
   // Sides of the line from a to d, on which b and c are: 1 is below.
   const int b_below = side_of(g, a, b, d), c_below = side_of(g, a, c, d);
   int straight = !b_below || !c_below;
-  int4 q = (int4)(v, v + 1, v + 3, v + 2);
+  int4 q = VECTOR(int4, v, v + 1, v + 3, v + 2);
   int star = 0;
   if (!straight && b_below != c_below) {
-    if (b_below < 0) q = (int4)(v, v + 2, v + 3, v + 1);
+    if (b_below < 0) q = VECTOR(int4, v, v + 2, v + 3, v + 1);
   } else if (!straight) {
     const int at_b = side_of(g, a, b, c), at_c = side_of(g, b, c, d);
     straight = !at_b || !at_c;
     if (at_b == b_below && at_c == b_below) {
-      q = b_below > 0 ? (int4)(v, v + 1, v + 2, v + 3) : (int4)(v, v + 3, v + 2, v + 1);
+      q = b_below > 0 ? VECTOR(int4, v, v + 1, v + 2, v + 3) : VECTOR(int4, v, v + 3, v + 2, v + 1);
     } else {
       star = 1;
       const int inside = at_b != b_below ? v + 1 : v + 2;
       const int corner = at_b != b_below ? v + 2 : v + 1;
-      q = b_below > 0 ? (int4)(v, corner, v + 3, inside) : (int4)(v, v + 3, corner, inside);
+      q = b_below > 0 ? VECTOR(int4, v, corner, v + 3, inside) : VECTOR(int4, v, v + 3, corner, inside);
     }
   }
   if (straight) {
@@ -333,13 +331,14 @@ static inline void make_four(rings* g, int v) {
   } else if (star) {
     make_star(g, q);
   } else {
-    if (in_circle(g, g->points[q.x], g->points[q.y], g->points[q.z], g->points[q.w])) q = q.yzwx;
+    if (in_circle(g, g->points[q.x], g->points[q.y], g->points[q.z], g->points[q.w]))
+      q = VECTOR(int4, q.y, q.z, q.w, q.x);
     make_quadrilateral(g, q);
   }
 }
 
 // One to four vertices from v on, in the order of axis 0.
-static inline ends make_leaf(rings* g, int v, int size) {
+static inline hull_ends make_leaf(rings* g, int v, int size) {
   if (size == 1) g->vertex_edge[v] = NO_EDGE;
   if (size == 2) make_pair(g, v);
   if (size == 3) make_three(g, v);
@@ -349,7 +348,9 @@ static inline ends make_leaf(rings* g, int v, int size) {
     if (precedes(g->points[w], g->points[first], 1)) first = w;
     if (precedes(g->points[last], g->points[w], 1)) last = w;
   }
-  return (ends)(v, v + size - 1, first, last);
+  return ends_of(v, v + size - 1, first, last);
 }
+
+END_SHARED
 
 #endif

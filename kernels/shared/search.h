@@ -2,11 +2,13 @@
 #ifndef FLAUNAY_SEARCH_H
 #define FLAUNAY_SEARCH_H
 
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#include "shared/language.h"
+
+BEGIN_SHARED
 
 // The last of `count` segments that begins at i or before; offsets ascend and offsets[0] <= i. Of segments that begin
 // at the same place, the last, which is the one that is not empty.
-static inline int segment_of(int i, int count, global const int* restrict offsets) {
+static inline int segment_of(int i, int count, GLOBAL const int* RESTRICT offsets) {
   int low = 0, high = count;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
@@ -21,7 +23,7 @@ static inline int segment_of(int i, int count, global const int* restrict offset
 
 // The last path vertex of first..last with u no greater than the given one; first if there is none. Projections are
 // (h, u), ascending in u.
-static inline int search_path(double u, int first, int last, global const double2* restrict path_projections) {
+static inline int search_path(double u, int first, int last, GLOBAL const double2* RESTRICT path_projections) {
   int low = first, high = last + 1;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
@@ -33,5 +35,7 @@ static inline int search_path(double u, int first, int last, global const double
   }
   return low;
 }
+
+END_SHARED
 
 #endif

@@ -16,7 +16,7 @@ from flaunay._delaunay import Delaunay
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._flaunay import __version__
 from flaunay._on_device import DeviceTriangulation, triangulate_device
-from flaunay._triangulation import Triangulation, triangulate
+from flaunay._triangulation import Triangulation, modes, triangulate
 from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 
@@ -32,6 +32,7 @@ __all__ = [
     "Voronoi",
     "__version__",
     "devices",
+    "modes",
     "triangulate",
     "triangulate_device",
 ]

@@ -66,3 +66,8 @@ def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
             f"segments must be integers in one dimension, not {array.dtype} of shape {array.shape}"
         )
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def names_of(**wanted: bool) -> set[str]:
+    """The names whose values are true."""
+    return {name for name, is_wanted in wanted.items() if is_wanted}

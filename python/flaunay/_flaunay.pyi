@@ -11,12 +11,12 @@ _Offsets = npt.NDArray[np.int64]
 __version__: str
 
 def devices() -> list[dict[str, Any]]: ...
+def modes() -> list[dict[str, Any]]: ...
 def triangulate_without_device(
     points: npt.NDArray[np.float64],
     segments: Optional[_Offsets],
     mode: str,
-    neighbors: bool,
-    halfedges: bool,
+    wanted: set[str],
 ) -> dict[str, Any]: ...
 def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indices, _Indices]: ...
 def first_triangles(triangles: _Indices, n: int) -> _Indices: ...
@@ -37,8 +37,7 @@ class Triangulator:
         points: FloatArray,
         segments: Optional[_Offsets],
         mode: str,
-        neighbors: bool,
-        halfedges: bool,
+        wanted: set[str],
     ) -> dict[str, Any]: ...
 
 class DevicePoints:
@@ -53,22 +52,8 @@ class DevicePoints:
         sets: int = ...,
     ) -> None: ...
 
-class Parts:
-    def __init__(
-        self, neighbors: bool, halfedges: bool, hull: bool, representatives: bool
-    ) -> None: ...
-
 class DeviceResult:
-    @property
-    def triangles(self) -> int: ...
-    @property
-    def neighbors(self) -> int: ...
-    @property
-    def halfedges(self) -> int: ...
-    @property
-    def hull(self) -> int: ...
-    @property
-    def representatives(self) -> int: ...
+    def arrays(self) -> dict[str, Optional[tuple[int, tuple[int, ...]]]]: ...
     @property
     def triangle_offsets(self) -> _Offsets: ...
     @property
@@ -79,7 +64,7 @@ class DeviceResult:
 def triangulate_device(
     triangulator: Triangulator,
     points: DevicePoints,
-    parts: Parts,
+    wanted: set[str],
     queue: int,
     wait_for: list[int],
 ) -> tuple[DeviceResult, int]: ...

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_segments
+from flaunay._arrays import as_segments, names_of
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation
 
@@ -59,15 +59,13 @@ class DeviceTriangulation:
         """
         if self.hull is None or self.representatives is None:
             raise UsageError("a Triangulation needs hull and representatives: ask for them")
+        cl = _import_pyopencl()
         return Triangulation(
-            triangles=self.triangles.get(),
-            neighbors=None if self.neighbors is None else self.neighbors.get(),
-            halfedges=None if self.halfedges is None else self.halfedges.get(),
-            hull=self.hull.get(),
-            representatives=self.representatives.get(),
-            triangle_offsets=self.triangle_offsets,
-            hull_offsets=self.hull_offsets,
-            statistics=self.statistics,
+            **{
+                name: value.get() if isinstance(value, cl.array.Array) else value
+                for name, value in vars(self).items()
+                if name != "event"
+            }
         )
 
 
@@ -223,7 +221,7 @@ def triangulate_device(
 
     Notes
     -----
-    O(n log n) work; the mode is ``"hybrid"``. One triangulator for each context and device is kept,
+    O(n log n) work; the mode is ``"blocks"``. One triangulator for each context and device is kept,
     with the memory that it works in.
 
     Examples
@@ -243,27 +241,27 @@ def triangulate_device(
     device_points, arrays = _to_points(points, segments, queue)
     events = [event for array in arrays for event in array.events] + list(wait_for or ())
     triangulator = _triangulators.of_queue(queue)
-    parts = _flaunay.Parts(neighbors, halfedges, hull, representatives)
+    wanted = names_of(
+        triangles=True,
+        neighbors=neighbors,
+        halfedges=halfedges,
+        hull=hull,
+        representatives=representatives,
+    )
     result, event_handle = _flaunay.triangulate_device(
-        triangulator, device_points, parts, queue.int_ptr, [event.int_ptr for event in events]
+        triangulator, device_points, wanted, queue.int_ptr, [event.int_ptr for event in events]
     )
     event = cl.Event.from_int_ptr(event_handle, retain=False)
     for array in arrays:
         array.add_event(event)
-    triangle_offsets, hull_offsets = result.triangle_offsets, result.hull_offsets
-    rows = (int(triangle_offsets[-1]), 3)
-
-    def view(wanted: bool, handle: int, shape: tuple[int, ...]) -> Optional[pyopencl.array.Array]:
-        return _view(handle, shape, queue, event) if wanted else None
-
+    views = {
+        name: None if place is None else _view(*place, queue, event)
+        for name, place in result.arrays().items()
+    }
     return DeviceTriangulation(
-        triangles=_view(result.triangles, rows, queue, event),
-        neighbors=view(neighbors, result.neighbors, rows),
-        halfedges=view(halfedges, result.halfedges, (3 * rows[0],)),
-        hull=view(hull, result.hull, (int(hull_offsets[-1]),)),
-        representatives=view(representatives, result.representatives, (int(points.shape[0]),)),
-        triangle_offsets=triangle_offsets,
-        hull_offsets=hull_offsets,
+        **views,
+        triangle_offsets=result.triangle_offsets,
+        hull_offsets=result.hull_offsets,
         statistics=result.statistics,
         event=event,
     )

@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_points, as_segments
+from flaunay._arrays import as_points, as_segments, names_of
 from flaunay._errors import UsageError
 
-# They run on the host; no device needs to be there.
-_MODES_OF_THE_HOST = ("recursive", "dwyer")
+_MODES_ON_HOST = {mode["name"] for mode in _flaunay.modes() if mode["on_host"]}
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ def triangulate(
     device: Optional[str] = None,
     neighbors: bool = True,
     halfedges: bool = False,
-    mode: str = "hybrid",
+    mode: str = "blocks",
 ) -> Triangulation:
     """Triangulates one set of points, or many sets in one call.
 
@@ -82,9 +81,8 @@ def triangulate(
     neighbors, halfedges : bool
         Which of these to compute.
     mode : str
-        How to divide and conquer: ``"hybrid"``, ``"flattened"``, ``"recursive-device"`` or
-        ``"partition"``; ``"recursive"`` and ``"dwyer"`` run on the host and need no device. The
-        triangles are the same in each; the order of the rows is the mode's own.
+        How to divide and conquer, by a name in `modes`. The triangles are the same in each mode; the
+        order of the rows differs. Some modes run on the host and need no device.
 
     Returns
     -------
@@ -122,12 +120,31 @@ def triangulate(
     """
     coordinates = as_points(points)
     offsets = None if segments is None else as_segments(segments)
-    if mode in _MODES_OF_THE_HOST:
+    wanted = names_of(neighbors=neighbors, halfedges=halfedges)
+    if mode in _MODES_ON_HOST:
         if device is not None:
             raise UsageError(f"mode {mode} runs on the host and takes no device")
         doubles = np.asarray(coordinates, dtype=np.float64)
-        result = _flaunay.triangulate_without_device(doubles, offsets, mode, neighbors, halfedges)
+        result = _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
     else:
         triangulator = _triangulators.of_device(device)
-        result = triangulator.triangulate(coordinates, offsets, mode, neighbors, halfedges)
+        result = triangulator.triangulate(coordinates, offsets, mode, wanted)
     return Triangulation(**result)
+
+
+def modes() -> list[dict[str, Any]]:
+    """Every mode of `triangulate`, the default first.
+
+    Returns
+    -------
+    list of dict
+        For each mode its ``name``, a ``description`` of one line, and ``on_host``: whether it runs on
+        the host, without a device.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.modes()[0]["name"]
+    'blocks'
+    """
+    return _flaunay.modes()

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,9 @@ using Points64 = py::array_t<double, py::array::c_style>;
 using Points32 = py::array_t<float, py::array::c_style>;
 using Offsets = py::array_t<std::int64_t, py::array::c_style>;
 using Indices = py::array_t<std::int32_t, py::array::c_style>;
+
+/// Names of arrays of a triangulation.
+using Names = std::set<std::string>;
 
 /// An array that owns the vector's memory: nothing is copied.
 template <typename T, typename Element = T>
@@ -102,6 +106,6 @@ py::dict to_dict(const Statistics& statistics);
 
 void bind_host(py::module_& module);
 void bind_device(py::module_& module);
-void bind_derived(py::module_& module);
+void bind_queries(py::module_& module);
 
 }  // namespace flaunay::python

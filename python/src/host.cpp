@@ -1,40 +1,55 @@
-// Triangulations of points in host memory, and what is derived from them there.
+// Triangulations of points in host memory, the modes, and tables made from the triangles.
 #include <algorithm>
 
 #include "bindings.hpp"
+#include "call/result_arrays.hpp"
+#include "flaunay/research.hpp"
 
 namespace flaunay::python {
 namespace {
 
-constexpr Mode kModes[] = {Mode::hybrid,    Mode::flattened, Mode::recursive_device,
-                           Mode::recursive, Mode::partition, Mode::dwyer};
-
-Mode find_mode(const std::string& name) {
+const research::ModeInfo& find_mode(const std::string& name) {
   std::string names;
-  for (const Mode mode : kModes) {
-    if (name == to_string(mode)) return mode;
-    names += std::string(names.empty() ? "" : ", ") + to_string(mode);
+  for (const research::ModeInfo& mode : research::list_modes()) {
+    if (name == mode.name) return mode;
+    names += std::string(names.empty() ? "" : ", ") + mode.name;
   }
   throw Error(ErrorKind::usage, "there is no mode '" + name + "'; there are " + names);
 }
 
-Options make_options(const std::string& mode, bool neighbors, bool halfedges) {
-  Options options;
-  options.mode = find_mode(mode);
-  options.neighbors = neighbors;
-  options.halfedges = halfedges;
+py::list modes() {
+  py::list result;
+  for (const research::ModeInfo& mode : research::list_modes()) {
+    py::dict row;
+    row["name"] = mode.name;
+    row["description"] = mode.description;
+    row["on_host"] = mode.on_host;
+    result.append(row);
+  }
+  return result;
+}
+
+// wanted: the names of the optional arrays to compute.
+research::Options make_options(const std::string& mode, const Names& wanted) {
+  research::Options options;
+  options.mode = find_mode(mode).mode;
+  for (const call::ResultArray& array : call::kResultArrays) {
+    if (array.option != nullptr) options.*array.option = wanted.count(array.name) > 0;
+  }
   return options;
 }
 
 py::dict arrays_of(Triangulation&& triangulation, const Options& options) {
   py::dict result;
-  result["triangles"] = to_rows(std::move(triangulation.triangles), 3);
-  result["neighbors"] =
-      options.neighbors ? py::object(to_rows(std::move(triangulation.neighbors), 3)) : py::none();
-  result["halfedges"] =
-      options.halfedges ? py::object(to_array(std::move(triangulation.halfedges))) : py::none();
-  result["hull"] = to_array(std::move(triangulation.hull));
-  result["representatives"] = to_array(std::move(triangulation.representatives));
+  for (const call::ResultArray& array : call::kResultArrays) {
+    if (array.option != nullptr && !(options.*array.option)) {
+      result[array.name] = py::none();
+      continue;
+    }
+    std::vector<std::int32_t>& values = triangulation.*array.values;
+    const std::size_t columns = call::columns(array.row);
+    result[array.name] = columns == 1 ? to_array(std::move(values)) : to_rows(std::move(values), columns);
+  }
   result["triangle_offsets"] = to_offsets(std::move(triangulation.triangle_offsets));
   result["hull_offsets"] = to_offsets(std::move(triangulation.hull_offsets));
   result["statistics"] = to_dict(triangulation.statistics);
@@ -43,24 +58,24 @@ py::dict arrays_of(Triangulation&& triangulation, const Options& options) {
 
 template <typename Points>
 py::dict triangulate(SharedTriangulator& shared, const Points& points, const std::optional<Offsets>& segments,
-                     const std::string& mode, bool neighbors, bool halfedges) {
-  const Options options = make_options(mode, neighbors, halfedges);
+                     const std::string& mode, const Names& wanted) {
+  const research::Options options = make_options(mode, wanted);
   const auto* const coordinates = points.data();
   const std::vector<std::size_t> offsets = to_offsets(segments, count_points(points));
   return arrays_of(shared.run([&](Triangulator& triangulator) {
-    return triangulator.triangulate(coordinates, offsets, options);
+    return research::triangulate(triangulator, coordinates, offsets, options);
   }),
                    options);
 }
 
 py::dict triangulate_without_device(const Points64& points, const std::optional<Offsets>& segments,
-                                    const std::string& mode, bool neighbors, bool halfedges) {
-  const Options options = make_options(mode, neighbors, halfedges);
+                                    const std::string& mode, const Names& wanted) {
+  const research::Options options = make_options(mode, wanted);
   const double* const coordinates = points.data();
   const std::vector<std::size_t> offsets = to_offsets(segments, count_points(points));
   Triangulation triangulation = [&] {
     const py::gil_scoped_release release;
-    return triangulate_on_host(coordinates, offsets, options);
+    return research::triangulate_on_host(coordinates, offsets, options);
   }();
   return arrays_of(std::move(triangulation), options);
 }
@@ -137,11 +152,12 @@ void bind_host(py::module_& module) {
              return shared.run([](Triangulator& triangulator) { return triangulator.capacity(); });
            })
       .def("triangulate", &triangulate<Points64>, py::arg("points").noconvert(), py::arg("segments"),
-           py::arg("mode"), py::arg("neighbors"), py::arg("halfedges"))
+           py::arg("mode"), py::arg("wanted"))
       .def("triangulate", &triangulate<Points32>, py::arg("points").noconvert(), py::arg("segments"),
-           py::arg("mode"), py::arg("neighbors"), py::arg("halfedges"));
+           py::arg("mode"), py::arg("wanted"));
+  module.def("modes", modes);
   module.def("triangulate_without_device", triangulate_without_device, py::arg("points").noconvert(),
-             py::arg("segments"), py::arg("mode"), py::arg("neighbors"), py::arg("halfedges"));
+             py::arg("segments"), py::arg("mode"), py::arg("wanted"));
   module.def("vertex_neighbors", vertex_neighbors, py::arg("triangles"), py::arg("hull"), py::arg("n"));
   module.def("first_triangles", first_triangles, py::arg("triangles"), py::arg("n"));
 }

@@ -134,5 +134,5 @@ PYBIND11_MODULE(_flaunay, module) {
   module.def("devices", devices);
   bind_host(module);
   bind_device(module);
-  bind_derived(module);
+  bind_queries(module);
 }

@@ -90,14 +90,14 @@ def test_magnitudes_that_differ_too_much():
         ("04", "integers"),
     ],
 )
-@pytest.mark.parametrize("mode", ["hybrid", "flattened", "dwyer"])
+@pytest.mark.parametrize("mode", ["blocks", "flattened", "dwyer"])
 def test_segments_that_are_none(segments, message, mode):
     with pytest.raises(flaunay.UsageError, match=message):
         flaunay.triangulate(FOUR, segments=segments, mode=mode)
 
 
 def test_modes():
-    with pytest.raises(flaunay.UsageError, match="no mode 'fast'; there are hybrid, flattened"):
+    with pytest.raises(flaunay.UsageError, match="no mode 'fast'; there are blocks, flattened"):
         flaunay.triangulate(FOUR, mode="fast")
     with pytest.raises(flaunay.UsageError, match="takes no device"):
         flaunay.triangulate(FOUR, mode="dwyer", device="#0")

@@ -8,7 +8,7 @@ from conftest import as_set, check_neighbors
 
 import flaunay
 
-MODES = ["hybrid", "flattened", "recursive-device", "recursive", "partition", "dwyer"]
+MODES = [mode["name"] for mode in flaunay.modes()]
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ constexpr const char* kOutOfMemory = "the host is out of memory";
 
 struct LastError {
   std::string text, call;
-  const char* message = "";  // the text, or a literal where there was no memory for one
+  const char* message = "";  // the text, or a literal if there was no memory for a copy
   int code = 0;
 };
 thread_local LastError last;

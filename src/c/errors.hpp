@@ -1,4 +1,4 @@
-// Exceptions as statuses, and the last error of each thread.
+// Turns exceptions into statuses, and keeps the last error of each thread.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,10 +8,11 @@
 
 namespace flaunay::c {
 
-/// The exception that is being handled, as a status; its message becomes this thread's last error.
+/// Returns the status for the exception that is being handled and keeps its message as this thread's last
+/// error. To be called in a catch block.
 flaunay_status remember_exception() noexcept;
 
-/// Runs work; what it throws becomes a status.
+/// Runs work() and turns an exception into a status.
 template <typename Work>
 flaunay_status guarded(const Work& work) noexcept {
   try {
@@ -22,14 +23,14 @@ flaunay_status guarded(const Work& work) noexcept {
   }
 }
 
-/// Throws Error(usage) that names it if the pointer is null.
+/// What the pointer points to. Throws Error(usage) if it is null; what: its name in the message.
 template <typename T>
 T& required(T* pointer, const char* what) {
   if (pointer == nullptr) throw Error(ErrorKind::usage, fmt::format("{} must not be NULL", what));
   return *pointer;
 }
 
-/// What make() returns goes to *place, which is null if it throws.
+/// Stores the handle that make() returns in *place, or null if it throws.
 template <typename Handle, typename Make>
 flaunay_status create(Handle** place, const Make& make) noexcept {
   return guarded([&] {
@@ -38,7 +39,7 @@ flaunay_status create(Handle** place, const Make& make) noexcept {
   });
 }
 
-/// What get() returns of a handle; null or 0 if there is none.
+/// Returns get(*handle); null or 0 if the handle is null or get throws.
 template <typename Handle, typename Get>
 auto read(const Handle* handle, const Get& get) noexcept -> decltype(get(*handle)) {
   decltype(get(*handle)) value{};

@@ -1,7 +1,5 @@
-// The C interface but for what is derived from a triangulation: handles and structs to those of C++ and back.
+// The C interface to devices, triangulators and triangulations.
 #include "flaunay/flaunay.h"
-
-#include <fmt/format.h>
 
 #include <memory>
 
@@ -10,30 +8,13 @@
 
 using namespace flaunay;
 
-// What the interface says goes through these: null handles, exceptions, new handles.
+// These keep the promises of the interface about null handles, exceptions and new handles.
 using c::create;
 using c::guarded;
 using c::read;
 using c::required;
 
 namespace {
-
-template <typename Handle>
-auto& buffer_of(Handle& triangulation, unsigned part) {
-  switch (part) {
-    case FLAUNAY_PART_TRIANGLES:
-      return triangulation.cpp.triangles;
-    case FLAUNAY_PART_NEIGHBORS:
-      return triangulation.cpp.neighbors;
-    case FLAUNAY_PART_HALFEDGES:
-      return triangulation.cpp.halfedges;
-    case FLAUNAY_PART_HULL:
-      return triangulation.cpp.hull;
-    case FLAUNAY_PART_REPRESENTATIVES:
-      return triangulation.cpp.representatives;
-  }
-  throw Error(ErrorKind::usage, fmt::format("{} is not one part of a triangulation", part));
-}
 
 template <typename Coordinate>
 flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate* coordinates, size_t n,
@@ -42,7 +23,7 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate*
   return create(result, [&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     return std::make_unique<flaunay_triangulation>(
-        cpp.triangulate(coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
+        research::triangulate(cpp, coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
   });
 }
 
@@ -135,7 +116,7 @@ flaunay_status flaunay_triangulate_on_host(const double* coordinates, size_t n, 
                                            flaunay_triangulation** result) {
   return create(result, [&] {
     return std::make_unique<flaunay_triangulation>(
-        triangulate_on_host(coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
+        research::triangulate_on_host(coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
   });
 }
 
@@ -199,12 +180,14 @@ void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangul
 
 flaunay_status flaunay_device_triangulation_set_buffer(flaunay_device_triangulation* triangulation,
                                                        unsigned part, cl_mem memory) {
-  return guarded(
-      [&] { buffer_of(required(triangulation, "the triangulation"), part) = c::to_buffer(memory); });
+  return guarded([&] {
+    required(triangulation, "the triangulation").cpp.*c::array_of(part).buffer = c::to_buffer(memory);
+  });
 }
 
 cl_mem flaunay_device_triangulation_buffer(const flaunay_device_triangulation* triangulation, unsigned part) {
-  return read(triangulation, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
+  return read(triangulation,
+              [&](const auto& handle) { return (handle.cpp.*c::array_of(part).buffer).memory(); });
 }
 
 unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation) {
@@ -253,7 +236,7 @@ flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
     const Enqueue queued = c::to_enqueue(enqueue);
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     flaunay_device_triangulation& handle = required(result, "the result");
-    // They refer to the statistics that the call replaces.
+    // The view refers to statistics that the call replaces.
     handle.statistics.clear();
     cpp.triangulate(c::to_points(points), handle.cpp, c::to_parts(parts), queued);
     handle.statistics.show(handle.cpp.statistics);

@@ -5,16 +5,20 @@
 #include <cstdint>
 #include <iterator>
 
-#include "embedding/handles.hpp"
-#include "input/magnitudes.hpp"
+#include "call/handles.hpp"
+#include "geometry/magnitudes.hpp"
 
 namespace flaunay::c {
 namespace {
 
+using research::Cut;
+using research::Hull;
+using research::Mode;
+
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
-// Before memory is asked for.
-using embedding::kMostCountable;
+using call::kMostCountable;
+using call::kResultArrays;
 
 template <typename Struct>
 void check_reserved(const Struct& given, const char* name) {
@@ -27,20 +31,13 @@ void check_reserved(const Struct& given, const char* name) {
   }
 }
 
+// Enumerators of C and C++ have the same values, so a mode is found by its value.
+static_assert(FLAUNAY_MODE_BLOCKS == static_cast<int>(Mode::blocks) &&
+              FLAUNAY_MODE_DWYER == static_cast<int>(Mode::dwyer));
+
 Mode to_mode(int mode) {
-  switch (mode) {
-    case FLAUNAY_MODE_HYBRID:
-      return Mode::hybrid;
-    case FLAUNAY_MODE_FLATTENED:
-      return Mode::flattened;
-    case FLAUNAY_MODE_RECURSIVE_DEVICE:
-      return Mode::recursive_device;
-    case FLAUNAY_MODE_RECURSIVE:
-      return Mode::recursive;
-    case FLAUNAY_MODE_PARTITION:
-      return Mode::partition;
-    case FLAUNAY_MODE_DWYER:
-      return Mode::dwyer;
+  for (const research::ModeInfo& info : research::list_modes()) {
+    if (static_cast<int>(info.mode) == mode) return info.mode;
   }
   throw_usage(fmt::format("there is no mode {}", mode));
 }
@@ -79,9 +76,13 @@ Precision to_precision(int precision) {
   throw_usage(fmt::format("there is no precision {}", precision));
 }
 
+// Bit k of flaunay_part stands for row k of the table.
+constexpr unsigned bit_of(std::size_t row) { return 1u << row; }
+static_assert(FLAUNAY_PART_TRIANGLES == bit_of(0) &&
+              FLAUNAY_PART_REPRESENTATIVES == bit_of(kResultArrays.size() - 1));
+
 void check_parts(unsigned parts) {
-  constexpr unsigned kAll = FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES |
-                            FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+  constexpr unsigned kAll = bit_of(kResultArrays.size()) - 1;
   if (parts & ~kAll) throw_usage(fmt::format("there are no parts {:#x}", parts & ~kAll));
 }
 
@@ -142,8 +143,8 @@ flaunay_device_info view_of(const DeviceInfo& info) {
   return view;
 }
 
-Options to_options(const flaunay_options* options) {
-  Options result;
+research::Options to_options(const flaunay_options* options) {
+  research::Options result;
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_options");
   check_parts(options->parts);
@@ -151,8 +152,10 @@ Options to_options(const flaunay_options* options) {
   result.cut = to_cut(options->cut);
   result.hull = to_hull(options->hull);
   if (options->parts != 0) {
-    result.neighbors = options->parts & FLAUNAY_PART_NEIGHBORS;
-    result.halfedges = options->parts & FLAUNAY_PART_HALFEDGES;
+    for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
+      const auto option = kResultArrays[k].option;
+      if (option != nullptr) result.*option = (options->parts & bit_of(k)) != 0;
+    }
   }
   result.profile = options->profile != 0;
   result.partition_levels = options->partition_levels;
@@ -168,27 +171,34 @@ Options to_options(const flaunay_options* options) {
 
 Parts to_parts(unsigned parts) {
   check_parts(parts);
-  if (parts == 0) return {};
-  const auto has = [parts](flaunay_part part) { return (parts & part) != 0; };
-  return {has(FLAUNAY_PART_TRIANGLES), has(FLAUNAY_PART_NEIGHBORS), has(FLAUNAY_PART_HALFEDGES),
-          has(FLAUNAY_PART_HULL), has(FLAUNAY_PART_REPRESENTATIVES)};
+  Parts result;
+  if (parts == 0) return result;
+  for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
+    result.*kResultArrays[k].part = (parts & bit_of(k)) != 0;
+  }
+  return result;
 }
 
 unsigned to_bits(const Parts& parts) {
   unsigned bits = 0;
-  if (parts.triangles) bits |= FLAUNAY_PART_TRIANGLES;
-  if (parts.neighbors) bits |= FLAUNAY_PART_NEIGHBORS;
-  if (parts.halfedges) bits |= FLAUNAY_PART_HALFEDGES;
-  if (parts.hull) bits |= FLAUNAY_PART_HULL;
-  if (parts.representatives) bits |= FLAUNAY_PART_REPRESENTATIVES;
+  for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
+    if (parts.*kResultArrays[k].part) bits |= bit_of(k);
+  }
   return bits;
+}
+
+const call::ResultArray& array_of(unsigned part) {
+  for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
+    if (part == bit_of(k)) return kResultArrays[k];
+  }
+  throw_usage(fmt::format("{} is not one part of a triangulation", part));
 }
 
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n) {
   if (offsets == nullptr) return {0, n};
   if (sets > kMostCountable) throw_usage("too many sets");
   std::vector<std::size_t> result(offsets, offsets + sets + 1);
-  check_offsets(result, n);
+  geometry::check_offsets(result, n);
   return result;
 }
 

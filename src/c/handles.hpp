@@ -1,4 +1,4 @@
-// What the C interface's handles hold, and its structs as those of C++ and back.
+// What the handles of the C interface hold, and conversions between its structs and those of C++.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "c/errors.hpp"
+#include "call/result_arrays.hpp"
+#include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.h"
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 
 namespace flaunay::c {
 
-/// Statistics as C sees them; refers to what was shown, which must stay.
+/// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.
 class StatisticsView {
  public:
   void show(const Statistics& statistics);
@@ -25,25 +27,27 @@ class StatisticsView {
   std::vector<flaunay_kernel> kernels_;
 };
 
-/// Refers to info, which must stay.
+/// A device as a C struct. It refers to info, which must outlive it.
 flaunay_device_info view_of(const DeviceInfo& info);
 
-/// Throws Error(usage) for enumerators and reserved members that are not known. Null: the defaults.
-Options to_options(const flaunay_options* options);
+/// Null: the defaults. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
+research::Options to_options(const flaunay_options* options);
 
-/// Throws Error(usage) for a bit that is none.
+/// Bits of flaunay_part. Throws Error(usage) for an unknown bit. 0: the defaults.
 Parts to_parts(unsigned parts);
 unsigned to_bits(const Parts& parts);
+/// The array of one bit. Throws Error(usage) for anything else.
+const call::ResultArray& array_of(unsigned part);
 
-/// One set if offsets is null. Throws Error(usage) if they do not increase from 0 to n.
+/// Null: one set. Throws Error(usage) unless the offsets go from 0 to n without decreasing.
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n);
 
 DevicePoints to_points(const flaunay_device_points* points);
 
-/// Null: the defaults. Sets the event to null.
+/// Null: the defaults. Sets *enqueue->event to null.
 Enqueue to_enqueue(const flaunay_enqueue* enqueue);
 
-/// The caller's buffer, or none of its own yet if memory is null.
+/// The caller's buffer; if memory is null, a buffer that flaunay will make.
 inline DeviceBuffer to_buffer(cl_mem memory) {
   return memory != nullptr ? DeviceBuffer(memory) : DeviceBuffer();
 }
@@ -54,12 +58,12 @@ const T* elements(const std::vector<T>& values) {
   return values.empty() ? nullptr : values.data();
 }
 
-/// The number of sets that have these offsets, which are empty before the first call.
+/// The number of sets; 0 before the first call, when there are no offsets.
 inline std::size_t set_count(const std::vector<std::size_t>& offsets) {
   return std::max<std::size_t>(offsets.size(), 1) - 1;
 }
 
-/// The last offset, 0 before the first call.
+/// The last offset; 0 before the first call, when there are no offsets.
 inline std::size_t total(const std::vector<std::size_t>& offsets) {
   return offsets.empty() ? 0 : offsets.back();
 }

@@ -13,10 +13,10 @@
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
 #include "cli/results.hpp"
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 #include "io/mesh.hpp"
 #include "io/points.hpp"
-#include "recursive/threads.hpp"
+#include "partition/threads.hpp"
 
 namespace flaunay::cli {
 
@@ -33,7 +33,7 @@ struct AssembleRequest {
   bool quiet = false;
 };
 
-// The file with each region's solution; empty: to be solved here.
+// The path of each region's solution; empty if the region is to be solved here.
 std::vector<std::string> find_solutions(const PartitionReader& reader, bool solve) {
   std::vector<std::string> paths;
   for (std::size_t r = 0; r < reader.regions(); ++r) paths.push_back(reader.solution_path(r));
@@ -48,16 +48,16 @@ std::vector<std::string> find_solutions(const PartitionReader& reader, bool solv
   return paths;
 }
 
-std::vector<std::int32_t> solve_region(const io::Points& points, const Region& region) {
+std::vector<std::int32_t> solve_region(const io::Points& points, const research::Region& region) {
   std::vector<double> own;
   for (const std::int32_t index : region.points) {
     const double* point = &points.coordinates[2 * static_cast<std::size_t>(index)];
     own.insert(own.end(), point, point + 2);
   }
-  Options options;
+  research::Options options;
   options.mode = Mode::dwyer;
   options.neighbors = false;
-  return triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
+  return research::triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
 }
 
 Solutions read_solutions(const std::vector<std::string>& paths) {
@@ -68,18 +68,18 @@ Solutions read_solutions(const std::vector<std::string>& paths) {
   return solutions;
 }
 
-void solve_missing(const io::Points& points, const Partition& partition,
+void solve_missing(const io::Points& points, const research::Partition& partition,
                    const std::vector<std::string>& paths, int threads, Solutions& solutions) {
   std::vector<std::size_t> unsolved;
   for (std::size_t r = 0; r < paths.size(); ++r) {
     if (paths[r].empty()) unsolved.push_back(r);
   }
-  recursive::for_each_index(unsolved.size(), threads, [&](std::size_t k) {
+  partition::for_each_index(unsolved.size(), threads, [&](std::size_t k) {
     solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
   });
 }
 
-// The library says "region 3: ..." or speaks of the parts; people look for a file.
+// The library's messages name a region by its number or speak of "the parts"; here the file is named too.
 [[noreturn]] void fail_with_file(const Error& error, const PartitionReader& reader,
                                  const std::vector<std::string>& paths) {
   const std::string message = error.what();
@@ -92,11 +92,11 @@ void solve_missing(const io::Points& points, const Partition& partition,
   throw Error(error.kind(), of_parts ? fmt::format("{}: {}", reader.description_path(), message) : message);
 }
 
-Triangulation put_together(const io::Points& points, const Partition& partition, const Solutions& solutions,
-                           const PartitionReader& reader, const std::vector<std::string>& paths,
-                           const Options& options) {
+Triangulation put_together(const io::Points& points, const research::Partition& partition,
+                           const Solutions& solutions, const PartitionReader& reader,
+                           const std::vector<std::string>& paths, const Options& options) {
   try {
-    return flaunay::assemble(points.coordinates.data(), points.size(), partition, solutions, options);
+    return research::assemble(points.coordinates.data(), points.size(), partition, solutions, options);
   } catch (const Error& error) {
     fail_with_file(error, reader, paths);
   }
@@ -118,7 +118,7 @@ int assemble(const AssembleRequest& request) {
   Stopwatch stopwatch;
   progress.update("reading");
   const io::Points points = io::read_points(request.input);
-  const Partition partition = reader.read(request.input, points);
+  const research::Partition partition = reader.read(request.input, points);
   Solutions solutions = read_solutions(paths);
   facts.reading_seconds = stopwatch.restart();
 
@@ -127,11 +127,12 @@ int assemble(const AssembleRequest& request) {
   facts.solving_seconds = stopwatch.seconds();
 
   Options options;
-  options.neighbors = !request.results.neighbors.empty();
+  ask_for(request.results, options);
   options.progress = [&progress](const std::string& stage, int level, double done) {
     progress.update(stage, level, done);
   };
-  const Triangulation mesh = put_together(points, partition, solutions, reader, paths, options);
+  research::Triangulation mesh;
+  static_cast<Triangulation&>(mesh) = put_together(points, partition, solutions, reader, paths, options);
 
   write_results(request.results, points, mesh, facts, progress, outputs);
 
@@ -144,18 +145,18 @@ int assemble(const AssembleRequest& request) {
 void add_assemble(CLI::App& app, Action& action) {
   auto request = std::make_shared<AssembleRequest>();
   CLI::App* command = app.add_subcommand(
-      "assemble", "Put the solved regions of a partition together to the triangulation of all points");
+      "assemble", "Join the solved regions of a partition to the triangulation of all points");
   add_input(command, request->input);
   command->add_option("partition", request->folder, "The folder that flaunay partition wrote")->required();
   add_results(command, request->results);
   CLI::Option* solve =
       command->add_flag("--solve", request->solve, "Solve the regions that have no solution");
-  add_threads(command, request->threads, "Threads for --solve; one per core if not given")->needs(solve);
+  add_threads(command, request->threads, "Threads for --solve; default: one per core")->needs(solve);
   add_quiet(command, request->quiet);
   command->footer(
       "A region's solution is any Delaunay triangulation of the points of region-00000.node, up to their "
-      "convex hull, beside it: region-00000.npy (int32, 3 positions a row), region-00000.ele or "
-      "region-00000.1.ele (Triangle's).");
+      "convex hull, in a file beside it: region-00000.npy (int32, 3 positions per row), region-00000.ele or "
+      "region-00000.1.ele (the format of Triangle).");
   command->callback([request, &action] { action = [request] { return assemble(*request); }; });
 }
 

@@ -1,4 +1,4 @@
-// The subcommands: each adds itself to the parser and leaves what to do if it is chosen.
+// The subcommands. Each adds itself to the parser; if it is chosen, it stores its work in `action`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 namespace flaunay::cli {
 
-/// The chosen subcommand's work; returns the exit code, throws Error.
+/// The work of the chosen subcommand. Returns the exit code, throws Error.
 using Action = std::function<int()>;
 
 void add_triangulate(CLI::App& app, Action& action);

@@ -1,4 +1,4 @@
-// What a command ends with: `flaunay` and `flaunay-bench` alike.
+// The exit codes of `flaunay` and `flaunay-bench`.
 #pragma once
 
 #include "flaunay/flaunay.hpp"

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "flaunay/flaunay.hpp"
 #include "io/points.hpp"
@@ -33,7 +34,7 @@ int generate(const GenerateRequest& request) {
                                               request.count, kMostPoints));
   }
   if (request.output == "-") {
-    // Text into a pipe: if the reader goes away, end as every filter does.
+    // As in every filter, a closed pipe ends the program without a message.
     std::signal(SIGPIPE, SIG_DFL);
     io::write_points("-", io::generate(request.distribution, request.count, request.seed));
     return kSuccess;
@@ -45,17 +46,12 @@ int generate(const GenerateRequest& request) {
   return kSuccess;
 }
 
-std::string distribution_list() {
-  std::size_t width = 0;
+std::string distribution_table() {
+  std::vector<std::pair<std::string, std::string>> rows;
   for (const io::Distribution& distribution : io::distributions()) {
-    width = std::max(width, distribution.name.size());
+    rows.emplace_back(distribution.name, distribution.description);
   }
-  std::string list = "Distributions:\n";
-  for (const io::Distribution& distribution : io::distributions()) {
-    fmt::format_to(std::back_inserter(list), "  {:<{}}  {}\n", distribution.name, width,
-                   distribution.description);
-  }
-  return list;
+  return help_table("Distributions", rows);
 }
 
 }  // namespace
@@ -64,7 +60,7 @@ void add_generate(CLI::App& app, Action& action) {
   auto request = std::make_shared<GenerateRequest>();
   CLI::App* command = app.add_subcommand("generate", "Write points of a known distribution");
   command->add_option("distribution", request->distribution, "One of those listed below")->required();
-  // CLI11 wraps negative numbers round and cuts large ones off.
+  // CLI11 itself would turn negative numbers into large ones and cap numbers that are too large.
   const CLI::Validator whole_number(
       [](std::string& text) -> std::string {
         constexpr std::size_t kMostDigits = std::numeric_limits<std::uint64_t>::digits10;
@@ -74,14 +70,16 @@ void add_generate(CLI::App& app, Action& action) {
       },
       "");
   command->add_option("count", request->count, "How many points")->required()->check(whole_number);
-  command->add_option("--seed", request->seed, "The same seed gives the same points on every machine")
+  command
+      ->add_option("--seed", request->seed,
+                   "Seed of the random numbers; the same seed gives the same points on every machine")
       ->check(whole_number)
       ->capture_default_str();
   command
       ->add_option("-o,--output", request->output,
                    "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text on standard output")
       ->required();
-  command->footer(distribution_list());
+  command->footer(distribution_table());
   command->callback([request, &action] { action = [request] { return generate(*request); }; });
 }
 

@@ -1,4 +1,5 @@
-// The command `flaunay`: parses, runs one subcommand, turns errors into one message and an exit code.
+// The command `flaunay`: parses the arguments, runs one subcommand, and turns an error into a message and an
+// exit code.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -23,8 +24,8 @@ int fail(int code, const std::string& message) {
 int run(int argc, char** argv) {
   CLI::App app("Exact two-dimensional Delaunay triangulation on any OpenCL device.", "flaunay");
   app.set_version_flag("--version", std::string("flaunay ") + flaunay::version());
-  app.footer("FLAUNAY_DEVICE chooses the device where --device does not.");
-  // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
+  app.footer("The environment variable FLAUNAY_DEVICE chooses the device if --device is not given.");
+  // At least 0, so that CLI11 reports an unknown subcommand by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
   add_triangulate(app, action);
@@ -49,7 +50,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A reader that goes away is seen where the writing is done.
+  // A closed pipe is handled where the output is written.
   std::signal(SIGPIPE, SIG_IGN);
   try {
     return run(argc, argv);

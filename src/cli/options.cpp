@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace flaunay::cli {
 
 void add_input(CLI::App* command, std::string& path) {
@@ -19,8 +22,20 @@ CLI::Option* add_path(CLI::App* command, const std::string& option, std::string&
   return command->add_option(option, path, description)->check(not_empty);
 }
 
+std::string help_table(const std::string& title,
+                       const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::size_t width = 0;
+  for (const auto& row : rows) width = std::max(width, row.first.size());
+  std::string table = title + ":\n";
+  for (const auto& [name, meaning] : rows) {
+    fmt::format_to(std::back_inserter(table), "  {:<{}}  {}\n", name, width, meaning);
+  }
+  return table;
+}
+
 void add_cut(CLI::App* command, Cut& cut) {
-  add_choice<Cut>(command, "--cut", cut, "Cut across the longer interquartile range, or alternate x and y",
+  add_choice<Cut>(command, "--cut", cut,
+                  "How regions are cut: across the longer interquartile range, or in x and y in turn",
                   {Cut::interquartile, Cut::alternate});
 }
 
@@ -30,7 +45,8 @@ void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>&
 }
 
 void add_device(CLI::App* command, std::string& device) {
-  command->add_option("--device", device, "OpenCL device: part of its name, or #k; see flaunay devices");
+  command->add_option("--device", device,
+                      "OpenCL device: a part of its name, or #k for the k-th that flaunay devices lists");
 }
 
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description) {
@@ -41,8 +57,6 @@ CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& des
 void add_quiet(CLI::App* command, bool& quiet) {
   command->add_flag("--quiet", quiet, "No progress, no tables and no final line");
 }
-
-const char* to_string(Cut cut) { return cut == Cut::alternate ? "alternate" : "iqr"; }
 
 void refuse(const CLI::App& command, const std::string& option, const std::string& reason) {
   if (command.count(option) > 0) throw Error(ErrorKind::usage, fmt::format("{}: {}", option, reason));

@@ -1,4 +1,4 @@
-// Options that several subcommands have.
+// Options that several subcommands share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,35 +6,41 @@
 #include <utility>
 #include <vector>
 
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 
 namespace flaunay::cli {
 
-/// Beyond these levels there are more regions than indices.
+using research::Cut;
+using research::Hull;
+using research::Mode;
+
+/// With more levels there would be more regions than 32-bit indices.
 constexpr int kMostPartitionLevels = 30;
 
-/// The points, as the first argument.
+/// The first positional argument: the file with the points.
 void add_input(CLI::App* command, std::string& path);
 
-/// An option that takes a path. An empty one, as from an unset shell variable, is a mistake and not "none".
+/// An option that takes a path. An empty path, as from an unset shell variable, is an error and does not mean
+/// "none".
 CLI::Option* add_path(CLI::App* command, const std::string& option, std::string& path,
                       const std::string& description);
 
+/// A table for the end of a subcommand's --help. Each row is a name and its meaning.
+std::string help_table(const std::string& title,
+                       const std::vector<std::pair<std::string, std::string>>& rows);
+
 void add_cut(CLI::App* command, Cut& cut);
-/// variants: those that the subcommand can use.
+/// variants: those that the subcommand supports.
 void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>& variants,
                       const std::string& description);
 void add_device(CLI::App* command, std::string& device);
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description);
 void add_quiet(CLI::App* command, bool& quiet);
 
-/// As --cut takes it.
-const char* to_string(Cut cut);
-
-/// Throws Error(usage) with the reason if the option was given.
+/// Throws Error(usage) with the reason if the option was given on the command line.
 void refuse(const CLI::App& command, const std::string& option, const std::string& reason);
 
-/// An option whose values are an enumeration's, by their names.
+/// An option whose values are the names of enumerators.
 template <typename Choice>
 void add_choice(CLI::App* command, const std::string& option, Choice& value, const std::string& description,
                 const std::vector<Choice>& choices) {

@@ -29,7 +29,7 @@ bool same_file(const std::string& a, const std::string& b) {
 
 bool exists(const std::string& path) {
   std::error_code error;
-  // A dangling symbolic link is there too.
+  // A dangling symbolic link exists too.
   return fs::exists(fs::symlink_status(path, error));
 }
 

@@ -6,14 +6,15 @@
 
 namespace flaunay::cli {
 
-/// Writes text to standard output, flushed. Returns false if the reader has gone (a closed pipe), which is no
-/// error; throws Error(input) for any other failure, such as a full disk.
+/// Writes text to standard output and flushes it. Returns false if the pipe is closed, which is not an error;
+/// throws Error(input) for any other failure, such as a full disk.
 bool print(const std::string& text);
 
-/// Writes a text file. Throws Error(input) naming path and the system's reason.
+/// Writes a text file. Throws Error(input) with the path and the reason that the system gives.
 void write_text(const std::string& path, const std::string& text);
 
-/// The files that one run writes. Those that were not there before are removed again unless keep() is called.
+/// The files that one run writes. The destructor removes those that did not exist before, unless keep() was
+/// called.
 class OutputFiles {
  public:
   /// input: a file that no output may overwrite; "-" for none.
@@ -22,15 +23,16 @@ class OutputFiles {
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// Announces a mesh output, by write_mesh's rules; an empty path is none. Throws Error(usage) if the ending
-  /// is unknown or the path is in use in this run, Error(input) if the path cannot be created.
+  /// Announces a mesh in one of the formats of write_mesh. An empty path means that there is none. Throws
+  /// Error(usage) if the ending is unknown or another file of this run has the path, Error(input) if the file
+  /// cannot be created.
   void add_mesh(const std::string& path);
-  /// The same for an output whose ending must be `ending`.
+  /// Announces a file whose ending must be `ending`, with the same errors.
   void add(const std::string& path, const std::string& ending);
-  /// The same for points, by write_points's rules.
+  /// Announces points in one of the formats of write_points, with the same errors.
   void add_points(const std::string& path);
 
-  /// All is written: nothing will be removed.
+  /// Everything is written: the destructor removes nothing.
   void keep() { keep_ = true; }
 
  private:

@@ -7,7 +7,7 @@
 #include "cli/partition_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 #include "io/points.hpp"
 #include "io/svg.hpp"
 
@@ -27,8 +27,8 @@ struct PartitionRequest {
   bool quiet = false;
 };
 
-Partition compute(const PartitionRequest& request, const io::Points& points, Progress& progress) {
-  Options options;
+research::Partition compute(const PartitionRequest& request, const io::Points& points, Progress& progress) {
+  research::Options options;
   options.cut = request.cut;
   options.hull = request.dividing_paths;
   options.progress = [&progress](const std::string& stage, int level, double done) {
@@ -36,12 +36,12 @@ Partition compute(const PartitionRequest& request, const io::Points& points, Pro
   };
   progress.update_slow("preparing the device", "compiling kernels, cached for next time");
   Triangulator triangulator(request.device);
-  return triangulator.partition(points.coordinates.data(), points.size(), request.levels, options);
+  return research::partition(triangulator, points.coordinates.data(), points.size(), request.levels, options);
 }
 
 int partition(const PartitionRequest& request) {
   io::check_points_ending(request.input);
-  // The folder first: the picture may be in it.
+  // The folder comes first, because the picture may be in it.
   PartitionWriter writer(request.folder, request.input, request.force);
   check_no_partition_file(request.folder, request.picture);
   OutputFiles outputs(request.input);
@@ -55,7 +55,7 @@ int partition(const PartitionRequest& request) {
   const io::Points points = io::read_points(request.input);
   facts.reading_seconds = stopwatch.seconds();
 
-  const Partition result = compute(request, points, progress);
+  const research::Partition result = compute(request, points, progress);
 
   stopwatch.restart();
   progress.update("writing");
@@ -77,21 +77,21 @@ void add_partition(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "partition", "Cut the triangulation of a file's points into regions for other programs to solve");
   add_input(command, request->input);
-  command->add_option("--levels", request->levels, "How often to cut: up to 2^levels regions")
+  command->add_option("--levels", request->levels, "Number of levels; there are up to 2^levels regions")
       ->check(CLI::Range(0, kMostPartitionLevels))
       ->required();
   add_path(command, "-o,--output", request->folder,
-           "A folder for the regions (.node and .poly), finished triangles (.npy) and partition.json")
+           "Folder for the regions (.node and .poly), the finished triangles (.npy) and partition.json")
       ->required();
   command->add_flag("--force", request->force,
-                    "Replace the partition in the folder, and the solutions of its regions");
+                    "Replace a partition that is in the folder, with the solutions of its regions");
   add_path(command, "--picture", request->picture, "A picture of the regions: .svg");
   add_cut(command, request->cut);
   add_hull_variant(command, request->dividing_paths, {Hull::prune, Hull::quickhull, Hull::balanced},
-                   "How the dividing paths are computed; the regions are the same");
+                   "How dividing paths are computed; the regions do not depend on it");
   add_device(command, request->device);
   add_quiet(command, request->quiet);
-  command->footer("flaunay assemble puts the solved regions together again.");
+  command->footer("flaunay assemble joins the solved regions.");
   command->callback([request, &action] { action = [request] { return partition(*request); }; });
 }
 

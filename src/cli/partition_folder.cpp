@@ -52,7 +52,8 @@ std::vector<fs::path> partition_files(const std::string& folder) {
   return files;
 }
 
-// What would be replaced must be fit to be removed, and meant to be.
+// A file of the old partition may only be replaced if --force was given and it is neither the input nor a
+// folder.
 void check_in_the_way(const fs::path& file, const std::string& input, bool force) {
   std::error_code error;
   if (input != "-" && fs::equivalent(file, input, error)) {
@@ -77,7 +78,7 @@ std::string make_aside(const std::string& folder) {
   return path;
 }
 
-std::string description(const Partition& partition, const PartitionFacts& facts) {
+std::string description(const research::Partition& partition, const PartitionFacts& facts) {
   Json json;
   json["flaunay"] = version();
   json["device"] = partition.statistics.device;
@@ -90,10 +91,10 @@ std::string description(const Partition& partition, const PartitionFacts& facts)
   json["finished_triangles"] = partition.triangles.size() / 3;
   json["number_of_regions"] = partition.regions.size();
   json["regions"] = Json::array();
-  for (const Region& region : partition.regions) {
+  for (const research::Region& region : partition.regions) {
     json["regions"].push_back({{"points", region.points.size()}, {"border_edges", region.border.size() / 2}});
   }
-  // Names of files need not be UTF-8, JSON must.
+  // JSON must be UTF-8, but names of files need not be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -106,7 +107,7 @@ Json parse(const std::string& path) {
   }
 }
 
-// The value of a key that counts something.
+// The value of a key that holds a number of things.
 std::size_t count_of(const std::string& path, const Json& object, const char* key) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
   const auto found = object.is_object() ? object.find(key) : object.end();
@@ -116,7 +117,8 @@ std::size_t count_of(const std::string& path, const Json& object, const char* ke
   return found->get<std::size_t>();
 }
 
-// The region's points must be those of the input: an index alone does not show that the file is another.
+// Compares the region's points with those of the input, because the indices alone do not show that the input
+// is another file.
 void check_points(const std::string& path, const io::StoredRegion& stored, const std::string& input,
                   const io::Points& points) {
   for (std::size_t k = 0; k < stored.points.size(); ++k) {
@@ -145,7 +147,7 @@ PartitionWriter::PartitionWriter(const std::string& folder, const std::string& i
   try {
     aside_ = make_aside(folder);
   } catch (...) {
-    // No destructor follows a constructor that fails.
+    // The destructor does not run if the constructor throws.
     if (made_folder_) fs::remove(folder_, error);
     throw;
   }
@@ -158,7 +160,7 @@ PartitionWriter::~PartitionWriter() {
   if (made_folder_) fs::remove(folder_, ignored);
 }
 
-void PartitionWriter::write(const io::Points& points, const Partition& partition,
+void PartitionWriter::write(const io::Points& points, const research::Partition& partition,
                             const PartitionFacts& facts) {
   for (std::size_t r = 0; r < partition.regions.size(); ++r) {
     io::write_region(region_stem(aside_, r), points, partition.regions[r]);
@@ -207,11 +209,11 @@ std::string PartitionReader::solution_path(std::size_t r) const {
   return "";
 }
 
-Partition PartitionReader::read(const std::string& input, const io::Points& points) const {
+research::Partition PartitionReader::read(const std::string& input, const io::Points& points) const {
   if (points.size() != input_points_) {
     io::fail(input, "has {} points, but the partition in {} is of {}", points.size(), folder_, input_points_);
   }
-  Partition partition;
+  research::Partition partition;
   const std::string finished = inside(folder_, kFinished);
   partition.triangles = io::read_npy_triangles(finished);
   const std::size_t triangles = partition.triangles.size() / 3;
@@ -222,7 +224,8 @@ Partition PartitionReader::read(const std::string& input, const io::Points& poin
   return partition;
 }
 
-Region PartitionReader::read_region(std::size_t r, const std::string& input, const io::Points& points) const {
+research::Region PartitionReader::read_region(std::size_t r, const std::string& input,
+                                              const io::Points& points) const {
   const io::StoredRegion stored = io::read_region(stem(r), sizes_[r].points, sizes_[r].border_edges);
   check_points(stem(r) + ".node", stored, input, points);
   return stored.region;

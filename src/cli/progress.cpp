@@ -27,7 +27,7 @@ std::size_t terminal_width() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-// A line that cannot be shown is not worth an error.
+// A failure to write is ignored, since the line is only for information.
 void write_to_terminal(const std::string& text) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
 }
@@ -71,7 +71,7 @@ void Progress::draw_until_finished() {
   if (finish_asked_.wait_for(lock, kSlow, finished)) return;
   do {
     const std::string text = line();
-    // The terminal may be slow; the work must not wait for it.
+    // Unlocked, so that the work does not wait for a slow terminal.
     lock.unlock();
     write_to_terminal(kClearLine + text.substr(0, terminal_width() - 1));
     lock.lock();

@@ -1,4 +1,4 @@
-// One line on the terminal that says what goes on, while it goes on.
+// The progress line on the terminal, and a stopwatch.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 namespace flaunay::cli {
 
 /// Rewrites one line of standard error until it is destroyed, then clears it. Shows nothing if standard error
-/// is no terminal, if it is not wanted, or in the first half second. A thread of its own draws the line, so
-/// that a stage that reports nothing (reading, compiling) is seen too.
+/// is not a terminal, if it is not wanted, or in the first half second. A separate thread draws the line, so
+/// that stages that report nothing (reading, compiling) are shown, too.
 class Progress {
  public:
   explicit Progress(bool wanted);
@@ -19,11 +19,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// level below 0: the stage has none; done (0 to 1) below 0: how far it is is unknown.
+  /// level: -1 if the stage has none; done: the finished share from 0 to 1, or -1 if it is unknown.
   void update(const std::string& stage, int level = -1, double done = -1);
-  /// For a stage that is only worth explaining if it takes half a second itself: is then shown as `if_slow`.
+  /// For a stage that needs an explanation only if it takes longer: `if_slow` is shown after half a second.
   void update_slow(const std::string& stage, const std::string& if_slow);
-  /// Clears the line and ends; the destructor does it too.
+  /// Clears the line and stops drawing. The destructor does this too.
   void finish();
 
  private:

@@ -8,9 +8,14 @@
 
 namespace flaunay::cli {
 
+using research::kComponents;
+using research::LevelStatistics;
+using research::OperationCounts;
+using research::Work;
+
 namespace {
 
-// Below this, preparing what comes before the work is not worth mentioning.
+// Shorter preparations are not mentioned in the final line.
 constexpr double kNoticeableSeconds = 0.05;
 
 double points_per_second(const Statistics& statistics) {
@@ -37,7 +42,7 @@ std::string phase_times(const Statistics& statistics, const RunFacts& facts) {
   return times;
 }
 
-// What every final line ends with.
+// The end of every final line.
 std::string times_and_speed(const Statistics& statistics, const RunFacts& facts) {
   return fmt::format("{}; {} in {:.3f} s, {:.0f} points per second\n", phase_times(statistics, facts),
                      facts.what_was_done, statistics.seconds, points_per_second(statistics));
@@ -68,9 +73,9 @@ std::string summary(const Statistics& statistics, const RunFacts& facts) {
                      times_and_speed(statistics, facts));
 }
 
-std::string partition_summary(const Partition& partition, const RunFacts& facts) {
+std::string partition_summary(const research::Partition& partition, const RunFacts& facts) {
   std::size_t largest = 0;
-  for (const Region& region : partition.regions) largest = std::max(largest, region.points.size());
+  for (const research::Region& region : partition.regions) largest = std::max(largest, region.points.size());
   return fmt::format("{}, {}, {}, the largest of {}, {} finished; {}",
                      counted(partition.statistics.points, "point", "points"),
                      counted(partition.statistics.duplicates, "duplicate", "duplicates"),
@@ -109,7 +114,8 @@ std::string kernel_table(const Statistics& statistics) {
   return table;
 }
 
-std::string work_table(const Statistics& statistics) {
+std::string work_table(const research::Triangulation& result) {
+  const std::size_t points = result.statistics.points;
   constexpr const char* kNames[kComponents] = {"cut", "hull", "merge", "split", "end game"};
   std::string table = "operations a point by component; the critical path in operations\n";
   fmt::format_to(std::back_inserter(table), "{:<9}  {:>10}  {:>6}  {:>12}  {:>7}  {:>10}  {:>13}\n",
@@ -117,18 +123,19 @@ std::string work_table(const Statistics& statistics) {
                  "critical path");
   OperationCounts total;
   for (std::size_t c = 0; c < kComponents; ++c) {
-    const OperationCounts counts = sum_over_levels(statistics.work, c);
-    table += work_row(kNames[c], counts, statistics.points);
+    const OperationCounts counts = sum_over_levels(result.work, c);
+    table += work_row(kNames[c], counts, points);
     total += counts;
   }
-  return table + work_row("total", total, statistics.points);
+  return table + work_row("total", total, points);
 }
 
-std::string statistics_json(const Statistics& statistics, const RunFacts& facts) {
+std::string statistics_json(const research::Triangulation& result, const RunFacts& facts) {
+  const Statistics& statistics = result.statistics;
   using Json = nlohmann::ordered_json;
   Json json;
   json["flaunay"] = version();
-  // What a mode does not have is null: the keys are always the same.
+  // The keys are always the same; values that a mode does not have are null.
   const auto text_or_null = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
   json["device"] = statistics.device;
   json["mode"] = facts.mode;
@@ -159,7 +166,7 @@ std::string statistics_json(const Statistics& statistics, const RunFacts& facts)
     json["phases"].push_back({{"name", phase.name}, {"seconds", phase.seconds}});
   }
   json["levels"] = Json::array();
-  for (const LevelStatistics& level : statistics.levels) {
+  for (const LevelStatistics& level : result.levels) {
     json["levels"].push_back({{"regions", level.regions},
                               {"internal_points", level.internal_points},
                               {"corners", level.corners},
@@ -193,12 +200,12 @@ std::string statistics_json(const Statistics& statistics, const RunFacts& facts)
       }
       return named;
     };
-    json["work"]["start"] = components(statistics.work.start);
+    json["work"]["start"] = components(result.work.start);
     json["work"]["levels"] = Json::array();
-    for (const auto& level : statistics.work.levels) json["work"]["levels"].push_back(components(level));
-    json["work"]["endgame_sizes"] = statistics.work.endgame_sizes;
+    for (const auto& level : result.work.levels) json["work"]["levels"].push_back(components(level));
+    json["work"]["endgame_sizes"] = result.work.endgame_sizes;
   }
-  // Names of files need not be UTF-8, JSON must.
+  // JSON must be UTF-8, but names of files need not be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,42 +1,42 @@
-// What a triangulation's statistics look like to people and to programs.
+// Statistics of a triangulation as text for people and as JSON for programs.
 #pragma once
 
 #include <string>
 
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 
 namespace flaunay::cli {
 
-/// What the command adds to the library's statistics.
+/// What the command itself knows about a run, besides the library's statistics.
 struct RunFacts {
   std::string input;
   std::string mode;
-  std::string cut;             // empty: there is none
-  std::string dividing_paths;  // likewise
-  bool counted = false;        ///< Statistics::work is filled
+  std::string cut;             // empty if the mode has none
+  std::string dividing_paths;  // empty if the mode has none
+  bool counted = false;        ///< Triangulation::work is filled
   std::string what_was_done = "triangulated";
   double reading_seconds = 0;
   double opening_seconds = 0;  ///< choosing the device and preparing it; programs may be built then
-  double solving_seconds = 0;  ///< of regions that have no solution from elsewhere
+  double solving_seconds = 0;  ///< solving regions that no other program has solved
   double writing_seconds = 0;
 };
 
 /// The final line: counts, the time of each phase, points per second.
 std::string summary(const Statistics& statistics, const RunFacts& facts);
 
-/// The same for a partition.
-std::string partition_summary(const Partition& partition, const RunFacts& facts);
+/// The final line for a partition.
+std::string partition_summary(const research::Partition& partition, const RunFacts& facts);
 
-/// Why there are no triangles, as a line; empty if there are some.
+/// A line that says why there are no triangles; empty if there are some.
 std::string degenerate_note(const Statistics& statistics);
 
-/// The kernels' times as a table, the longest first.
+/// The kernels' times as a table, the slowest kernel first.
 std::string kernel_table(const Statistics& statistics);
 
-/// The operations a point by component and kind, and the critical paths, all levels together.
-std::string work_table(const Statistics& statistics);
+/// A table of operations per point by component and kind, and of critical paths, summed over all levels.
+std::string work_table(const research::Triangulation& result);
 
-/// The --stats file.
-std::string statistics_json(const Statistics& statistics, const RunFacts& facts);
+/// The contents of the --stats file.
+std::string statistics_json(const research::Triangulation& result, const RunFacts& facts);
 
 }  // namespace flaunay::cli

@@ -5,45 +5,46 @@
 
 namespace flaunay::cli {
 
+std::vector<std::string> ResultPaths::all() const {
+  std::vector<std::string> paths = {mesh};
+  paths.insert(paths.end(), arrays.begin(), arrays.end());
+  paths.push_back(stats);
+  return paths;
+}
+
 void add_results(CLI::App* command, ResultPaths& paths) {
   add_path(command, "-o,--output", paths.mesh,
            "Mesh: .ele (with .node beside it), .off, .ply, .vtu, .obj, .npy or .svg");
-  add_path(command, "--triangles", paths.triangles, "Triangles: .npy, int32, 3 point indices a row");
-  add_path(command, "--neighbors", paths.neighbors,
-           "Neighbours: .npy, int32, the triangle opposite to each vertex, -1 on the hull");
-  add_path(command, "--hull", paths.hull, "Hull: .npy, int32, counter-clockwise");
-  add_path(command, "--duplicates", paths.duplicates,
-           "Duplicates: .npy, int32, for each point the one that represents it");
+  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
+    add_path(command, kArrayFiles[k].option, paths.arrays[k], kArrayFiles[k].description);
+  }
   add_path(command, "--stats", paths.stats, "Statistics: .json");
+}
+
+void ask_for(const ResultPaths& paths, Options& options) {
+  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
+    const auto computed_if = kArrayFiles[k].computed_if;
+    if (computed_if != nullptr) options.*computed_if = !paths.arrays[k].empty();
+  }
 }
 
 void announce(OutputFiles& outputs, const ResultPaths& paths) {
   outputs.add_mesh(paths.mesh);
-  for (const std::string& path : {paths.triangles, paths.neighbors, paths.hull, paths.duplicates}) {
-    outputs.add(path, ".npy");
-  }
+  for (const std::string& path : paths.arrays) outputs.add(path, ".npy");
   outputs.add(paths.stats, ".json");
 }
 
-namespace {
-
-void write_mesh_files(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh) {
-  if (!paths.mesh.empty()) io::write_mesh(paths.mesh, points, mesh);
-  if (!paths.triangles.empty()) io::write_npy_int32(paths.triangles, mesh.triangles, 3);
-  if (!paths.neighbors.empty()) io::write_npy_int32(paths.neighbors, mesh.neighbors, 3);
-  if (!paths.hull.empty()) io::write_npy_int32(paths.hull, mesh.hull, 0);
-  if (!paths.duplicates.empty()) io::write_npy_int32(paths.duplicates, mesh.representatives, 0);
-}
-
-}  // namespace
-
-void write_results(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh,
+void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
                    RunFacts& facts, Progress& progress, OutputFiles& outputs) {
   Stopwatch stopwatch;
   progress.update("writing");
-  write_mesh_files(paths, points, mesh);
+  if (!paths.mesh.empty()) io::write_mesh(paths.mesh, points, mesh);
+  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
+    const ArrayFile& file = kArrayFiles[k];
+    if (!paths.arrays[k].empty()) io::write_npy_int32(paths.arrays[k], mesh.*file.values, file.columns);
+  }
   facts.writing_seconds = stopwatch.seconds();
-  if (!paths.stats.empty()) write_text(paths.stats, statistics_json(mesh.statistics, facts));
+  if (!paths.stats.empty()) write_text(paths.stats, statistics_json(mesh, facts));
   outputs.keep();
   progress.finish();
 }

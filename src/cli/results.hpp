@@ -1,38 +1,59 @@
-// A triangulation's files, alike for all subcommands that make one.
+// The files of a triangulation, for all subcommands that make one.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::cli {
 
-/// Where each result goes; empty: nowhere.
+/// An array that the command can write, to a .npy file of int32.
+struct ArrayFile {
+  const char* option;
+  const char* description;
+  std::vector<std::int32_t> Triangulation::*values;
+  std::size_t columns;         ///< 0: an array of one dimension
+  bool Options::*computed_if;  ///< null: computed always
+};
+constexpr std::array<ArrayFile, 4> kArrayFiles = {{
+    {"--triangles", "Triangles: .npy, int32, 3 point indices per row", &Triangulation::triangles, 3, nullptr},
+    {"--neighbors", "Neighbours: .npy, int32, the triangle opposite to each vertex, -1 on the hull",
+     &Triangulation::neighbors, 3, &Options::neighbors},
+    {"--hull", "Hull: .npy, int32, counter-clockwise", &Triangulation::hull, 0, nullptr},
+    {"--duplicates", "Duplicates: .npy, int32, for each point the smallest index of an equal point",
+     &Triangulation::representatives, 0, nullptr},
+}};
+
+/// Where each result goes. An empty path means that the result is not written.
 struct ResultPaths {
   std::string mesh;
-  std::string triangles;
-  std::string neighbors;
-  std::string hull;
-  std::string duplicates;
+  std::array<std::string, kArrayFiles.size()> arrays;  ///< one per row of kArrayFiles
   std::string stats;
 
-  std::vector<std::string> all() const { return {mesh, triangles, neighbors, hull, duplicates, stats}; }
+  /// In the order of the options.
+  std::vector<std::string> all() const;
 };
 
 void add_results(CLI::App* command, ResultPaths& paths);
 
-/// Announces all of them, the statistics too.
+/// Sets the options for the arrays that have a path, and clears them for the others.
+void ask_for(const ResultPaths& paths, Options& options);
+
+/// Announces the files to `outputs`, which checks their paths.
 void announce(OutputFiles& outputs, const ResultPaths& paths);
 
-/// Writes all of them and keeps them; the statistics last, which say how long the others took. Ends the
-/// progress.
-void write_results(const ResultPaths& paths, const io::Points& points, const Triangulation& mesh,
+/// Writes the files and keeps them, and ends the progress. The statistics come last, because they say how
+/// long writing the others took.
+void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
                    RunFacts& facts, Progress& progress, OutputFiles& outputs);
 
 }  // namespace flaunay::cli

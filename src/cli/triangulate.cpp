@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
@@ -9,7 +12,7 @@
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
 #include "cli/results.hpp"
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::cli {
@@ -19,7 +22,7 @@ namespace {
 struct TriangulateRequest {
   std::string input;
   ResultPaths results;
-  Mode mode = Mode::hybrid;
+  Mode mode = Mode::blocks;
   Cut cut = Cut::interquartile;
   Hull dividing_paths = Hull::prune;
   int partition_levels = 0;
@@ -30,31 +33,33 @@ struct TriangulateRequest {
   bool quiet = false;
 };
 
-// Whether regions are divided by paths.
-bool has_paths(Mode mode) { return mode != Mode::hybrid && mode != Mode::dwyer; }
-bool on_host(Mode mode) { return mode == Mode::recursive || mode == Mode::dwyer; }
+const research::ModeInfo& info_of(Mode mode) {
+  const std::vector<research::ModeInfo>& modes = research::list_modes();
+  return *std::find_if(modes.begin(), modes.end(), [mode](const auto& info) { return info.mode == mode; });
+}
 
-// Options that the chosen mode would ignore, or cannot do, are a mistake.
+// Refuses options that the chosen mode would ignore or cannot honour.
 void check_combination(const CLI::App& command, const TriangulateRequest& request) {
-  const std::string mode = to_string(request.mode);
-  if (on_host(request.mode)) {
+  const research::ModeInfo& mode = info_of(request.mode);
+  if (mode.on_host) {
     for (const char* option : {"--device", "--profile"}) {
-      refuse(command, option, fmt::format("mode {} runs on the host, without a device", mode));
+      refuse(command, option, fmt::format("mode {} runs on the host, without a device", mode.name));
     }
   } else if (request.dividing_paths == Hull::monotone_chain) {
-    refuse(command, "--hull-variant", fmt::format("monotone-chain needs --mode recursive, not {}", mode));
+    refuse(command, "--hull-variant",
+           fmt::format("monotone-chain needs --mode recursive, not {}", mode.name));
   }
-  if (!has_paths(request.mode)) {
+  if (!mode.cuts_regions) {
     for (const char* option : {"--cut", "--hull-variant"}) {
-      refuse(command, option, fmt::format("mode {} has no such choice; take --mode flattened", mode));
+      refuse(command, option, fmt::format("mode {} has no such choice; take --mode flattened", mode.name));
     }
   }
-  if (request.mode == Mode::hybrid) {
-    refuse(command, "--count", "mode hybrid does not count; take --mode flattened");
+  if (!mode.counts) {
+    refuse(command, "--count", fmt::format("mode {} does not count; take --mode flattened", mode.name));
   }
   if (request.mode != Mode::partition) {
     for (const char* option : {"--partition-levels", "--threads"}) {
-      refuse(command, option, fmt::format("needs --mode partition, not {}", mode));
+      refuse(command, option, fmt::format("needs --mode partition, not {}", mode.name));
     }
   }
 }
@@ -64,19 +69,19 @@ RunFacts facts_of(const TriangulateRequest& request) {
   facts.input = request.input;
   facts.mode = to_string(request.mode);
   facts.counted = request.count;
-  if (has_paths(request.mode)) {
+  if (info_of(request.mode).cuts_regions) {
     facts.cut = to_string(request.cut);
     facts.dividing_paths = to_string(request.dividing_paths);
   }
   return facts;
 }
 
-Options options_of(const TriangulateRequest& request, Progress& progress) {
-  Options options;
+research::Options options_of(const TriangulateRequest& request, Progress& progress) {
+  research::Options options;
   options.mode = request.mode;
   options.cut = request.cut;
   options.hull = request.dividing_paths;
-  options.neighbors = !request.results.neighbors.empty();
+  ask_for(request.results, options);
   options.profile = request.profile;
   options.count = request.count;
   options.partition_levels = request.partition_levels;
@@ -88,8 +93,7 @@ Options options_of(const TriangulateRequest& request, Progress& progress) {
 }
 
 int triangulate(const TriangulateRequest& request) {
-  // Everything that can be wrong with the request is found before any work; bad input before a device is
-  // opened.
+  // The request is checked before any work begins, and the input before a device is opened.
   io::check_points_ending(request.input);
   OutputFiles outputs(request.input);
   announce(outputs, request.results);
@@ -102,25 +106,37 @@ int triangulate(const TriangulateRequest& request) {
   const io::Points points = io::read_points(request.input);
   facts.reading_seconds = stopwatch.restart();
 
-  const Options options = options_of(request, progress);
-  Triangulation mesh;
-  if (on_host(request.mode)) {
-    mesh = triangulate_on_host(points.coordinates.data(), {0, points.size()}, options);
+  const research::Options options = options_of(request, progress);
+  research::Triangulation mesh;
+  if (info_of(request.mode).on_host) {
+    mesh = research::triangulate_on_host(points.coordinates.data(), {0, points.size()}, options);
   } else {
     progress.update_slow("preparing the device", "compiling kernels, cached for next time");
     Triangulator triangulator(request.device);
     facts.opening_seconds = stopwatch.restart();
-    mesh = triangulator.triangulate(points.coordinates.data(), points.size(), options);
+    mesh = research::triangulate(triangulator, points.coordinates.data(), points.size(), options);
   }
 
   write_results(request.results, points, mesh, facts, progress, outputs);
 
   if (!request.quiet) {
-    print((request.profile ? kernel_table(mesh.statistics) : "") +
-          (request.count ? work_table(mesh.statistics) : "") + degenerate_note(mesh.statistics) +
-          summary(mesh.statistics, facts));
+    print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
+          degenerate_note(mesh.statistics) + summary(mesh.statistics, facts));
   }
   return kSuccess;
+}
+
+std::vector<Mode> all_modes() {
+  std::vector<Mode> modes;
+  for (const research::ModeInfo& info : research::list_modes()) modes.push_back(info.mode);
+  return modes;
+}
+
+std::string mode_table() {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const research::ModeInfo& info : research::list_modes())
+    rows.emplace_back(info.name, info.description);
+  return help_table("Modes", rows);
 }
 
 }  // namespace
@@ -130,23 +146,23 @@ void add_triangulate(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
   add_input(command, request->input);
   add_results(command, request->results);
-  add_choice<Mode>(
-      command, "--mode", request->mode,
-      "How to divide and conquer; the triangles are the same. recursive and dwyer need no device",
-      {Mode::hybrid, Mode::flattened, Mode::recursive_device, Mode::recursive, Mode::partition, Mode::dwyer});
+  add_choice<Mode>(command, "--mode", request->mode,
+                   "How to divide and conquer (see below); the triangles do not depend on it", all_modes());
   add_cut(command, request->cut);
-  add_hull_variant(
-      command, request->dividing_paths, {Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain},
-      "How the dividing paths are computed; the triangles are the same. monotone-chain: mode recursive only");
+  add_hull_variant(command, request->dividing_paths,
+                   {Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain},
+                   "How dividing paths are computed; the triangles do not depend on it. monotone-chain: mode "
+                   "recursive only");
   command
       ->add_option("--partition-levels", request->partition_levels,
-                   "Mode partition: levels on the device; enough for the threads if not given")
+                   "Mode partition: number of levels on the device; default: enough for the threads")
       ->check(CLI::Range(1, kMostPartitionLevels));
-  add_threads(command, request->threads, "Mode partition: threads on the host; one per core if not given");
+  add_threads(command, request->threads, "Mode partition: number of host threads; default: one per core");
   add_device(command, request->device);
-  command->add_flag("--profile", request->profile, "Time every kernel");
-  command->add_flag("--count", request->count, "Count operations, for a table and for the statistics; slow");
+  command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
+  command->add_flag("--count", request->count, "Count operations, for a table and for the statistics (slow)");
   add_quiet(command, request->quiet);
+  command->footer(mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
     action = [request] { return triangulate(*request); };

@@ -42,7 +42,7 @@ int verify(const VerifyRequest& request) {
   const double seconds = stopwatch.seconds();
   progress.finish();
 
-  // The verdict first: standard output may be closed.
+  // The problem goes to standard error first, because standard output may be closed.
   if (!report.ok)
     std::fputs(fmt::format("flaunay: {}: {}\n", request.triangles, report.problem).c_str(), stderr);
   print(
@@ -58,14 +58,14 @@ int verify(const VerifyRequest& request) {
 void add_verify(CLI::App& app, Action& action) {
   auto request = std::make_shared<VerifyRequest>();
   CLI::App* command =
-      app.add_subcommand("verify", "Check exactly that triangles are a Delaunay triangulation");
+      app.add_subcommand("verify", "Check with exact arithmetic that triangles are a Delaunay triangulation");
   command->add_option("points", request->points, "The points, in any format that triangulate reads")
       ->required();
   command->add_option("triangles", request->triangles, "The triangles: .npy, .ele, .off, .obj or .ply")
       ->required();
-  command->add_option("--neighbors", request->neighbors, "Check these neighbours too: .npy");
+  command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
   command->callback([request, &action] { action = [request] { return verify(*request); }; });
-  command->footer("The exit code is 0 if they are, 1 if not.");
+  command->footer("The exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not.");
 }
 
 }  // namespace flaunay::cli

@@ -1,4 +1,5 @@
 #include "flattened/stages.hpp"
+#include "launchers/flattened/border.cl.hpp"
 
 namespace flaunay::flattened {
 
@@ -9,7 +10,7 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   const std::size_t sets = table.sets;
   Arena::Scope scope(scratch);
 
-  // Two planar regions a set, all of its points in each.
+  // Two planar regions per set, for the lower and the upper hull; each has all points of the set.
   Level planar;
   planar.regions = 2 * sets;
   planar.points = 2 * n;
@@ -25,12 +26,18 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   planar.corner_ids = scratch.allocate<cl_int>(0);
   planar.corner_regions = scratch.allocate<cl_int>(0);
   runtime.fill(planar.corner_offsets, 2 * sets + 1, cl_int{0});
-  runtime.map("border", "doubled_lists", n, table.set_of_id, table.set_offsets, planar.x_list,
-              planar.point_regions);
-  runtime.map("border", "set_ends", sets, table.set_offsets, table.points, planar.axis, planar.cut,
-              planar.first_end, planar.last_end);
+  runtime.map(n, kernels::doubled_lists{.set_of_id = table.set_of_id,
+                                        .offsets = table.set_offsets,
+                                        .ids = planar.x_list,
+                                        .regions = planar.point_regions});
+  runtime.map(sets, kernels::set_ends{.offsets = table.set_offsets,
+                                      .points = table.points,
+                                      .axis = planar.axis,
+                                      .cut = planar.cut,
+                                      .first_end = planar.first_end,
+                                      .last_end = planar.last_end});
   work.add_depth(Component::hull, log2_ceiling(n));
-  runtime.map("border", "doubled_offsets", sets, table.set_offsets, planar.point_offsets);
+  runtime.map(sets, kernels::doubled_offsets{.offsets = table.set_offsets, .doubled = planar.point_offsets});
   LevelStatistics ignored;
   project(work, table, planar);
   const Paths paths = hulls(work, table, planar, ignored);
@@ -38,17 +45,19 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   const Pruned on = allocate_pruned(work, planar);
   prune(work, table, planar, paths, true, on);
   const auto counts = scratch.allocate<cl_uint>(2 * n + 1);
-  runtime.map("prune", "flag_counts", 2 * n, on.flags, counts);
+  host::count_flags(runtime, on.flags, 2 * n, 1, counts);
   host::exclusive_scan(runtime, counts, 2 * n, counts);
 
   const auto hull_sizes = scratch.allocate<cl_uint>(sets + 1);
   const auto collinear = scratch.allocate<cl_int>(sets);
   const auto child_points = scratch.allocate<cl_int>(sets);
   const auto child_corners = scratch.allocate<cl_int>(sets);
-  const auto sizes = scratch.allocate<cl_uint8>(sets + 1);
-  runtime.map("border", "border_sizes", sets, table.set_offsets, counts, hull_sizes, collinear, child_points,
-              child_corners);
-  runtime.map("merge", "set_sizes", sets, child_points, child_corners, sizes);
+  runtime.map(sets, kernels::border_sizes{.offsets = table.set_offsets,
+                                          .scanned = counts,
+                                          .hull_size = hull_sizes,
+                                          .collinear = collinear,
+                                          .child_points = child_points,
+                                          .child_corners = child_corners});
   host::exclusive_scan(runtime, hull_sizes, sets, hull_sizes);
 
   Borders borders;
@@ -65,23 +74,33 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   }
 
   borders.hull = work.persistent.allocate<cl_int>(borders.size);
-  runtime.map("border", "border_write", 2 * n, planar.x_list, planar.point_regions, table.set_offsets, counts,
-              collinear, hull_sizes, borders.hull, table.side);
-  const Children children = place_children(work, sizes, sets, level, retired);
-  runtime.map("border", "border_corners", borders.size, borders.hull, hull_sizes, table.set_of_id, collinear,
-              children.region, children.base, level.corner_ids, level.corner_regions, retired.corner_ids);
+  runtime.map(2 * n, kernels::border_write{.ids = planar.x_list,
+                                           .regions = planar.point_regions,
+                                           .offsets = table.set_offsets,
+                                           .scanned = counts,
+                                           .collinear = collinear,
+                                           .hull_offsets = hull_sizes,
+                                           .hull = borders.hull,
+                                           .side = table.side});
+  const Children children = place_sets(work, sets, child_points, child_corners, level, retired);
+  runtime.map(borders.size, kernels::border_corners{.hull = borders.hull,
+                                                    .hull_offsets = hull_sizes,
+                                                    .set_of_id = table.set_of_id,
+                                                    .collinear = collinear,
+                                                    .child_region = children.region,
+                                                    .child_base = children.base,
+                                                    .corners = level.corner_ids,
+                                                    .corner_region = level.corner_regions,
+                                                    .retired_corners = retired.corner_ids});
 
-  // The lists of level 0: internal points in the order of ids, which is by x, and by y.
+  // The lists of level 0: internal points in the order of ids, which is that of x, and in the order of y.
   for (const bool by_y : {false, true}) {
     Buffer<cl_int> list = table.y_order;
     if (!by_y) {
       list = scratch.allocate<cl_int>(n);
-      runtime.map("border", "all_ids", n, list);
+      runtime.map(n, kernels::all_ids{.ids = list});
     }
-    runtime.map("lists", "first_flags", n, list, table.side, counts);
-    host::exclusive_scan(runtime, counts, n, counts);
-    runtime.map("lists", "first_list", n, list, counts, table.set_of_id, children.region,
-                by_y ? level.y_list : level.x_list, level.point_regions);
+    first_list(work, table, list, children, by_y ? level.y_list : level.x_list, level.point_regions);
   }
   return borders;
 }

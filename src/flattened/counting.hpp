@@ -1,19 +1,23 @@
-// Options::count: what the kernels count, by level, and the critical path, which the host knows.
+// Counts of operations (Options::count): kernels count them per level, and the host adds up the critical
+// path.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "counting/costs.hpp"
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
+#include "geometry/magnitudes.hpp"
 #include "host/runtime.hpp"
+#include "statistics/costs.hpp"
+#include "statistics/counter.hpp"
 
 namespace flaunay::flattened {
 
-using namespace counting;
+using namespace geometry;
+using namespace statistics;
 
-/// While it lives, the runtime's kernels count. See docs/counting.md.
+/// Makes the runtime's kernels count until it is destroyed. See docs/counting.md.
 class Counting {
  public:
   Counting(host::Runtime& runtime, host::Arena& arena, Work& work);
@@ -21,17 +25,17 @@ class Counting {
   Counting(const Counting&) = delete;
   Counting& operator=(const Counting&) = delete;
 
-  /// Lengthens the critical path of what is counted now.
+  /// Adds operations to the critical path of the step that is counted now.
   void add_depth(Component component, std::uint64_t operations);
 
-  /// A sort of sets of points by one coordinate, which comparisons stand in for: comparisons_to_sort.
+  /// Adds a sort of sets of points by one coordinate, counted as comparisons_to_sort.
   void add_sort(const std::vector<std::size_t>& offsets);
 
-  /// Adds what was counted since the last call to a level; -1 is what precedes the first. Of several regions
-  /// that are cut one by one the dearest makes the level's critical path. One host wait.
+  /// Adds what was counted since the last call to a level; level -1 is the work before the first cut. If the
+  /// regions of a level are cut one by one, its critical path is the longest of theirs. Waits once.
   void end_step(int level);
 
-  /// The end game's regions by their number of corners.
+  /// Reads how many regions of each size the end game triangulated.
   void finish();
 
  private:

@@ -1,4 +1,7 @@
 #include "flattened/stages.hpp"
+#include "launchers/flattened/endgame.cl.hpp"
+#include "launchers/flattened/endgame_exact.cl.hpp"
+#include "shared/codes.h"
 
 namespace flaunay::flattened {
 
@@ -10,19 +13,34 @@ std::size_t endgame(Workspace& work, const PointTable& table, const RetiredRegio
   Arena::Scope scope(scratch);
   const auto counts = scratch.allocate<cl_uint>(retired.regions + 1);
   const auto status = scratch.allocate<cl_uchar>(retired.regions);
-  runtime.map("endgame", "small_regions", retired.regions, work.bounds.orient, work.bounds.circle,
-              retired.offsets, table.points, retired.corner_ids, counts, status, work.broken);
+  runtime.map(retired.regions, kernels::small_regions{.bounds = work.bounds,
+                                                      .offsets = retired.offsets,
+                                                      .points = table.points,
+                                                      .corners = retired.corner_ids,
+                                                      .counts = counts,
+                                                      .status = status,
+                                                      .broken = work.broken});
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, status, retired.regions);
-    run_list(work, "endgame_exact", "small_regions_exact", list, work.bounds.orient, work.bounds.circle,
-             retired.offsets, table.points, retired.corner_ids, counts, work.broken);
+    run_list(work, kernels::small_regions_exact{.count = work.list_length,
+                                                .list = list,
+                                                .bounds = work.bounds,
+                                                .offsets = retired.offsets,
+                                                .points = table.points,
+                                                .corners = retired.corner_ids,
+                                                .counts = counts,
+                                                .broken = work.broken});
   }
-  const auto [large, large_count] = host::pack_positions(runtime, status, retired.regions, 3);
+  const auto [large, large_count] =
+      host::pack_positions(runtime, status, retired.regions, kernel::FLAG_TOO_LARGE);
   if (large_count > 0) strips(work, table, retired, large, large_count, counts);
   host::exclusive_scan(runtime, counts, retired.regions, counts);
-  runtime.map("endgame", "collect_triangles", retired.regions, static_cast<cl_int>(base), retired.offsets,
-              counts, retired.corner_ids, triangles);
+  runtime.map(retired.regions, kernels::collect_triangles{.base = base,
+                                                          .offsets = retired.offsets,
+                                                          .scanned = counts,
+                                                          .slots = retired.corner_ids,
+                                                          .triangles = triangles});
   return runtime.read_one(counts, retired.regions);
 }
 

@@ -1,5 +1,6 @@
 #include "flattened/stages.hpp"
-#include "input/inspect.hpp"
+#include "launchers/flattened/ingest.cl.hpp"
+#include "points/inspect.hpp"
 
 namespace flaunay::flattened {
 
@@ -15,34 +16,38 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   Arena& scratch = work.scratch();
 
   const auto input = scratch.allocate<cl_double>(2 * n);
+  const auto pairs = input.as<cl_double2>();
   runtime.write(input, 0, 2 * n, coordinates);
   std::vector<cl_int> input_offsets(offsets.begin(), offsets.end());
   const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
   runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
 
-  const Scaling scaling = scaling_for(runtime, input, n, inspect(runtime, input, n));
+  const Scaling scaling = points::scaling_for(runtime, input, n, points::inspect(runtime, input, n));
   work.bounds = scaling.bounds;
-  const auto [s0, s1, s2] = scaling.powers();
+  const kernel::scaling scale = scaling.powers();
 
-  // Sort by y, with dense ranks; then stably by x, and by set.
+  // Sorts by y and assigns dense ranks, then sorts stably by x, and by set.
   const auto keys = scratch.allocate<cl_ulong>(n);
   const auto order = scratch.allocate<cl_int>(n);
   const auto counts = scratch.allocate<cl_uint>(n + 1);
   const auto y_rank = scratch.allocate<cl_uint>(n);
-  runtime.map("ingest", "keys_y", n, input, s0, s1, s2, keys, order);
+  runtime.map(n, kernels::keys_y{.input = pairs, .scale = scale, .keys = keys, .order = order});
   host::sort_by_key(runtime, keys, order, n);
-  runtime.map("ingest", "change_flags", n, keys, counts);
+  runtime.map(n, kernels::change_flags{.keys = keys, .flags = counts});
   host::exclusive_scan(runtime, counts, n, counts);
-  runtime.map("ingest", "write_ranks", n, order, counts, y_rank);
-  runtime.map("ingest", "keys_x", n, input, s0, s1, s2, order, keys);
+  runtime.map(n, kernels::write_ranks{.order = order, .scanned = counts, .rank = y_rank});
+  runtime.map(n, kernels::keys_x{.input = pairs, .scale = scale, .order = order, .keys = keys});
   host::sort_by_key(runtime, keys, order, n);
   const auto set_count = static_cast<cl_int>(sets);
   if (sets > 1) {
-    runtime.map("ingest", "keys_set", n, set_count, device_offsets, order, keys);
+    runtime.map(
+        n, kernels::keys_set{.sets = set_count, .offsets = device_offsets, .order = order, .keys = keys});
     host::sort_by_key(runtime, keys, order, n);
   }
 
-  runtime.map("ingest", "distinct_flags", n, set_count, device_offsets, input, order, counts);
+  runtime.map(
+      n, kernels::distinct_flags{
+             .sets = set_count, .offsets = device_offsets, .input = pairs, .order = order, .flags = counts});
   host::exclusive_scan(runtime, counts, n, counts);
   table.count = n == 0 ? 0 : runtime.read_one(counts, n);
   table.points = work.persistent.allocate<cl_double2>(table.count);
@@ -51,16 +56,30 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   table.set_of_id = work.persistent.allocate<cl_int>(table.count);
   table.set_offsets = work.persistent.allocate<cl_int>(sets + 1);
   table.y_order = work.persistent.allocate<cl_int>(table.count);
-  runtime.map("ingest", "distinct_write", n, input, s0, s1, s2, order, counts, y_rank, table.points,
-              table.source, keys);
-  runtime.map("ingest", "set_offsets", sets + 1, device_offsets, counts, table.set_offsets);
+  runtime.map(n, kernels::distinct_write{.input = pairs,
+                                         .scale = scale,
+                                         .order = order,
+                                         .ids = counts,
+                                         .y_rank = y_rank,
+                                         .points = table.points,
+                                         .source = table.source,
+                                         .y_keys = keys});
+  runtime.map(sets + 1, kernels::set_offsets{
+                            .offsets = device_offsets, .ids = counts, .point_offsets = table.set_offsets});
   const Buffer<cl_int> representative = scratch.allocate<cl_int>(n);
-  runtime.map("ingest", "representatives", n, order, counts, table.source, representative);
+  runtime.map(n,
+              kernels::representatives{
+                  .order = order, .ids = counts, .source = table.source, .representative = representative});
   runtime.read(representative, 0, n, representatives);
 
-  runtime.map("ingest", "keys_y_order", table.count, set_count, table.set_offsets, keys, table.y_order);
+  runtime.map(
+      table.count,
+      kernels::keys_y_order{
+          .sets = set_count, .point_offsets = table.set_offsets, .keys = keys, .order = table.y_order});
   host::sort_by_key(runtime, keys, table.y_order, table.count);
-  runtime.map("border", "sets_of_ids", table.count, set_count, table.set_offsets, table.set_of_id);
+  runtime.map(
+      table.count,
+      kernels::sets_of_ids{.sets = set_count, .offsets = table.set_offsets, .set_of_id = table.set_of_id});
   runtime.fill(table.side, table.count, cl_uchar{0});
   return table;
 }

@@ -2,30 +2,12 @@
 
 #include <algorithm>
 
-#include "flattened/counting.hpp"
-#include "recursive/threads.hpp"
-
 namespace flaunay::flattened {
-namespace {
-
-// So that threads that end early find more to do, and so that a region is worth a thread's while.
-constexpr std::size_t kRegionsPerThread = 4;
-constexpr std::size_t kLeastPointsPerRegion = 1024;
-
-}  // namespace
-
-int partition_levels(std::size_t n, const Options& options) {
-  if (options.partition_levels > 0) return std::min<int>(options.partition_levels, kMostLevels);
-  const std::size_t regions =
-      std::min(kRegionsPerThread * recursive::host_threads(options.threads), n / kLeastPointsPerRegion);
-  return static_cast<int>(log2_ceiling(std::max<std::size_t>(1, regions)));
-}
-
-recursive::PointSets to_host(Workspace& work, const PointTable& table,
-                             const std::vector<std::int32_t>& representatives) {
-  recursive::PointSets sets;
+PointSets to_host(Workspace& work, const PointTable& table,
+                  const std::vector<std::int32_t>& representatives) {
+  PointSets sets;
   sets.points.resize(table.count);
-  static_assert(sizeof(recursive::Point) == sizeof(cl_double2));
+  static_assert(sizeof(Point) == sizeof(cl_double2));
   work.runtime.read(table.points, 0, table.count, reinterpret_cast<cl_double2*>(sets.points.data()));
   sets.source = read_all(work, table.source, table.count);
   sets.set_offsets = read_all(work, table.set_offsets, table.sets + 1);
@@ -34,14 +16,14 @@ recursive::PointSets to_host(Workspace& work, const PointTable& table,
   return sets;
 }
 
-std::vector<Region> to_input(Workspace& work, const PointTable& table,
-                             const recursive::RegionArrays& regions) {
+std::vector<research::Region> to_input(Workspace& work, const PointTable& table,
+                                       const RegionArrays& regions) {
   const std::vector<cl_int> source = read_all(work, table.source, table.count);
-  std::vector<Region> result(regions.size());
-  // Where each border id stands in its region's points, for the region at hand.
+  std::vector<research::Region> result(regions.size());
+  // The position of each border id in the points of the current region.
   std::vector<std::int32_t> position(table.count, -1);
   for (std::size_t r = 0; r < result.size(); ++r) {
-    Region& region = result[r];
+    research::Region& region = result[r];
     for (std::int32_t i = regions.point_offsets[r]; i < regions.point_offsets[r + 1]; ++i) {
       region.points.push_back(source[regions.points[i]]);
     }

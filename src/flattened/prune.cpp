@@ -1,14 +1,20 @@
 #include "flattened/stages.hpp"
+#include "launchers/flattened/prune.cl.hpp"
+#include "shared/limits.h"
 
 namespace flaunay::flattened {
-namespace {
 
-constexpr std::size_t kBucket = 16;  // BUCKET in prune.cl
-// Candidates a region from which on it pays to prune them by candidates of their own.
-constexpr std::size_t kManyCandidates = 256;
+Buffer<cl_uchar> candidates(Workspace& work, const Level& level) {
+  const auto flags = work.scratch().allocate<cl_uchar>(level.points);
+  work.runtime.map((level.points + kernel::BUCKET - 1) / kernel::BUCKET,
+                   kernels::candidate_flags{.elements = level.points,
+                                            .regions = level.point_regions,
+                                            .projections = level.projections,
+                                            .flags = flags});
+  work.add_depth(Component::hull, log2_ceiling(kernel::BUCKET) + scan_depth(level.points));
+  return flags;
+}
 
-// Brings flagged internal points and corners together by region. elements: level.points, or with the corners.
-// They are put into `arena`.
 HullPoints gather(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
                   std::size_t elements, Arena& arena) {
   host::Runtime& runtime = work.runtime;
@@ -26,18 +32,41 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
   points.ends.regions = arena.allocate<cl_int>(points.ends.size);
   points.first = arena.allocate<cl_int>(points.ends.size + 1);
   const auto before = work.scratch().allocate<cl_int2>(level.regions + 1);
-  const std::size_t group = runtime.tuning().map_group;
-  runtime.launch("prune", "begin_paths", level.regions + 1, group, regions, points_count,
-                 static_cast<cl_int>(kept), positions, level.point_offsets, level.corner_offsets,
-                 level.first_end, level.last_end, level.axis, level.cut, table.points, points.ends.vertices,
-                 points.ends.projections, points.ends.regions, points.first, before);
-  runtime.map("prune", "gather_points", kept, points_count, regions, positions, before, level.point_regions,
-              level.projections, level.x_list, level.y_list, level.corner_regions, level.corner_ids,
-              level.axis, level.cut, table.points, points.ids, points.segments, points.projections);
+  const std::size_t group = runtime.sizes().map_group;
+  runtime.launch(level.regions + 1, group, regions,
+                 kernels::begin_paths{.points_count = points_count,
+                                      .kept = kept,
+                                      .positions = positions,
+                                      .point_offsets = level.point_offsets,
+                                      .corner_offsets = level.corner_offsets,
+                                      .first_end = level.first_end,
+                                      .last_end = level.last_end,
+                                      .axis = level.axis,
+                                      .cut = level.cut,
+                                      .points = table.points,
+                                      .path = points.ends.vertices,
+                                      .path_projections = points.ends.projections,
+                                      .path_region = points.ends.regions,
+                                      .first = points.first,
+                                      .before = before});
+  runtime.map(kept, kernels::gather_points{.points_count = points_count,
+                                           .regions_count = regions,
+                                           .positions = positions,
+                                           .before = before,
+                                           .regions = level.point_regions,
+                                           .point_projections = level.projections,
+                                           .x_list = level.x_list,
+                                           .y_list = level.y_list,
+                                           .corner_regions = level.corner_regions,
+                                           .corners = level.corner_ids,
+                                           .axis = level.axis,
+                                           .cut = level.cut,
+                                           .points = table.points,
+                                           .ids = points.ids,
+                                           .segment = points.segments,
+                                           .projections = points.projections});
   return points;
 }
-
-}  // namespace
 
 Pruned allocate_pruned(Workspace& work, const Level& level) {
   Arena& scratch = work.scratch();
@@ -53,28 +82,52 @@ void prune(Workspace& work, const PointTable& table, const Level& level, const P
   Arena::Scope scope(scratch);
   const auto ids = scratch.allocate<cl_int>(pruned.elements);
   const auto band = scratch.allocate<cl_double>(paths.size);
-  runtime.map("prune", "chord_bands", paths.size, paths.regions, paths.projections, level.axis, band);
-  runtime.map("prune", "prune_points", (level.points + kBucket - 1) / kBucket,
-              static_cast<cl_int>(level.points), cl_int{keep_on}, work.bounds.hull, level.point_regions,
-              level.x_list, level.y_list, level.projections, level.axis, level.cut, table.points, band,
-              paths.offsets, paths.vertices, paths.projections, ids, pruned.chord, pruned.depth,
-              pruned.flags);
-  runtime.map("prune", "prune_corners", level.corners, static_cast<cl_int>(level.points), work.bounds.hull,
-              level.corner_regions, level.corner_ids, level.axis, level.cut, table.points, band,
-              paths.offsets, paths.vertices, paths.projections, ids, pruned.chord, pruned.depth,
-              pruned.flags);
-  // Bands; a corner's projection; the searches of a run and of a point of it; band, equal u and which is
-  // lower.
-  work.add_depth(Component::hull, 6 + 2 + 2 + 2 * log2_ceiling(paths.size) + 1 + 1 + 4 + kDepthOperations +
-                                      scan_depth(pruned.elements));
-  const auto list = pack_undecided(work, pruned.flags, pruned.elements);
-  run_list(work, "quickhull", "hull_depth_exact", list, cl_int{keep_on}, cl_int{0}, ids, pruned.chord,
-           paths.vertices, paths.regions, level.axis, level.cut, table.points, pruned.flags);
+  runtime.map(paths.size, kernels::chord_bands{.path_region = paths.regions,
+                                               .path_projections = paths.projections,
+                                               .axis = level.axis,
+                                               .band = band});
+  runtime.map((level.points + kernel::BUCKET - 1) / kernel::BUCKET,
+              kernels::prune_points{.elements = level.points,
+                                    .keep_on = keep_on,
+                                    .bound = work.bounds.hull,
+                                    .regions = level.point_regions,
+                                    .x_list = level.x_list,
+                                    .y_list = level.y_list,
+                                    .projections = level.projections,
+                                    .axis = level.axis,
+                                    .cut = level.cut,
+                                    .points = table.points,
+                                    .band = band,
+                                    .path_offsets = paths.offsets,
+                                    .path = paths.vertices,
+                                    .path_projections = paths.projections,
+                                    .ids = ids,
+                                    .chord = pruned.chord,
+                                    .depth = pruned.depth,
+                                    .flags = pruned.flags});
+  runtime.map(level.corners, kernels::prune_corners{.points_count = level.points,
+                                                    .bound = work.bounds.hull,
+                                                    .corner_regions = level.corner_regions,
+                                                    .corners = level.corner_ids,
+                                                    .axis = level.axis,
+                                                    .cut = level.cut,
+                                                    .points = table.points,
+                                                    .band = band,
+                                                    .path_offsets = paths.offsets,
+                                                    .path = paths.vertices,
+                                                    .path_projections = paths.projections,
+                                                    .ids = ids,
+                                                    .chord = pruned.chord,
+                                                    .depth = pruned.depth,
+                                                    .flags = pruned.flags});
+  // Operations one after the other: the bands, the projection of a corner, the searches of a run and of a
+  // point in it, and three comparisons: with the band, of u, and which point is lower.
+  work.add_depth(Component::hull, kernel::BAND_OPERATIONS + kernel::PROJECT_OPERATIONS + 2 +
+                                      2 * log2_ceiling(paths.size) + 1 + 1 + kernel::LOWER_OPERATIONS +
+                                      kernel::DEPTH_OPERATIONS + scan_depth(pruned.elements));
+  decide_depths(work, table, level, paths, ids, pruned.chord, pruned.elements, keep_on, pruned.flags);
 }
 
-namespace {
-
-// What was kept below paths, for quickhull to go on with, and the paths, into `arena`.
 HullPoints gather_below(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
                         const Pruned& pruned, Arena& arena) {
   host::Runtime& runtime = work.runtime;
@@ -97,102 +150,45 @@ HullPoints gather_below(Workspace& work, const PointTable& table, const Level& l
   {
     Arena::Scope scope(scratch);
     const auto keys = scratch.allocate<cl_ulong>(kept);
-    runtime.map("prune", "chord_keys", kept, positions, pruned.chord, keys);
+    runtime.map(kept, kernels::chord_keys{.positions = positions, .chord = pruned.chord, .keys = keys});
     host::sort_by_key(runtime, keys, positions, kept);
     work.add_depth(Component::hull, log2_ceiling(paths.size) * scan_depth(kept));
-    runtime.map("prune", "gather_below", kept, static_cast<cl_int>(level.points), keys, positions,
-                paths.regions, pruned.depth, level.projections, level.x_list, level.y_list, level.corner_ids,
-                level.axis, level.cut, table.points, points.ids, points.segments, points.projections,
-                points.depths);
+    runtime.map(kept, kernels::gather_below{.points_count = level.points,
+                                            .keys = keys,
+                                            .elements = positions,
+                                            .path_region = paths.regions,
+                                            .element_depth = pruned.depth,
+                                            .point_projections = level.projections,
+                                            .x_list = level.x_list,
+                                            .y_list = level.y_list,
+                                            .corners = level.corner_ids,
+                                            .axis = level.axis,
+                                            .cut = level.cut,
+                                            .points = table.points,
+                                            .ids = points.ids,
+                                            .segment = points.segments,
+                                            .projections = points.projections,
+                                            .depth = points.depths});
   }
-  runtime.launch("prune", "chord_begins", paths.size + 1, runtime.tuning().map_group,
-                 static_cast<cl_int>(paths.size), static_cast<cl_int>(kept), points.segments, points.first);
+  runtime.launch(paths.size + 1, runtime.sizes().map_group, paths.size,
+                 kernels::chord_begins{.kept = kept, .segment = points.segments, .first = points.first});
   return points;
 }
 
-Paths pruned_hull(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
-                  LevelStatistics& statistics, int& rounds);
-
-// Chord paths over all of a level's internal points and ends, good enough to prune by: the hulls of one
-// candidate a bucket, which themselves have been pruned the same way while there are many of them.
-Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
-  host::Runtime& runtime = work.runtime;
-  const auto flags = work.scratch().allocate<cl_uchar>(level.points);
-  runtime.map("prune", "candidate_flags", (level.points + kBucket - 1) / kBucket,
-              static_cast<cl_int>(level.points), level.point_regions, level.projections, flags);
-  work.add_depth(Component::hull, log2_ceiling(kBucket) + scan_depth(level.points));
-  const HullPoints candidates = gather(work, table, level, flags, level.points, work.scratch());
-  statistics.candidates += candidates.size;
-  int rounds = 0;
-  if (candidates.size > kManyCandidates * level.regions) {
-    Level thin = level;
-    thin.points = candidates.size;
-    thin.corners = 0;
-    thin.x_list = thin.y_list = candidates.ids;
-    thin.projections = candidates.projections;
-    thin.point_regions = work.scratch().allocate<cl_int>(candidates.size);
-    thin.point_offsets = work.scratch().allocate<cl_int>(level.regions + 1);
-    runtime.map("prune", "thin_regions", candidates.size, candidates.segments, thin.point_regions);
-    const std::size_t group = runtime.tuning().map_group;
-    runtime.launch("prune", "thin_offsets", level.regions + 1, group, static_cast<cl_int>(level.regions),
-                   candidates.first, thin.point_offsets);
-    const Paths paths =
-        pruned_hull(work, table, thin, work.scratch().allocate<cl_uchar>(thin.points), statistics, rounds);
-    statistics.candidate_rounds += rounds;
-    return paths;
-  }
-  Paths paths = quickhull(work, table, level, candidates, rounds);
-  statistics.candidate_rounds += rounds;
-  return strict(work, table, level, paths);
-}
-
-// Prunes by chord paths and goes on from them. flags: prune's, of all points and corners. What goes from one
-// to the other waits where the next level will be, so that all that prune needs is released before quickhull
-// begins. rounds: of quickhull below them.
-Paths pruned_hull(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
-                  LevelStatistics& statistics, int& rounds) {
-  Arena& scratch = work.scratch();
-  Arena::Scope waiting_scope(*work.children);
-  HullPoints survivors;
-  {
-    Arena::Scope scope(scratch);
-    const Paths paths = chord_paths(work, table, level, statistics);
-    const std::size_t elements = level.points + level.corners;
-    const Pruned pruned{elements, flags, scratch.allocate<cl_int>(elements),
-                        scratch.allocate<cl_double>(elements)};
-    prune(work, table, level, paths, false, pruned);
-    survivors = gather_below(work, table, level, paths, pruned, *work.children);
-  }
-  statistics.survivors = survivors.size;
-  return strict(work, table, level, quickhull(work, table, level, survivors, rounds));
-}
-
-Paths plain_hull(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
-                 LevelStatistics& statistics) {
-  Arena::Scope waiting_scope(*work.children);
-  const std::size_t elements = level.points + level.corners;
-  work.runtime.fill(flags, elements, cl_uchar{1});
-  const HullPoints all = gather(work, table, level, flags, elements, *work.children);
-  statistics.survivors = all.size;
-  return strict(work, table, level, quickhull(work, table, level, all, statistics.hull_rounds));
-}
-
-}  // namespace
-
-void project(Workspace& work, const PointTable& table, Level& level) {
-  level.projections = work.scratch().allocate<cl_double2>(level.points);
-  work.runtime.map("prune", "project_points", level.points, level.point_regions, level.x_list, level.y_list,
-                   level.axis, level.cut, table.points, level.projections);
-  work.add_depth(Component::hull, kProjectOperations);
-}
-
-Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
-  const auto flags = work.scratch().allocate<cl_uchar>(level.points + level.corners);
-  Paths paths = work.hull == Hull::prune
-                    ? pruned_hull(work, table, level, flags, statistics, statistics.hull_rounds)
-                    : plain_hull(work, table, level, flags, statistics);
-  paths.flags = flags;
-  return paths;
+Level level_of(Workspace& work, const Level& level, const HullPoints& points) {
+  Level thin = level;
+  thin.points = points.size;
+  thin.corners = 0;
+  thin.x_list = thin.y_list = points.ids;
+  thin.projections = points.projections;
+  thin.point_regions = work.scratch().allocate<cl_int>(points.size);
+  thin.point_offsets = work.scratch().allocate<cl_int>(level.regions + 1);
+  work.runtime.map(points.size,
+                   kernels::thin_regions{.segment = points.segments, .regions = thin.point_regions});
+  const std::size_t group = work.runtime.sizes().map_group;
+  work.runtime.launch(level.regions + 1, group, level.regions,
+                      kernels::thin_offsets{.first = points.first, .offsets = thin.point_offsets});
+  return thin;
 }
 
 }  // namespace flaunay::flattened

@@ -1,17 +1,10 @@
 #include <utility>
 
 #include "flattened/stages.hpp"
+#include "launchers/flattened/quickhull.cl.hpp"
+#include "shared/limits.h"
 
 namespace flaunay::flattened {
-namespace {
-
-// Rounds after which splits are balanced. More than any input has shown that was not made to be bad; with
-// Hull::balanced, what the paper's authors found to serve skewed input well.
-constexpr int kMostQuickhullRounds = 64;
-constexpr int kRoundsBeforeBalance = 4;
-
-}  // namespace
-
 Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& start,
                 int& rounds) {
   host::Runtime& runtime = work.runtime;
@@ -28,7 +21,8 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   result.offsets = scratch.allocate<cl_int>(level.regions + 1);
 
   Arena::Scope scope(scratch);
-  // The state of a round, twice; the points move to and fro between the start's arrays and others.
+  // Two copies of a round's state: each round reads one and writes the other. The first one for points is the
+  // input's arrays.
   HullPoints now = start;
   HullPoints next;
   next.ids = scratch.allocate<cl_int>(start.size);
@@ -40,7 +34,8 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   spare.first = scratch.allocate<cl_int>(most_vertices + 1);
   spare.ends = allocate_paths();
   const auto computed_depth = scratch.allocate<cl_double>(start.size);
-  const int balanced_from = work.hull == Hull::balanced ? kRoundsBeforeBalance : kMostQuickhullRounds;
+  const int balanced_from =
+      work.hull == Hull::balanced ? kernel::ROUNDS_BEFORE_BALANCE : kernel::MOST_QUICKHULL_ROUNDS;
   const auto flags = scratch.allocate<cl_uchar>(start.size);
   const auto sides = scratch.allocate<cl_uint2>(start.size + 1);
   const auto deepest = scratch.allocate<cl_int>(most_vertices);
@@ -57,49 +52,99 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
     if (is_known) {
       runtime.fill(flags, points, cl_uchar{1});
     } else {
-      runtime.map("quickhull", "hull_depths", points, work.bounds.hull, now.segments, now.projections,
-                  paths.projections, paths.regions, level.axis, depth, flags);
-      const auto list = pack_undecided(work, flags, points);
-      run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{0}, now.ids, now.segments,
-               paths.vertices, paths.regions, level.axis, level.cut, table.points, flags);
+      runtime.map(points, kernels::hull_depths{.bound = work.bounds.hull,
+                                               .segment = now.segments,
+                                               .projections = now.projections,
+                                               .path_projections = paths.projections,
+                                               .path_region = paths.regions,
+                                               .axis = level.axis,
+                                               .depth = depth,
+                                               .flags = flags});
+      decide_depths(work, table, level, paths, now.ids, now.segments, points, false, flags);
     }
     Buffer<cl_double> rank = depth;
     if (rounds >= balanced_from) {
       const auto pairs = scratch.allocate<cl_int>(vertices);
       rank = scratch.allocate<cl_double>(points);
       runtime.fill(pairs, vertices, cl_int{-1});
-      host::segmented_arg_reduce(runtime, "quickhull", "random_pairs", now.segments, points, pairs, now.first,
-                                 flags, now.projections);
-      runtime.map("quickhull", "tilted_depths", points, now.segments, now.projections, paths.projections,
-                  pairs, depth, rank);
+      host::segmented_arg_reduce(runtime, points,
+                                 kernels::random_pairs{.segment = now.segments,
+                                                       .result = pairs,
+                                                       .first = now.first,
+                                                       .flags = flags,
+                                                       .projections = now.projections});
+      runtime.map(points, kernels::tilted_depths{.segment = now.segments,
+                                                 .projections = now.projections,
+                                                 .path_projections = paths.projections,
+                                                 .pair = pairs,
+                                                 .depth = depth,
+                                                 .tilted = rank});
     }
     runtime.fill(deepest, vertices, cl_int{-1});
-    host::segmented_arg_reduce(runtime, "quickhull", "deepest_points", now.segments, points, deepest, flags,
-                               now.ids, rank, now.projections, paths.regions, level.axis, level.cut,
-                               table.points);
+    host::segmented_arg_reduce(runtime, points,
+                               kernels::deepest_points{.segment = now.segments,
+                                                       .result = deepest,
+                                                       .flags = flags,
+                                                       .ids = now.ids,
+                                                       .depth = rank,
+                                                       .projections = now.projections,
+                                                       .path_region = paths.regions,
+                                                       .axis = level.axis,
+                                                       .cut = level.cut,
+                                                       .points = table.points});
     if (rounds >= balanced_from) {
-      runtime.map("quickhull", "drop_pairs", points, work.bounds.hull, now.segments, now.first,
-                  now.projections, paths.regions, level.axis, deepest, flags);
+      runtime.map(points, kernels::drop_pairs{.bound = work.bounds.hull,
+                                              .segment = now.segments,
+                                              .first = now.first,
+                                              .projections = now.projections,
+                                              .path_region = paths.regions,
+                                              .axis = level.axis,
+                                              .deepest = deepest,
+                                              .flags = flags});
     }
     work.add_depth(Component::hull,
-                   (is_known ? 0 : kDepthOperations) + log2_ceiling(points) + 2 + scan_depth(points));
+                   (is_known ? 0 : kernel::DEPTH_OPERATIONS) + log2_ceiling(points) + 2 + scan_depth(points));
     if (rounds >= balanced_from) {
-      work.add_depth(Component::hull, 6 + log2_ceiling(points) + 2 + kDepthOperations);
+      work.add_depth(Component::hull,
+                     kernel::TILT_OPERATIONS + log2_ceiling(points) + 2 + kernel::DEPTH_OPERATIONS);
     }
-    runtime.map("quickhull", "split_counts", vertices, deepest, splits);
+    runtime.map(vertices, kernels::split_counts{.deepest = deepest, .splits = splits});
     host::exclusive_scan(runtime, splits, vertices, splits);
-    runtime.map("quickhull", "side_flags", points, now.segments, now.projections, flags, deepest, sides);
+    runtime.map(points, kernels::side_flags{.segment = now.segments,
+                                            .projections = now.projections,
+                                            .flags = flags,
+                                            .deepest = deepest,
+                                            .sides = sides});
     host::exclusive_scan(runtime, sides, points, sides);
-    runtime.map("quickhull", "advance_points", points, now.ids, now.segments, now.projections, now.first,
-                sides, splits, next.ids, next.segments, next.projections);
-    runtime.map("quickhull", "advance_paths", vertices, static_cast<cl_int>(points), now.ids, now.projections,
-                deepest, now.first, sides, splits, paths.vertices, paths.projections, paths.regions,
-                next.ends.vertices, next.ends.projections, next.ends.regions, next.first, sizes);
+    runtime.map(points, kernels::advance_points{.ids = now.ids,
+                                                .segment = now.segments,
+                                                .projections = now.projections,
+                                                .first = now.first,
+                                                .sides = sides,
+                                                .splits = splits,
+                                                .new_ids = next.ids,
+                                                .new_segment = next.segments,
+                                                .new_projections = next.projections});
+    runtime.map(vertices, kernels::advance_paths{.points_count = points,
+                                                 .ids = now.ids,
+                                                 .projections = now.projections,
+                                                 .deepest = deepest,
+                                                 .first = now.first,
+                                                 .sides = sides,
+                                                 .splits = splits,
+                                                 .path = paths.vertices,
+                                                 .path_projections = paths.projections,
+                                                 .path_region = paths.regions,
+                                                 .new_path = next.ends.vertices,
+                                                 .new_projections = next.ends.projections,
+                                                 .new_region = next.ends.regions,
+                                                 .new_first = next.first,
+                                                 .sizes = sizes});
     cl_uint new_sizes[2];
     runtime.read(sizes, 0, 2, new_sizes);
     points = new_sizes[0];
     vertices = new_sizes[1];
-    // The start's path arrays have room for the ends alone.
+    // The input's path arrays are too small for the new path.
     if (rounds == 0) now = spare;
     std::swap(now, next);
   }
@@ -110,16 +155,14 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
     runtime.copy(now.ends.regions, 0, result.regions, 0, vertices);
   }
   result.size = vertices;
-  runtime.map("quickhull", "find_path_offsets", vertices, result.regions, result.offsets);
+  runtime.map(vertices,
+              kernels::find_path_offsets{.path_region = result.regions, .path_offsets = result.offsets});
   return result;
 }
 
 namespace {
 
-// Dropping can lay bare one vertex at a time; after so many rounds quickhull sorts out what is left.
-constexpr int kCleanUpRounds = 8;
-
-// Replaces paths by quickhull of their vertices.
+// Replaces each path by the hull of its vertices, computed by quickhull.
 void restart(Workspace& work, const PointTable& table, const Level& level, Paths& paths) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
@@ -131,14 +174,20 @@ void restart(Workspace& work, const PointTable& table, const Level& level, Paths
   points.segments = scratch.allocate<cl_int>(paths.size);
   runtime.copy(paths.vertices, 0, points.ids, 0, paths.size);
   runtime.copy(paths.projections, 0, points.projections, 0, paths.size);
-  runtime.map("quickhull", "restart_segments", paths.size, paths.regions, points.segments);
+  runtime.map(paths.size,
+              kernels::restart_segments{.path_region = paths.regions, .segment = points.segments});
   points.ends.size = 2 * level.regions;
   points.ends.vertices = scratch.allocate<cl_int>(points.ends.size);
   points.ends.projections = scratch.allocate<cl_double2>(points.ends.size);
   points.ends.regions = scratch.allocate<cl_int>(points.ends.size);
   points.first = scratch.allocate<cl_int>(points.ends.size + 1);
-  runtime.map("quickhull", "restart_paths", level.regions, paths.offsets, paths.vertices, paths.projections,
-              points.ends.vertices, points.ends.projections, points.ends.regions, points.first);
+  runtime.map(level.regions, kernels::restart_paths{.path_offsets = paths.offsets,
+                                                    .path = paths.vertices,
+                                                    .path_projections = paths.projections,
+                                                    .ends = points.ends.vertices,
+                                                    .end_projections = points.ends.projections,
+                                                    .end_region = points.ends.regions,
+                                                    .first = points.first});
   int rounds = 0;
   const Paths made = quickhull(work, table, level, points, rounds);
   paths.size = made.size;
@@ -153,7 +202,7 @@ void restart(Workspace& work, const PointTable& table, const Level& level, Paths
 Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths paths) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  // The vertices move to and fro between two paths, and where they stood before between two lists.
+  // Each round reads one of two paths and writes the other, and so with the lists of earlier positions.
   Paths shorter;
   shorter.vertices = scratch.allocate<cl_int>(paths.size);
   shorter.projections = scratch.allocate<cl_double2>(paths.size);
@@ -165,26 +214,38 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
   const auto kept_count = scratch.allocate<cl_uint>(1);
   bool first_round = true;
   for (int round = 1;; ++round) {
-    if (round == kCleanUpRounds) {
+    if (round == kernel::CLEAN_UP_ROUNDS) {
       restart(work, table, level, paths);
       first_round = true;
     }
-    runtime.map("quickhull", "path_flags", paths.size, work.bounds.hull, cl_int{first_round}, kept_before,
-                paths.vertices, paths.projections, paths.regions, paths.offsets, level.axis, level.cut,
-                table.points, flags);
+    runtime.map(paths.size, kernels::path_flags{.bound = work.bounds.hull,
+                                                .first_round = first_round,
+                                                .kept = kept_before,
+                                                .path = paths.vertices,
+                                                .path_projections = paths.projections,
+                                                .path_region = paths.regions,
+                                                .path_offsets = paths.offsets,
+                                                .axis = level.axis,
+                                                .cut = level.cut,
+                                                .points = table.points,
+                                                .flags = flags});
     {
       Arena::Scope scope(scratch);
-      const auto list = pack_undecided(work, flags, paths.size);
-      run_list(work, "quickhull", "hull_depth_exact", list, cl_int{0}, cl_int{1}, paths.vertices,
-               paths.vertices, paths.vertices, paths.regions, level.axis, level.cut, table.points, flags);
+      decide_vertices(work, table, level, paths, flags);
     }
-    work.add_depth(Component::hull, 2 + kDepthOperations + scan_depth(paths.size));
+    work.add_depth(Component::hull, 2 + kernel::DEPTH_OPERATIONS + scan_depth(paths.size));
     host::pack_positions(runtime, flags, paths.size, 1, kept, kept_count);
     shorter.size = runtime.read_one(kept_count, 0);
     if (shorter.size == paths.size) return paths;
-    runtime.map("quickhull", "compact_path", shorter.size, kept, paths.vertices, paths.projections,
-                paths.regions, shorter.vertices, shorter.projections, shorter.regions);
-    runtime.map("quickhull", "find_path_offsets", shorter.size, shorter.regions, shorter.offsets);
+    runtime.map(shorter.size, kernels::compact_path{.kept = kept,
+                                                    .path = paths.vertices,
+                                                    .path_projections = paths.projections,
+                                                    .path_region = paths.regions,
+                                                    .new_path = shorter.vertices,
+                                                    .new_projections = shorter.projections,
+                                                    .new_region = shorter.regions});
+    runtime.map(shorter.size,
+                kernels::find_path_offsets{.path_region = shorter.regions, .path_offsets = shorter.offsets});
     std::swap(paths, shorter);
     std::swap(kept, kept_before);
     first_round = false;

@@ -1,13 +1,11 @@
 #include <algorithm>
 
 #include "flattened/stages.hpp"
-#include "hybrid/ring_edge.hpp"
+#include "launchers/flattened/strips.cl.hpp"
+#include "shared/limits.h"
+#include "shared/records.h"
 
 namespace flaunay::flattened {
-
-using hybrid::kEdgesPerVertex;
-using hybrid::kLeafVertices;
-using hybrid::RingEdge;
 
 void strips(Workspace& work, const PointTable& table, const RetiredRegions& retired,
             const Buffer<cl_int>& large, std::size_t large_count, const Buffer<cl_uint>& counts) {
@@ -16,7 +14,8 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
   Arena::Scope scope(scratch);
 
   const auto large_offsets = scratch.allocate<cl_uint>(large_count + 1);
-  runtime.map("strips", "large_sizes", large_count, large, retired.offsets, large_offsets);
+  runtime.map(large_count,
+              kernels::large_sizes{.large = large, .offsets = retired.offsets, .sizes = large_offsets});
   host::exclusive_scan(runtime, large_offsets, large_count, large_offsets);
   std::vector<cl_uint> offsets(large_count + 1);
   runtime.read(large_offsets, 0, large_count + 1, offsets.data());
@@ -36,43 +35,91 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
     Arena::Scope sort_scope(scratch);
     const auto keys = scratch.allocate<cl_ulong>(corners);
     const auto order = scratch.allocate<cl_int>(corners);
-    runtime.map("strips", "gather_large", corners, regions, large, large_offsets, retired.offsets,
-                retired.corner_ids, large_corners, corner_region, keys, order);
+    runtime.map(corners, kernels::gather_large{.regions = regions,
+                                               .large = large,
+                                               .large_offsets = large_offsets,
+                                               .offsets = retired.offsets,
+                                               .corners = retired.corner_ids,
+                                               .large_corners = large_corners,
+                                               .corner_region = corner_region,
+                                               .keys = keys,
+                                               .order = order});
     host::sort_by_key(runtime, keys, order, corners);
-    runtime.map("strips", "vertex_flags", corners, keys, scanned);
+    runtime.map(corners, kernels::vertex_flags{.keys = keys, .flags = scanned});
     host::exclusive_scan(runtime, scanned, corners, scanned);
-    runtime.map("strips", "write_vertices", corners, regions, keys, order, scanned, vertices, vertex_region,
-                vertex_offsets, corner_vertex);
+    runtime.map(corners, kernels::write_vertices{.regions = regions,
+                                                 .keys = keys,
+                                                 .order = order,
+                                                 .scanned = scanned,
+                                                 .vertices = vertices,
+                                                 .vertex_region = vertex_region,
+                                                 .vertex_offsets = vertex_offsets,
+                                                 .corner_vertex = corner_vertex});
   }
   const std::size_t vertex_count = runtime.read_one(scanned, corners);
 
-  const auto edges = scratch.allocate<RingEdge>(kEdgesPerVertex * vertex_count);
+  const auto edges = scratch.allocate<kernel::ring_edge>(kernel::EDGES_PER_VERTEX * vertex_count);
   const auto vertex_edge = scratch.allocate<cl_int>(vertex_count);
-  const auto free_lists = scratch.allocate<cl_int2>(vertex_count);
+  const auto free_lists = scratch.allocate<kernel::free_edges>(vertex_count);
   const auto places = scratch.allocate<cl_double2>(vertex_count);
   int depth = 0;
-  while ((kLeafVertices << depth) < largest) ++depth;
+  while ((cl_uint{kernel::LEAF_VERTICES} << depth) < largest) ++depth;
   for (; depth >= 0; --depth) {
-    runtime.map("strips", "merge_strips", vertex_count, cl_int{depth}, work.bounds.orient, work.bounds.circle,
-                vertices, vertex_region, vertex_offsets, table.points, places, edges, vertex_edge,
-                free_lists);
+    runtime.map(vertex_count, kernels::merge_strips{.depth = depth,
+                                                    .bounds = work.bounds,
+                                                    .vertices = vertices,
+                                                    .vertex_region = vertex_region,
+                                                    .vertex_offsets = vertex_offsets,
+                                                    .points = table.points,
+                                                    .places = places,
+                                                    .edges = edges,
+                                                    .vertex_edge = vertex_edge,
+                                                    .free_lists = free_lists});
   }
 
   const auto border_edge = scratch.allocate<cl_int>(corners);
   const auto missing = scratch.allocate<cl_int>(large_count);
   runtime.fill(missing, large_count, cl_int{0});
-  runtime.map("strips", "border_edges", corners, large_corners, corner_region, corner_vertex, vertices,
-              vertex_edge, edges, border_edge, missing);
-  runtime.map("strips", "restore_border", large_count, missing, large_offsets, large_corners, corner_vertex,
-              vertices, places, table.points, work.bounds.orient, work.bounds.circle, edges, vertex_edge,
-              border_edge, work.broken);
+  runtime.map(corners, kernels::border_edges{.corners = large_corners,
+                                             .corner_region = corner_region,
+                                             .corner_vertex = corner_vertex,
+                                             .vertices = vertices,
+                                             .vertex_edge = vertex_edge,
+                                             .edges = edges,
+                                             .border_edge = border_edge,
+                                             .missing = missing});
+  runtime.map(large_count, kernels::restore_border{.missing = missing,
+                                                   .large_offsets = large_offsets,
+                                                   .corners = large_corners,
+                                                   .corner_vertex = corner_vertex,
+                                                   .vertices = vertices,
+                                                   .places = places,
+                                                   .points = table.points,
+                                                   .bounds = work.bounds,
+                                                   .edges = edges,
+                                                   .vertex_edge = vertex_edge,
+                                                   .border_edge = border_edge,
+                                                   .broken = work.broken});
   for (const cl_int write : {0, 1}) {
-    runtime.map("strips", "count_fans", corners, write, large_corners, corner_region, corner_vertex, vertices,
-                edges, border_edge, large, large_offsets, retired.offsets, scanned, scanned,
-                retired.corner_ids, work.broken);
+    runtime.map(corners, kernels::count_fans{.write = write,
+                                             .corners = large_corners,
+                                             .corner_region = corner_region,
+                                             .corner_vertex = corner_vertex,
+                                             .vertices = vertices,
+                                             .edges = edges,
+                                             .border_edge = border_edge,
+                                             .large = large,
+                                             .large_offsets = large_offsets,
+                                             .offsets = retired.offsets,
+                                             .scanned = scanned,
+                                             .counts = scanned,
+                                             .triangles = retired.corner_ids,
+                                             .broken = work.broken});
     if (!write) host::exclusive_scan(runtime, scanned, corners, scanned);
   }
-  runtime.map("strips", "large_counts", large_count, large, large_offsets, scanned, counts);
+  runtime.map(large_count,
+              kernels::large_counts{
+                  .large = large, .large_offsets = large_offsets, .scanned = scanned, .counts = counts});
 }
 
 }  // namespace flaunay::flattened

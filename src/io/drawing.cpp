@@ -85,7 +85,7 @@ void Page::close(OutputFile& file, const std::string& caption) const {
     const std::string magnification = view_.magnification < 1e15
                                           ? with_thousands(static_cast<std::size_t>(view_.magnification))
                                           : fmt::format("{:.0e}", view_.magnification);
-    // Rounded down: "100 %" would deny the points that are missing.
+    // Rounded down, so that it never says 100 % while points are missing.
     const auto percent =
         static_cast<int>(100 * static_cast<double>(view_.shown) / static_cast<double>(positions_.size()));
     file.print(
@@ -110,7 +110,7 @@ std::string counted(std::size_t number, const std::string& what) {
 
 namespace {
 
-/// Cuts the polygon off where `distance` is negative (Sutherland and Hodgman).
+/// Clips the polygon to where `distance` is not negative (Sutherland and Hodgman).
 template <typename Distance>
 void clip_side(std::vector<Position>& polygon, const Distance& distance) {
   std::vector<Position> clipped;

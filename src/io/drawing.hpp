@@ -1,4 +1,4 @@
-// What pictures are made of: which part of the plane is shown and where points lie there, path data,
+// The common parts of pictures: the visible part of the plane, the positions of points in it, path data,
 // captions.
 #pragma once
 
@@ -42,21 +42,22 @@ struct View {
   bool contains(double x, double y) const { return left <= x && x <= right && bottom <= y && y <= top; }
 };
 
-/// Where the points lie on a picture, and the picture's frame.
+/// The positions of points in a picture, and the picture's frame.
 class Page {
  public:
   explicit Page(const Points& points);
 
-  /// Of the view, in pixels.
+  /// The size of the view in pixels.
   double width() const { return width_; }
   double height() const { return height_; }
-  /// Where the points lie, in pixels from the view's upper left corner; y down.
+  /// The positions of the points in pixels from the upper left corner of the view, y downwards.
   const std::vector<Position>& positions() const { return positions_; }
   bool contains(const Position& p) const { return p.x >= 0 && p.x <= width_ && p.y >= 0 && p.y <= height_; }
 
-  /// The document up to the view: a group whose coordinates count `units` a pixel.
+  /// The beginning of the document, up to the view: a group with `units` coordinate units per pixel.
   void open(OutputFile& file, const std::string& title, double units) const;
-  /// The rest of it: a caption, and how much of the points the view shows if it is not all.
+  /// The end of the document: a caption, and the share of the points that the view shows if it does not show
+  /// all.
   void close(OutputFile& file, const std::string& caption) const;
 
  private:
@@ -72,7 +73,7 @@ std::string with_thousands(std::size_t number);
 /// "1 point", "2,000 points".
 std::string counted(std::size_t number, const std::string& what);
 
-/// Path data of whole numbers, each relative to where the pen is.
+/// Path data of whole numbers, each relative to the position of the pen.
 class PathData {
  public:
   explicit PathData(OutputFile& file) : file_(file) {}
@@ -83,7 +84,7 @@ class PathData {
     step(x, y);
     start_x_ = x, start_y_ = y;
   }
-  /// Follows a move_to or another line_to: SVG needs no letter then.
+  /// To be called after a move_to or another line_to; SVG then needs no letter.
   void line_to(std::int64_t x, std::int64_t y) { step(x, y); }
   void close() {
     file_.print("z");
@@ -108,7 +109,7 @@ class PathData {
   bool first_ = true;
 };
 
-/// Cuts a polygon off where it is more than `room` outside of the box from (0, 0) to (width, height).
+/// Clips a polygon to the box from (0, 0) to (width, height), enlarged by `room` on each side.
 void clip_polygon(std::vector<Position>& polygon, double room, double width, double height);
 
 }  // namespace flaunay::io

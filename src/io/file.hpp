@@ -1,4 +1,4 @@
-// Whole files in, whole files out: read_file, and OutputFile, which replaces its target only on success.
+// Reads and writes whole files. An OutputFile replaces its target only on success.
 #pragma once
 
 #include <fcntl.h>
@@ -51,7 +51,7 @@ inline std::string ending_of(const std::string& path) {
                              : fmt::format("{}: unknown ending '{}'; expected {}", path, ending, expected));
 }
 
-/// How messages call a path that read_file takes.
+/// The name of a path of read_file in messages.
 inline std::string shown_path(const std::string& path) {
   return path == "-" ? std::string("- (standard input)") : path;
 }
@@ -72,7 +72,8 @@ inline std::string read_file(const std::string& path, std::string_view expected)
   }
   if (S_ISDIR(status.st_mode)) fail(name, "cannot be read: {}; expected {}", system_reason(EISDIR), expected);
 
-  // A regular file's size is known; one byte more shows its end in the same call. Pipes grow as they come.
+  // The size of a regular file is known; reading one byte more detects the end in the same call. For pipes
+  // the buffer grows.
   std::string bytes(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 1 << 16, '\0');
   std::size_t used = 0;
   for (;;) {
@@ -88,8 +89,8 @@ inline std::string read_file(const std::string& path, std::string_view expected)
   return bytes;
 }
 
-/// A file being written. The bytes go to a temporary file in the target's folder; commit renames it over the
-/// target, and without commit it is removed: a failure leaves the target as it was. Targets that are no
+/// A file being written. The bytes go to a temporary file in the target's folder. commit renames it to the
+/// target; without commit it is removed, so a failure leaves the target as it was. Targets that are not
 /// regular files (devices, pipes, "-" for standard output) are written directly. Throws Error(input).
 class OutputFile {
  public:
@@ -114,7 +115,7 @@ class OutputFile {
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
   }
 
-  /// Throws what writing would throw for a path that cannot be created; leaves nothing behind.
+  /// Throws the error that writing would throw if the path cannot be created. Leaves no file behind.
   static void check(const std::string& path) {
     if (!find_target(path).direct) OutputFile probe(path);
   }
@@ -139,7 +140,7 @@ class OutputFile {
     write(&value, sizeof value);
   }
 
-  /// Everything written and closed, the target still untouched.
+  /// Writes everything and closes the file; the target is still untouched.
   void finish() {
     flush();
     if (descriptor_ > STDERR_FILENO) {
@@ -148,7 +149,7 @@ class OutputFile {
       if (closed != 0) fail(path_, "cannot be written: {}", system_reason(errno));
     }
   }
-  /// finish, then the file takes its target's place.
+  /// Calls finish, then replaces the target.
   void commit() {
     finish();
     if (temporary_.empty()) return;
@@ -163,7 +164,7 @@ class OutputFile {
 
   struct Target {
     std::string path;     // symbolic links followed
-    bool direct = false;  // exists and is no regular file
+    bool direct = false;  // exists and is not a regular file
     bool exists = false;
     mode_t mode = 0;
   };
@@ -177,7 +178,7 @@ class OutputFile {
       return target;
     }
     if (S_ISDIR(status.st_mode)) fail(path, "cannot be written: {}", system_reason(EISDIR));
-    // A rename would replace even a file that is write-protected.
+    // Checked, because a rename would replace even a write-protected file.
     if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0)
       fail(path, "cannot be written: {}", system_reason(errno));
     target.exists = true;
@@ -193,7 +194,7 @@ class OutputFile {
     const std::size_t slash = target_.find_last_of('/');
     const std::string folder = slash == std::string::npos ? "." : target_.substr(0, slash + 1);
     for (int attempt = 0;; ++attempt) {
-      // Its own short name: the target's may already be as long as the file system allows.
+      // A short name of its own, because the target's may be as long as the file system allows.
       const std::string name = fmt::format("{}/.flaunay-{}-{}.tmp", folder, ::getpid(), attempt);
       descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ >= 0) {
@@ -204,7 +205,7 @@ class OutputFile {
         fail(path_, "cannot be created in folder '{}': {}", folder, system_reason(errno));
       }
     }
-    // Best effort: some file systems have no modes to keep.
+    // Errors are ignored: some file systems have no modes.
     if (target.exists && ::fchmod(descriptor_, target.mode) != 0) return;
   }
 

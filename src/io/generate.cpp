@@ -11,9 +11,9 @@
 namespace flaunay::io {
 namespace {
 
-// The same bytes on every machine: only + - * / and sqrt, which IEEE 754 fixes to the last bit, and the raw
-// output of mt19937_64, which the standard fixes. Logarithm, sine and cosine are therefore our own; those of
-// the C library differ between versions and processors.
+// The points are the same, byte for byte, on every machine. So this file uses only + - * / and sqrt, which
+// IEEE 754 fixes to the last bit, and the raw output of mt19937_64, which the standard fixes. It has its own
+// logarithm, sine and cosine, because those of the C library differ between versions and processors.
 
 double portable_log(double x) {
   constexpr double kLog2 = 0x1.62e42fefa39efp-1, kHalfRoot = 0x1.6a09e667f3bcdp-1;
@@ -237,7 +237,7 @@ Points integer_circle(std::size_t n, Random& random) {
     points = integer_circle_points(primes);
     if (points.size() >= n) break;
   }
-  // The largest circle scaled by 1, 2, 3, ... has as many points again, as exactly cocircular.
+  // Scaled by 1, 2, 3, ..., the largest circle gives more circles of as many exactly cocircular points.
   Sink sink(n);
   std::int64_t scale = 1;
   for (std::size_t left = n; left > 0; ++scale) {
@@ -270,7 +270,7 @@ Points columns(std::size_t n, Random& random) {
   Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t column = i % kColumns, row = i / kColumns;
-    // Even columns equally spaced, odd ones irregular; integers all, and no two the same.
+    // Even columns are equally spaced, odd ones irregular. All numbers are integers, and no two are equal.
     const std::uint64_t shift = column % 2 ? random.below(4) : 0;
     sink.add(static_cast<double>(column), static_cast<double>(4 * row + shift));
   }
@@ -346,7 +346,7 @@ Points clusters(std::size_t n, Random& random) {
 
 Points spiral(std::size_t n, Random& random) {
   Sink sink(n);
-  // Archimedes' spiral, with as far between its arms as from point to point along them.
+  // Archimedes' spiral. The distance between its arms equals the distance between points along an arm.
   const double pi = 0x1.921fb54442d18p+1;
   const double arms = std::sqrt(static_cast<double>(n) / pi);
   const double start = random.unit();

@@ -14,12 +14,11 @@ struct Distribution {
   std::string description;
 };
 
-/// The known distributions: uniform, normal, kuzmin, line (the paper's four), grid, rotated-grid, hexagonal,
-/// circle, integer-circle, nested-circles, columns, small-integers, half-duplicates, collinear, parabola,
-/// clusters, spiral, horizontal, thirty-lines, power-of-two-span, one-ulp, mostly-equal, two-clusters.
+/// The known distributions, each with a line of description; the first four are those of the paper.
 const std::vector<Distribution>& distributions();
 
-/// n points of the named distribution. Throws Error(usage) that lists the names if there is no such.
+/// Makes n points of the named distribution. Throws Error(usage) with the known names if there is no such
+/// one.
 Points generate(const std::string& distribution, std::size_t n, std::uint64_t seed);
 
 }  // namespace flaunay::io

@@ -46,7 +46,7 @@ void write_ele(const std::string& path, const Points& points, const Triangulatio
     const std::int32_t* corner = &mesh.triangles[3 * t];
     ele.print("{} {} {} {}\n", t, corner[0], corner[1], corner[2]);
   }
-  // Neither replaces anything before both are written.
+  // Neither file replaces its target before both are written.
   node.finish();
   ele.finish();
   node.commit();
@@ -109,7 +109,7 @@ void write_vtu(const std::string& path, const Points& points, const Triangulatio
   const std::uint64_t end_bytes = triangle_count(mesh) * sizeof(std::int64_t);
   const std::uint64_t type_bytes = triangle_count(mesh);
 
-  // Each array of the appended data is its size in bytes, then its values.
+  // In the appended data, each array is preceded by its size in bytes.
   const std::uint64_t prefix = sizeof(std::uint64_t);
   const std::uint64_t corners_at = prefix + point_bytes;
   const std::uint64_t ends_at = corners_at + prefix + corner_bytes;
@@ -310,7 +310,7 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
   constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
   const std::size_t data_begin = header_end + kEnd.size();
   const std::size_t found = bytes.size() - data_begin;
-  // Division first: counts from a header could overflow the product.
+  // Divided instead of multiplied, because the counts come from a header and their product could overflow.
   const auto vertex_count = static_cast<std::size_t>(vertices), face_count = static_cast<std::size_t>(faces);
   if (vertex_bytes > 0 && vertex_count > found / vertex_bytes) {
     fail(path, "is truncated: {} vertices need {} bytes each after the header, found {} bytes", vertices,

@@ -11,14 +11,14 @@
 namespace flaunay::io {
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
-/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .svg (a picture worth looking at).
+/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .svg (a picture).
 /// Throws Error(input) naming path and the system's reason if it cannot be written.
 void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh);
 
-/// Throws before any work: Error(usage) for an unknown ending, Error(input) if path cannot be created. Leaves
-/// no file behind that was not there.
+/// Checks a path before any work. Throws Error(usage) for an unknown ending, Error(input) if the file cannot
+/// be created. Leaves no new file behind.
 void check_mesh_output(const std::string& path);
-/// The same for an output whose ending must be `ending` (".npy", ".json").
+/// Checks a path whose ending must be `ending` (".npy", ".json"), with the same errors.
 void check_output(const std::string& path, const std::string& ending);
 
 /// Writes an int32 .npy array of rows x columns (columns 0: one-dimensional, `rows` long).

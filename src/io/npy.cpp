@@ -101,7 +101,7 @@ class HeaderParser {
         if (length > (std::numeric_limits<std::size_t>::max() - digit) / 10) malformed("length too large");
         length = 10 * length + digit;
       }
-      accept('L');  // Python 2 wrote its long integers so
+      accept('L');  // the suffix of long integers in Python 2
       shape.push_back(length);
       if (!accept(',') && peek() != ')') malformed("expected ',' or ')'");
     }

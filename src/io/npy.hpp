@@ -11,7 +11,7 @@ namespace flaunay::io {
 
 Points read_npy_points(const std::string& path);
 void write_npy_points(const std::string& path, const Points& points);
-/// m x 3, int32 or int64.
+/// Reads an array of m x 3 indices, int32 or int64.
 std::vector<std::int32_t> read_npy_triangles(const std::string& path);
 
 }  // namespace flaunay::io

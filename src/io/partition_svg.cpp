@@ -14,11 +14,11 @@ namespace flaunay::io {
 namespace {
 
 constexpr double kUnits = 10;  // whole-number coordinates per pixel
-// How far outside the view borders are still drawn, so that their lines leave it as they come.
+// Borders are drawn this far beyond the view, so that their lines cross its edge without a corner.
 constexpr double kRoom = 50;
 constexpr std::size_t kMostDots = 100'000;
 
-/// Hues far from those of the numbers before, by the golden ratio.
+/// Colours whose hues are far apart for consecutive numbers, by the golden ratio.
 std::string region_color(std::size_t r, double saturation, double lightness) {
   constexpr double kGolden = 0.6180339887498949;
   const double hue = 12 * std::fmod(0.58 + static_cast<double>(r) * kGolden, 1.0);
@@ -67,7 +67,7 @@ std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32
 
 class PartitionPicture {
  public:
-  PartitionPicture(const std::string& path, const Points& points, const Partition& partition)
+  PartitionPicture(const std::string& path, const Points& points, const research::Partition& partition)
       : file_(path), path_(file_), page_(points), partition_(partition) {}
 
   void write() {
@@ -84,7 +84,7 @@ class PartitionPicture {
   }
 
  private:
-  static constexpr double kEdge = 3;  // lines on the view's boundary are wider than it
+  static constexpr double kEdge = 3;  // room for the width of lines on the view's boundary
 
   const Position& position(std::int32_t index) const {
     return page_.positions()[static_cast<std::size_t>(index)];
@@ -111,7 +111,7 @@ class PartitionPicture {
   }
 
   void write_region(std::size_t r) {
-    const Region& region = partition_.regions[r];
+    const research::Region& region = partition_.regions[r];
     file_.print("<path id=\"region-{}\" fill=\"{}\" stroke=\"#24405f\" stroke-width=\"{}\" d=\"", r,
                 fill_color(r), unit(0.8));
     path_.restart();
@@ -125,14 +125,15 @@ class PartitionPicture {
     file_.print("\"/>\n");
   }
 
-  /// Points inside of regions in their colours; more of them than can be told apart are left out.
+  /// The points inside of regions, in the colours of the regions. Omitted if there are too many to tell
+  /// apart.
   void write_dots() {
     const std::size_t count = page_.positions().size();
     if (count > kMostDots) return;
     const double size = std::clamp(120 / std::sqrt(static_cast<double>(count) + 1), 0.8, 5.0);
     std::vector<char> inside(count, 0);
     for (std::size_t r = 0; r < partition_.regions.size(); ++r) {
-      const Region& region = partition_.regions[r];
+      const research::Region& region = partition_.regions[r];
       std::vector<char> on_border(region.points.size(), 0);
       for (const std::int32_t vertex : region.border) on_border[static_cast<std::size_t>(vertex)] = 1;
       open_dots(dot_color(r), size);
@@ -172,12 +173,13 @@ class PartitionPicture {
   OutputFile file_;
   PathData path_;
   const Page page_;
-  const Partition& partition_;
+  const research::Partition& partition_;
 };
 
 }  // namespace
 
-void write_partition_svg(const std::string& path, const Points& points, const Partition& partition) {
+void write_partition_svg(const std::string& path, const Points& points,
+                         const research::Partition& partition) {
   PartitionPicture(path, points, partition).write();
 }
 

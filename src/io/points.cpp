@@ -27,7 +27,7 @@ Format format_of(const std::string& path) {
   fail_ending(path, kEndings);
 }
 
-/// For the binary formats, which have no lines to name; text readers check as they go.
+/// For the binary formats. The readers of text check each number, because their messages name the line.
 void check_finite(const std::string& path, const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double x = points.coordinates[2 * i], y = points.coordinates[2 * i + 1];
@@ -37,8 +37,8 @@ void check_finite(const std::string& path, const Points& points) {
   }
 }
 
-/// A header line names its columns. A line with anything like a number in it is data, perhaps mistyped, and
-/// must not vanish as a header.
+/// Whether a line is a header, which names columns. A line that contains anything like a number is data,
+/// perhaps mistyped, and must not be skipped as a header.
 bool is_header(Lines& lines) {
   bool numbers = false;
   std::string_view field;
@@ -65,7 +65,7 @@ Points read_text(const std::string& path) {
   return points;
 }
 
-/// The index that a vertex's first attribute is, and past it.
+/// Reads a vertex's first attribute as an index.
 std::int32_t read_index_attribute(Lines& lines) {
   constexpr long long kMostIndices = std::numeric_limits<std::int32_t>::max();
   return checked_index(lines, "index", lines.integer("the index of a point"), 0, kMostIndices);
@@ -83,7 +83,7 @@ NodeFile read_node(const std::string& path, bool with_indices) {
     lines.fail_line("the header has {} fields; expected up to 4: vertices, 2, attributes, markers",
                     header_fields);
   }
-  // As in Triangle, what a short header leaves out is two dimensions, no attributes, no markers.
+  // As in Triangle, the defaults of a short header are two dimensions, no attributes and no markers.
   const long long vertices = lines.integer("the number of vertices");
   const long long dimensions = header_fields > 1 ? lines.integer("the number of dimensions") : 2;
   const long long attributes = header_fields > 2 ? lines.integer("the number of attributes") : 0;
@@ -149,7 +149,7 @@ Points read_binary(const std::string& path) {
 
 void write_text(const std::string& path, const Points& points) {
   OutputFile file(path);
-  // A first line that every reader skips, so that even no points at all make a file that reads back.
+  // Every reader skips this line. With it, a file of no points can be read back.
   const bool comma = ending_of(path) == ".csv";
   file.print("{}", comma ? "x,y\n" : "# x y\n");
   const char separator = comma ? ',' : ' ';

@@ -16,7 +16,7 @@ struct Points {
 /// Reads points from path, by its ending (any case):
 ///   .npy             NumPy array, n x 2, C order, little-endian float64 or float32 (format versions 1 to 3)
 ///   .node            Triangle's format: comments, attributes, boundary markers, first index 0 or 1
-///   .xy .txt .csv    two numbers a line, separated by comma or white space; '#' comments, blank lines, and
+///   .xy .txt .csv    two numbers per line, separated by comma or white space; '#' comments, blank lines, and
 ///   one
 ///                    optional header line
 ///   .bin             raw little-endian float64 pairs

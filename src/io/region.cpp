@@ -9,7 +9,7 @@
 namespace flaunay::io {
 namespace {
 
-void write_node(const std::string& path, const Points& points, const Region& region) {
+void write_node(const std::string& path, const Points& points, const research::Region& region) {
   std::vector<char> on_border(region.points.size(), 0);
   for (const std::int32_t position : region.border) on_border[static_cast<std::size_t>(position)] = 1;
   OutputFile file(path);
@@ -22,9 +22,9 @@ void write_node(const std::string& path, const Points& points, const Region& reg
   file.commit();
 }
 
-void write_poly(const std::string& path, const Region& region) {
+void write_poly(const std::string& path, const research::Region& region) {
   OutputFile file(path);
-  // No vertices here: they are in the .node.
+  // The vertices are in the .node file.
   file.print("0 2 1 1\n{} 0\n", region.border.size() / 2);
   for (std::size_t k = 0; k + 1 < region.border.size(); k += 2) {
     file.print("{} {} {}\n", k / 2, region.border[k], region.border[k + 1]);
@@ -64,7 +64,7 @@ void check_count(const std::string& path, const char* what, std::size_t found, s
 
 }  // namespace
 
-void write_region(const std::string& stem, const Points& points, const Region& region) {
+void write_region(const std::string& stem, const Points& points, const research::Region& region) {
   write_node(stem + ".node", points, region);
   write_poly(stem + ".poly", region);
 }

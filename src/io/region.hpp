@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {
@@ -11,11 +11,11 @@ namespace flaunay::io {
 /// Writes, numbered from 0, stem.node with the region's points (attribute: the index of the input point;
 /// marker 1: on the border) and stem.poly with its border as segments, the region on the left. points: the
 /// input's. Throws Error(input) naming the file and the system's reason.
-void write_region(const std::string& stem, const Points& points, const Region& region);
+void write_region(const std::string& stem, const Points& points, const research::Region& region);
 
 struct StoredRegion {
   Points points;
-  Region region;
+  research::Region region;
 };
 
 /// Reads what write_region writes, of this many points and border edges. Throws Error(input) that names the

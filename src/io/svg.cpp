@@ -16,9 +16,9 @@ namespace flaunay::io {
 namespace {
 
 constexpr int kShades = 24;
-constexpr std::size_t kDotsUpTo = 1000;  // points of a larger set are where the edges meet
+constexpr std::size_t kDotsUpTo = 1000;  // points of larger sets are not drawn, because edges show them
 
-/// Soft blue by way of sand to coral, shade 0 to kShades - 1.
+/// A colour between blue (shade 0), sand and coral (shade kShades - 1).
 std::string shade_color(int shade) {
   constexpr std::array<std::array<double, 3>, 6> kRamp = {{{0x6f, 0x9f, 0xc4},
                                                            {0x93, 0xc4, 0xcb},
@@ -61,7 +61,7 @@ class Picture {
   bool inside(std::int32_t v) const { return page_.contains(position(v)); }
   const Position& position(std::int32_t v) const { return positions_[static_cast<std::size_t>(v)]; }
 
-  /// The typical visible edge decides line widths and how fine the whole-number coordinates are.
+  /// Chooses line widths and the resolution of coordinates by the length of the typical visible edge.
   void choose_units() {
     constexpr std::size_t kSample = 100'000;
     std::vector<double> lengths;
@@ -79,7 +79,7 @@ class Picture {
 
   std::int64_t unit(double pixels) const { return std::llround(pixels * units_); }
 
-  /// One path element for each shade of the triangles' colours.
+  /// Writes one path element per shade of the triangles' colours.
   void write_triangles() {
     struct Shaded {
       std::uint64_t order;  // shade, then tile by tile, so that relative coordinates are short
@@ -95,7 +95,7 @@ class Picture {
       const int shade = choose_shade(center, area(t), areas);
       const auto row = static_cast<std::uint64_t>(center.y / tile);
       auto column = static_cast<std::uint64_t>(center.x / tile);
-      if (row % 2) column = 0xffff - column;  // there and back again
+      if (row % 2) column = 0xffff - column;  // every other row from right to left
       shaded.push_back({(static_cast<std::uint64_t>(shade) << 32) | (row << 16) | column, t});
     }
     std::sort(shaded.begin(), shaded.end(), [](const Shaded& a, const Shaded& b) {
@@ -133,7 +133,8 @@ class Picture {
     const double low = quantile(logs, 0.1), high = quantile(logs, 0.9);
     return {middle, std::max(1.0, high - low)};
   }
-  /// By place, so that even a grid has a gradient, and by size, so that neighbours differ.
+  /// The shade depends on the place, so that even a grid has a gradient, and on the size, so that neighbours
+  /// differ.
   int choose_shade(const Position& center, double triangle_area, const Areas& areas) const {
     const double size = std::clamp((log_area(triangle_area) - areas.middle) / areas.spread, -0.7, 0.7);
     const double place = (center.x / std::max(width_, 1.0) + 1 - center.y / std::max(height_, 1.0)) / 2;
@@ -158,7 +159,8 @@ class Picture {
     return center;
   }
 
-  /// The triangle as far as it is inside the view; nothing if it has no area at the picture's resolution.
+  /// Writes the part of the triangle that is inside the view, unless it has no area at the picture's
+  /// resolution.
   void write_triangle(std::size_t t) {
     std::vector<Position>& polygon = polygon_;
     polygon.clear();
@@ -288,7 +290,7 @@ class Picture {
       const bool whole = mesh_.hull_offsets.size() < 2;
       const std::size_t begin = whole ? 0 : mesh_.hull_offsets[set];
       const std::size_t end = whole ? mesh_.hull.size() : mesh_.hull_offsets[set + 1];
-      // The hull of collinear points is closed too: the way back is on the way there.
+      // The hull of collinear points is closed too: it goes back along the same line.
       for (std::size_t i = begin; i < end; ++i)
         write_segment(mesh_.hull[i], mesh_.hull[i + 1 < end ? i + 1 : begin]);
     }
@@ -318,7 +320,7 @@ class Picture {
     return text;
   }
 
-  /// Viewers stroke several shorter paths faster than one endless one.
+  /// Trails per path element: viewers draw several short paths faster than a long one.
   static constexpr std::size_t kTrailsPerPath = 500;
 
   OutputFile file_;

@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {
 
 void write_svg(const std::string& path, const Points& points, const Triangulation& mesh);
 
-/// The regions, one colour each, with their points and borders.
-void write_partition_svg(const std::string& path, const Points& points, const Partition& partition);
+/// Writes a picture of the regions, one colour each, with their points and borders.
+void write_partition_svg(const std::string& path, const Points& points, const research::Partition& partition);
 
 }  // namespace flaunay::io

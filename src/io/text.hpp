@@ -1,4 +1,4 @@
-// Text by lines and fields, with the places that error messages need.
+// Reads text by lines and fields, and knows the place for error messages.
 #pragma once
 
 #include <charconv>
@@ -17,7 +17,7 @@
 
 namespace flaunay::io {
 
-/// A field as messages show it: quoted, cut short, control characters replaced.
+/// A field for messages: quoted, shortened, with control characters replaced.
 inline std::string quoted(std::string_view field) {
   constexpr std::size_t kLongest = 32;
   std::string shown(field.substr(0, kLongest));
@@ -39,8 +39,8 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
   if (error == std::errc::invalid_argument || stop != end) return ParsedNumber::unreadable;
   if (error != std::errc::result_out_of_range) return ParsedNumber::fine;
 
-  // Out of range is said of both ends: the power of ten of the first digit that is not 0 tells which. The
-  // exponent is capped far beyond a double's, so that it cannot overflow here.
+  // Out of range can mean too large or too small; the power of ten of the first digit that is not 0 tells
+  // which. The exponent is capped far beyond that of a double, so that it cannot overflow here.
   long long power = 0;
   bool after_point = false, nonzero_seen = false;
   const char* c = begin;
@@ -67,7 +67,7 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
   return ParsedNumber::fine;
 }
 
-/// Whether field was meant as a number, well written or not.
+/// Whether the field is meant as a number, even if it is not a valid one.
 inline bool looks_like_number(std::string_view field) {
   double ignored;
   if (parse_number(field, ignored) != ParsedNumber::unreadable) return true;
@@ -83,7 +83,7 @@ class Lines {
  public:
   enum class Separator { blanks, blanks_or_comma };
 
-  /// name is what messages start with; text must outlive this.
+  /// name: the beginning of messages. The text must outlive this object.
   Lines(std::string name, std::string_view text, Separator separator)
       : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -106,7 +106,7 @@ class Lines {
     }
     return false;
   }
-  /// Back to the first field of the line.
+  /// Goes back to the first field of the line.
   void rewind() {
     cursor_ = line_begin_;
     skip_blanks();
@@ -131,7 +131,7 @@ class Lines {
     return true;
   }
   std::size_t fields_taken() const { return fields_taken_; }
-  /// How many fields the whole line has. Rewinds.
+  /// The number of fields of the whole line. Goes back to the first one.
   std::size_t count_fields() {
     rewind();
     std::string_view ignored;
@@ -155,7 +155,8 @@ class Lines {
     return value;
   }
 
-  /// `text`, a field of this line that is a coordinate of the point of this index, as a finite number.
+  /// Converts `text`, a field of this line, to a coordinate of the point with this index, which must be
+  /// finite.
   double coordinate(std::string_view text, std::size_t point) const {
     double value = 0;
     const ParsedNumber parsed = parse_number(text, value);
@@ -176,7 +177,7 @@ class Lines {
 
   const std::string& name() const { return name_; }
   std::size_t number() const { return number_; }
-  /// Upper bound of the lines left, for reserving memory.
+  /// An upper bound of the number of lines left, for reserving memory.
   std::size_t lines_left() const {
     std::size_t lines = 1;
     for (const char* c = next_line_; (c = find(c, text_end_, '\n')) != text_end_; ++c) ++lines;
@@ -216,7 +217,7 @@ class Lines {
   std::size_t fields_taken_ = 0;
 };
 
-/// A vertex or triangle number as an index from 0: `number` less `base`, checked to be one of `count`.
+/// A vertex or triangle number as an index from 0: `number` - `base`, checked to be below `count`.
 inline std::int32_t checked_index(const Lines& lines, std::string_view what, long long number, long long base,
                                   long long count) {
   if (number < base || number - base >= count) {
@@ -225,15 +226,15 @@ inline std::int32_t checked_index(const Lines& lines, std::string_view what, lon
   return static_cast<std::int32_t>(number - base);
 }
 
-/// Triangle's .node format as read. In points.cpp.
+/// A .node file, the format of Triangle. Defined in points.cpp.
 struct NodeFile {
   Points points;
   long long base = 0;                 // the number of the first vertex, 0 or 1
-  std::vector<std::int32_t> indices;  // with_indices: each vertex's first attribute
+  std::vector<std::int32_t> indices;  // the first attribute of each vertex, if asked for
 };
 NodeFile read_node(const std::string& path, bool with_indices);
 
-/// A whole .node file, numbered from 0, without attributes and markers. In points.cpp.
+/// Writes a .node file, numbered from 0, without attributes and markers. Defined in points.cpp.
 void print_node(OutputFile& file, const Points& points);
 
 }  // namespace flaunay::io

@@ -5,8 +5,9 @@ namespace {
 
 enum Side { kLeft, kRight };
 
-// Where a direction from a path vertex lies, counter-clockwise: along the path's next edge, left of the path,
-// along its previous edge, right of it. At the path's ends the missing edge leads straight on along the line.
+// The place of a direction from a path vertex, counter-clockwise: along the path's next edge, left of the
+// path, along its previous edge, or right of the path. At the ends of the path, the missing edge is taken to
+// be parallel to the line.
 enum class Position { next, left, previous, right };
 
 // The directions about one vertex of a path.
@@ -21,9 +22,10 @@ class PathVertex {
         next_(place + 1 < path.size() ? &path[place + 1] : nullptr),
         counter_(counter) {}
 
-  // Of the border edge to p. A point off the path lies on the same side of the path as of the line, and so
-  // does an edge to it, which cannot cross. What lies between the path's neighbours in u, and is not one of
-  // them, is off the path; only beyond them an orientation must decide.
+  // The position of the border edge to p. A point off the path lies on the same side of the path as of the
+  // line, and so does an edge to it, which cannot cross the path. Points whose u is between those of the
+  // path's neighbours are off the path, unless they are these neighbours. For other points an orientation
+  // must decide.
   Position position_of(const HullPoint& p) {
     if (next_ && p.id == next_->id) return Position::next;
     if (previous_ && p.id == previous_->id) return Position::previous;
@@ -36,7 +38,7 @@ class PathVertex {
     return p.s() < line_.q ? Position::left : Position::right;
   }
 
-  // Whether of two directions on one side of the path f comes first, counter-clockwise within that side.
+  // Whether f comes before g, counter-clockwise, for two directions on the same side of the path.
   bool comes_first(const HullPoint& f, const HullPoint& g, Position side) {
     const int f_rises = kernel::sign_of(f.u() - vertex_.u());
     const int g_rises = kernel::sign_of(g.u() - vertex_.u());
@@ -45,7 +47,7 @@ class PathVertex {
     return turns_left(f, g);
   }
 
-  // The id of a path neighbour; -1 beyond the path's ends, where no border leads.
+  // The id of a neighbour on the path; -1 beyond the ends of the path.
   std::int32_t neighbor(Position position) const {
     const HullPoint* neighbor = position == Position::next ? next_ : previous_;
     return neighbor ? neighbor->id : -1;
@@ -65,15 +67,14 @@ class PathVertex {
   Counter& counter_;
 };
 
-// Cuts the wedge of a corner on the path, which runs counter-clockwise from the edge to `after` to the edge
-// to `before`, at the path's edges in it; the other way round, from `before`. The paper's six cases are the
-// ways in which that can end.
+// Cuts the wedge of a corner on the path at the edges of the path inside it. The wedge goes counter-clockwise
+// from the edge to `after` to the edge to `before`. The paper's six cases are the possible results.
 void split_corner(PathVertex& around, const HullPoint& before, std::int32_t vertex, const HullPoint& after,
                   SplitBorder& sides) {
   const Position from = around.position_of(before);
   const Position to = around.position_of(after);
   const bool on_one_side = from == to && (from == Position::left || from == Position::right);
-  // The wedge may have all of the path's other side within.
+  // The wedge may contain the whole other side of the path.
   bool passes = on_one_side && !around.comes_first(after, before, from);
   std::int32_t last = before.id;
   for (Position at = from;;) {
@@ -120,8 +121,8 @@ SplitBorder merge_border(const Predicates& predicates, const std::vector<Point>&
     sides[kLeft].push_back({path[k - 1].id, path[k].id, path[k + 1].id});
     sides[kRight].push_back({path[k + 1].id, path[k].id, path[k - 1].id});
   }
-  // A corner takes three turns at most.
-  counter.critical_path(search_comparisons(path.size()) + 3 * (2 + kOrientOperations) +
+  // At most three steps per corner.
+  counter.critical_path(search_comparisons(path.size()) + 3 * (2 + kernel::ORIENT_OPERATIONS) +
                         scan_depth(border.size()) + scan_depth(path.size()) + scan_depth(2));
   return sides;
 }

@@ -4,12 +4,13 @@
 #include <string>
 #include <utility>
 
-#include "recursive/regions.hpp"
+#include "shared/limits.h"
 
 namespace flaunay::recursive {
 namespace {
 
-// The border's corners linked by its directed edges: cycles, each simple and around a part of the region.
+// Links the corners of a border by its directed edges. Returns simple cycles, each around a part of the
+// region.
 std::vector<std::vector<std::int32_t>> cycles_of(const Border& border) {
   const auto comes_before = [](const Corner& a, const Corner& b) {
     return a.vertex != b.vertex ? a.vertex < b.vertex : a.before < b.before;
@@ -48,8 +49,8 @@ class Polygon {
     for (const std::int32_t id : cycle_) places_.push_back(points[id]);
   }
 
-  // Part (low, high) is the polygon of vertices low..high: its last edge, from high to low, has its
-  // triangle's apex between them, and what remains is a part on either side.
+  // Part (low, high) is the polygon of vertices low..high. The triangle at its last edge, from high to low,
+  // has its apex among the vertices between them; the rest is one part on either side of the triangle.
   void append_triangles(std::vector<std::int32_t>& triangles) {
     std::vector<std::pair<std::size_t, std::size_t>> parts{{0, cycle_.size() - 1}};
     while (!parts.empty()) {
@@ -64,8 +65,8 @@ class Polygon {
   }
 
  private:
-  // The vertex left of the edge from `high` to `low` that sees it under the widest angle, which is the one
-  // whose circle holds no other.
+  // The vertex left of the edge from `high` to `low` that sees the edge under the widest angle. The circle
+  // through it and the edge contains no other vertex.
   std::size_t apex_of(std::size_t low, std::size_t high) {
     if (high - low == 2) return low + 1;
     const Point a = places_[high], b = places_[low];
@@ -74,11 +75,11 @@ class Polygon {
     bool tied = false;
     for (std::size_t v = low + 1; v < high; ++v) {
       const kernel::angle seen = kernel::angle_at(places_[v], a, b);
-      counter_.arithmetic(kDotOperations);
+      counter_.arithmetic(kernel::DOT_OPERATIONS);
       if (side(seen, high, low, v) <= 0) continue;
       int wider = 1;
       if (apex != low) {
-        counter_.arithmetic(kAngleOperations);
+        counter_.arithmetic(kernel::ANGLE_OPERATIONS);
         wider = predicates_.wider_angle(a, b, places_[v], seen, places_[apex], widest);
       }
       if (wider > 0) {
@@ -93,8 +94,8 @@ class Polygon {
     return tied ? visible_apex(low, high, apex) : apex;
   }
 
-  // Of several vertices on one circle some may hide behind an edge that is a chord of it: one that no such
-  // edge separates from the edge at hand.
+  // If several vertices are on one circle, some may be hidden behind an edge that is a chord of that circle.
+  // Chooses a vertex that no such edge separates from the current edge.
   std::size_t visible_apex(std::size_t low, std::size_t high, std::size_t any) {
     std::vector<std::size_t> on_circle{low};
     for (std::size_t v = low + 1; v < high; ++v) {
@@ -121,7 +122,7 @@ class Polygon {
     throw Error(ErrorKind::internal, "a region's border does not enclose it; please report the input");
   }
 
-  // Of vertex v, which sees the edge from a to b.
+  // The side of the edge from a to b on which vertex v lies. seen: the angle under which v sees the edge.
   int side(const kernel::angle& seen, std::size_t a, std::size_t b, std::size_t v) {
     counter_.orientation();
     const int sign = kernel::angle_side(seen, predicates_.bounds.orient);
@@ -142,8 +143,8 @@ class Polygon {
   Counter& counter_;
 };
 
-void large_region(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
-                  std::vector<std::int32_t>& triangles, Counter& counter) {
+void large_region(const Border& border, const SolveRegion& solve_large, std::vector<std::int32_t>& triangles,
+                  Counter& counter) {
   RegionArrays region;
   region.point_offsets = {0, 0};
   region.corner_offsets = {0, static_cast<std::int32_t>(border.size())};
@@ -152,7 +153,7 @@ void large_region(const Predicates& predicates, const std::vector<Point>& points
   }
   Work work;
   try {
-    const std::vector<std::int32_t> inside = solve_region(predicates, points.data(), region, 0, &work);
+    const std::vector<std::int32_t> inside = solve_large(region, work);
     triangles.insert(triangles.end(), inside.begin(), inside.end());
   } catch (const Error& error) {
     throw Error(ErrorKind::internal, std::string("a region: ") + error.what() + "; please report the input");
@@ -163,11 +164,11 @@ void large_region(const Predicates& predicates, const std::vector<Point>& points
 }  // namespace
 
 void end_game(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
-              std::vector<std::int32_t>& triangles, Counter& counter) {
+              const SolveRegion& solve_large, std::vector<std::int32_t>& triangles, Counter& counter) {
   if (border.size() == 3) {
     triangles.insert(triangles.end(), {border[0].vertex, border[0].after, border[0].before});
-  } else if (border.size() > kSmallRegion) {
-    large_region(predicates, points, border, triangles, counter);
+  } else if (border.size() > kernel::DEFAULT_SMALL_REGION) {
+    large_region(border, solve_large, triangles, counter);
   } else {
     for (std::vector<std::int32_t>& cycle : cycles_of(border)) {
       Polygon(predicates, points, std::move(cycle), counter).append_triangles(triangles);

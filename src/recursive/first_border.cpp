@@ -9,8 +9,8 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// Of the points from `first` to `last` of a planar frame, in the order of u, those on the lower hull and its
-// edges.
+// The points on the lower hull and its edges, among the points from `first` to `last` of a planar frame,
+// which are in the order of u.
 std::vector<HullPoint> planar_hull(const Predicates& predicates, const HullPoints& points, Hull variant,
                                    OperationCounts& work) {
   Counter counter;
@@ -31,7 +31,7 @@ Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, 
                     OperationCounts& work) {
   if (low == high) return {};
   const auto x_of = [&](std::int32_t id) { return sets.points[id].x; };
-  // Where the first column ends and the last one begins.
+  // The end of the first column, and the beginning of the last one.
   const auto begin = sets.points.begin() + low, end = sets.points.begin() + high;
   const auto behind_first =
       std::upper_bound(begin, end, x_of(low), [](double x, Point p) { return x < p.x; });
@@ -39,8 +39,8 @@ Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, 
   const auto last_of_first = low + static_cast<std::int32_t>(behind_first - begin) - 1;
   const auto first_of_last = low + static_cast<std::int32_t>(last - begin);
 
-  const Line below{AXIS_PLANAR_LOWER, sets.points[low].y};
-  const Line above{AXIS_PLANAR_UPPER, -sets.points[high - 1].y};
+  const Line below{kernel::AXIS_PLANAR_LOWER, sets.points[low].y};
+  const Line above{kernel::AXIS_PLANAR_UPPER, -sets.points[high - 1].y};
   const auto placed = [&](const Line& line, std::int32_t id) {
     return line.at(id, line.place(sets.points[id]));
   };
@@ -53,7 +53,7 @@ Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, 
   const std::vector<HullPoint> back = planar_hull(sets.predicates, upper, variant, work);
   const auto count = static_cast<std::size_t>(high - low);
   if (there.size() == count && back.size() == count) return {};
-  // The first and the last point are on both.
+  // The first and the last point are on both hulls, so they are taken from one only.
   Ids cycle;
   for (const HullPoint& p : there) cycle.push_back(p.id);
   for (std::size_t k = 1; k + 1 < back.size(); ++k) cycle.push_back(back[k].id);

@@ -1,15 +1,18 @@
-// The host's twin of the stage `border`: what encloses a set before the first cut.
+// The stage `border` on the host: the convex hull of a set, which is its border before the first cut.
 #pragma once
 
+#include "geometry/point_sets.hpp"
 #include "recursive/border_merge.hpp"
-#include "recursive/counter.hpp"
-#include "recursive/points.hpp"
+#include "statistics/counter.hpp"
 
 namespace flaunay::recursive {
 
-/// The corners of the convex hull of the points with ids low..high-1, those on its edges included,
-/// counter-clockwise from the smallest id; none for points on one line. By the planar hulls of the given
-/// variant, the lower and the upper one side by side. work: what they take is added.
+using namespace geometry;
+using namespace statistics;
+
+/// The corners of the convex hull of the points with ids low..high-1, including points on its edges,
+/// counter-clockwise from the smallest id; none for points on one line. The lower and the upper hull are
+/// computed independently by the given variant; their work is added to `work`.
 Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, Hull variant,
                     OperationCounts& work);
 

@@ -1,14 +1,18 @@
-// Frames and what is placed in them.
+// The cut line of a region, the coordinates relative to it, and points in these coordinates.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "recursive/predicates.hpp"
+#include "geometry/predicates.hpp"
+#include "statistics/counter.hpp"
 
 namespace flaunay::recursive {
 
-/// A point in a line's frame.
+using namespace geometry;
+using namespace statistics;
+
+/// A point in the coordinates of a line.
 struct HullPoint {
   std::int32_t id;
   Point place;       ///< (s, u)
@@ -19,24 +23,24 @@ struct HullPoint {
   double height() const { return projection.x; }
 };
 
-/// The line that cuts a region; or with one of the planar axes of kernels/shared/frame.h what takes the lower
-/// or the upper hull of a whole set.
+/// The line that cuts a region. With one of the planar axes of kernels/shared/frame.h, hulls are the lower or
+/// the upper hull of the points in the plane.
 struct Line {
-  int axis = AXIS_X;
+  int axis = kernel::AXIS_X;
   double q = 0;  ///< the line is s = q
 
   bool planar() const { return kernel::is_planar(axis); }
-  /// (s, u): across the line and along it.
+  /// The coordinates (s, u) of p, across the line and along it.
   Point place(Point p) const { return kernel::to_frame(p, axis); }
-  /// What is at a place of the frame, projected.
+  /// The point at this place, with its projection.
   HullPoint at(std::int32_t id, Point place) const {
     return {id, place, kernel::project(place, q, planar())};
   }
-  /// Whether, of two points of equal u, p projects lower than v.
+  /// Whether the projection of p is lower than that of v, for two points of equal u.
   bool is_lower(const HullPoint& p, const HullPoint& v) const {
     return kernel::is_lower(p.place, v.place, q, planar());
   }
-  /// Of p below the chord from a to b, a's u no greater than b's.
+  /// The depth of p below the chord from a to b. The u of a must not be greater than that of b.
   Depth depth(const Predicates& predicates, const HullPoint& a, const HullPoint& b,
               const HullPoint& p) const {
     Depth depth = predicates.depth_filtered(a.projection, b.projection, p.projection, planar());
@@ -50,12 +54,12 @@ struct Line {
 /// Vertices ascending in u.
 using Path = std::vector<HullPoint>;
 
-/// The points of a region in the frame of its line.
+/// The points of a region in the coordinates of its line.
 struct HullPoints {
   Line line;
-  HullPoint first, last;  ///< the hull's ends: least and greatest u, the lower of these if there are several
-  std::vector<HullPoint> internal;  ///< sorted along the line, either way
-  std::vector<HullPoint> corners;   ///< of the border, in any order, a vertex perhaps more than once
+  HullPoint first, last;  ///< the ends of the hull: the lowest points with the least and the greatest u
+  std::vector<HullPoint> internal;  ///< sorted along the line in either direction
+  std::vector<HullPoint> corners;   ///< corners of the border in any order; a vertex may occur several times
 };
 
 }  // namespace flaunay::recursive

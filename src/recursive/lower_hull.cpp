@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/sort.hpp"
 #include "recursive/quickhull.hpp"
-#include "recursive/sort.hpp"
 
 namespace flaunay::recursive {
 namespace {
 
-// What every variant does first; corners are projected when they are looked at.
+// Counts the projections of points. Internal points are projected first; corners only when they are needed.
 void count_projections(const std::vector<HullPoint>& points, Counter& counter) {
-  counter.arithmetic(kProjectOperations * points.size());
+  counter.arithmetic(kernel::PROJECT_OPERATIONS * points.size());
 }
 
 LowerHull by_prune(const Predicates& predicates, const HullPoints& points, Counter& counter,
@@ -28,14 +28,14 @@ Path by_quickhull(const Predicates& predicates, const HullPoints& points, std::s
   all.insert(all.end(), points.corners.begin(), points.corners.end());
   statistics.survivors = all.size();
   count_projections(points.corners, counter);
-  counter.arithmetic(2 * kProjectOperations);
+  counter.arithmetic(2 * kernel::PROJECT_OPERATIONS);
   Quickhull quickhull(predicates, points.line, balanced_from, counter);
   Path path = quickhull.run(points.first, points.last, all, statistics.hull_rounds);
   quickhull.strict(path);
   return path;
 }
 
-// Andrew's scan (1979) from left to right, of points ascending in u.
+// Andrew's scan (1979) over points in ascending order of u.
 Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, Counter& counter) {
   const auto before = [](const HullPoint& a, const HullPoint& b) { return a.u() < b.u(); };
   std::vector<HullPoint> internal = points.internal;
@@ -58,9 +58,9 @@ Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, C
   for (const HullPoint& p : all) {
     counter.arithmetic();
     if (p.u() == path.back().u()) {
-      // Of one column only the lowest counts.
+      // Among points of equal u, only the lowest can be a vertex.
       if (p.id == path.back().id) continue;
-      counter.arithmetic(kLowerOperations);
+      counter.arithmetic(kernel::LOWER_OPERATIONS);
       if (!line.is_lower(p, path.back())) continue;
       path.pop_back();
     }
@@ -71,7 +71,7 @@ Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, C
   return path;
 }
 
-// Both are of one level.
+// Adds the statistics of a region to those of its level.
 void accumulate(LevelStatistics& level, const LevelStatistics& region) {
   level.candidates += region.candidates;
   level.survivors += region.survivors;
@@ -86,12 +86,13 @@ LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hul
   LevelStatistics own;
   LowerHull hull;
   count_projections(points.internal, counter);
-  counter.critical_path(kProjectOperations);
+  counter.critical_path(kernel::PROJECT_OPERATIONS);
   if (variant == Hull::prune) {
     hull = by_prune(predicates, points, counter, own);
   } else {
     hull.corners.assign(points.corners.size(), Kept::yes);
-    const std::size_t balanced_from = variant == Hull::balanced ? kRoundsBeforeBalance : kMostQuickhullRounds;
+    const std::size_t balanced_from =
+        variant == Hull::balanced ? kernel::ROUNDS_BEFORE_BALANCE : kernel::MOST_QUICKHULL_ROUNDS;
     hull.path = variant == Hull::monotone_chain
                     ? by_monotone_chain(predicates, points, counter)
                     : by_quickhull(predicates, points, balanced_from, counter, own);

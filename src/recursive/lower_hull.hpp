@@ -4,21 +4,21 @@
 
 #include <vector>
 
-#include "recursive/counter.hpp"
 #include "recursive/line.hpp"
 #include "recursive/prune.hpp"
+#include "statistics/counter.hpp"
 
 namespace flaunay::recursive {
 
 struct LowerHull {
   Path path;
-  std::vector<Kept> corners;  ///< no: known not to be on the path
+  std::vector<Kept> corners;  ///< Kept::no for corners that are known not to be on the path
 };
 
-/// Takes the strict lower hull by the given variant, whichever it is the same: no vertex lies on or above the
-/// segment of its neighbours, and of points with equal projections the one of smaller s is the vertex.
-/// O(n log n) work, for prune and monotone_chain O(n) plus what sorting the corners and few survivors take;
-/// statistics: candidates and survivors are added, of rounds the greatest number is noted.
+/// Computes the strict lower hull by the given variant; all variants give the same hull. No vertex lies on or
+/// above the segment between its neighbours. If several points have equal projections, the one of smaller s
+/// is the vertex. O(n log n) work; prune and monotone_chain take O(n) plus sorting the corners and the few
+/// survivors. statistics: candidates and survivors are added; the numbers of rounds become the maximum.
 LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hull variant, Counter& counter,
                      LevelStatistics& statistics);
 

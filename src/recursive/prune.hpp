@@ -1,30 +1,31 @@
-// The host's twin of the stage `prune`: drops what cannot be on a region's hull.
+// The stage `prune` on the host: discards points that cannot be on a region's hull.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "recursive/counter.hpp"
 #include "recursive/line.hpp"
+#include "shared/limits.h"
+#include "statistics/counter.hpp"
 
 namespace flaunay::recursive {
 
-/// What prune says of a point.
+/// What prune found about a point.
 enum class Kept : std::uint8_t {
-  no,       ///< not on the hull
-  yes,      ///< below the path, or with keep_on on it
-  on_path,  ///< a vertex of the path
+  no,       ///< it is not on the hull
+  yes,      ///< it is below the path, or with keep_on on the path
+  on_path,  ///< it is a vertex of the path
 };
 
-/// A point against a path.
+/// A point compared with a path.
 struct Held {
   Kept kept = Kept::no;
-  std::size_t chord = 0;  ///< of what is kept: the vertex whose chord to the next one it is below
-  double depth = 0;       ///< how far, rounded
+  std::size_t chord = 0;  ///< for kept points: the vertex at which the chord above the point begins
+  double depth = 0;       ///< for kept points: the depth below that chord, rounded
 };
 
-/// All of a region's points against a path.
+/// All points of a region, compared with a path.
 struct Pruned {
   std::vector<Held> internal, corners;
 };
@@ -32,12 +33,13 @@ struct Pruned {
 /// Prunes by the chords of one path.
 class Prune {
  public:
-  /// path: at least its two ends. keep_on: keep also what lies on the path, and of the column of its last
-  /// vertex all.
+  /// path: has at least its two ends. keep_on: also keep points on the path, and all points with the u of its
+  /// last vertex.
   Prune(const Predicates& predicates, const Line& line, const Path& path, bool keep_on, Counter& counter);
 
-  /// A search for every kBucket internal points and for each corner, and a depth for those that are near
-  /// enough to the line. points: taken to be projected, but for corners.
+  /// Compares all points with the path. Takes a search per kernel::BUCKET internal points and per corner, and
+  /// computes depths for the points that are near enough to the line. The projections of internal points must
+  /// be known; they are not counted.
   Pruned run(const HullPoints& points);
 
  private:
@@ -53,32 +55,29 @@ class Prune {
   const Path& path_;
   bool keep_on_;
   Counter& counter_;
-  std::vector<double> bands_;  // by path vertex: what rises above is not below the chord to the next
+  std::vector<double> bands_;  // per path vertex: higher points are not below the chord to the next vertex
 };
 
-/// Consecutive points of which one is a candidate.
-constexpr std::size_t kBucket = 16;
-
-/// A hull by prune, and what came of it.
+/// A hull computed by prune and quickhull.
 struct PrunedHull {
   Path path;
   std::vector<Kept> corners;
   std::size_t survivors = 0;
-  int rounds = 0;  ///< of quickhull on the survivors
+  int rounds = 0;  ///< rounds of quickhull on the survivors
 };
 
-/// The strict lower hull: what is below the chords of a path over candidates, one a bucket, is all that
-/// quickhull has to look at, from that path on. The candidates' own path is found in the same way while they
-/// are many. statistics: candidates and their rounds are added. points: taken to be projected, but for
-/// corners.
+/// Computes the strict lower hull. Takes one candidate per bucket and computes the path of the candidates, in
+/// the same way as long as they are many. Quickhull then refines that path by the points below its chords.
+/// statistics: candidates and their rounds are added. The projections of internal points must be known; they
+/// are not counted.
 PrunedHull pruned_hull(const Predicates& predicates, const HullPoints& points, Counter& counter,
                        LevelStatistics& statistics);
 
-/// The last vertex with u no greater than the given one; the first if there is none. Takes
-/// search_comparisons(path.size()), which the caller counts.
+/// The last vertex whose u is not greater than the given one; the first vertex if there is none. Takes
+/// search_comparisons(path.size()) comparisons, which the caller counts.
 std::size_t search_path(const Path& path, double u);
 
-/// Those that are flagged Kept::yes.
+/// The points that are flagged Kept::yes.
 std::vector<HullPoint> pick(const std::vector<HullPoint>& points, const std::vector<Held>& held);
 
 }  // namespace flaunay::recursive

@@ -7,9 +7,6 @@
 namespace flaunay::recursive {
 namespace {
 
-// Dropping can lay bare one vertex at a time; after so many rounds quickhull sorts out what is left.
-constexpr int kCleanUpRounds = 8;
-
 // The finaliser of SplitMix64 (Steele, Lea and Flood, 2014), on the bits of u.
 std::uint64_t scramble(double u) {
   std::uint64_t z;
@@ -57,13 +54,14 @@ Path Quickhull::go_on(const Path& path, BelowChords below, int& rounds) {
   return take_path(true, rounds);
 }
 
-// Hands out the path that is done, with the critical path of the rounds that it took.
+// Returns the finished path, and counts the critical path of its rounds.
 Path Quickhull::take_path(bool first_is_known, int& rounds) {
   for (std::size_t round = 0; round < round_sizes_.size(); ++round) {
     const std::size_t m = round_sizes_[round];
     const bool is_known = first_is_known && round == 0;
-    counter_.critical_path((is_known ? 0 : kDepthOperations) + log2_ceiling(m) + 2 + scan_depth(m));
-    if (round >= balanced_from_) counter_.critical_path(6 + log2_ceiling(m) + 2 + kDepthOperations);
+    counter_.critical_path((is_known ? 0 : kernel::DEPTH_OPERATIONS) + log2_ceiling(m) + 2 + scan_depth(m));
+    if (round >= balanced_from_)
+      counter_.critical_path(kernel::TILT_OPERATIONS + log2_ceiling(m) + 2 + kernel::DEPTH_OPERATIONS);
   }
   rounds = static_cast<int>(round_sizes_.size());
   round_sizes_.clear();
@@ -75,7 +73,7 @@ void Quickhull::note_segment(std::size_t points, std::size_t round) {
   round_sizes_[round] += points;
 }
 
-// Appends what lies between a and b.
+// Appends the vertices between a and b to the path.
 void Quickhull::extend(const HullPoint& a, const HullPoint& b, const std::vector<HullPoint>& points,
                        std::size_t round) {
   if (points.empty()) return;
@@ -84,14 +82,15 @@ void Quickhull::extend(const HullPoint& a, const HullPoint& b, const std::vector
   if (!below.empty()) split(a, b, std::move(below), points.size(), round);
 }
 
-// The same, with what is below the chord, of a segment of so many points.
+// Appends the vertices between a and b. below: the points below the chord; points: the number of points of
+// the segment.
 void Quickhull::split(const HullPoint& a, const HullPoint& b, std::vector<Below> below, std::size_t points,
                       std::size_t round) {
   if (round >= balanced_from_) tilt(a.u(), points, below);
   const HullPoint e = deepest(below);
   if (round >= balanced_from_) drop_hidden(e, below);
 
-  // Points that share u with the new vertex are above it, and go.
+  // Points with the same u as the new vertex are above it, so they are dropped.
   std::vector<HullPoint> left, right;
   for (const Below& p : below) {
     if (p.dropped) continue;
@@ -115,8 +114,8 @@ std::vector<Below> Quickhull::points_below(const HullPoint& a, const HullPoint& 
   return below;
 }
 
-// Of equal rank the one that is first at random by u, so that flat chords split evenly; of equal u, the lower
-// one, so that what else shares that u can be dropped.
+// Among points of equal rank, takes the first in a random order of u, so that flat chords split evenly; among
+// points of equal u the lowest, so that the others of this u can be dropped.
 HullPoint Quickhull::deepest(const std::vector<Below>& below) {
   const auto is_deeper = [this](const Below& a, const Below& b) {
     if (a.rank != b.rank) return a.rank > b.rank;
@@ -131,9 +130,9 @@ HullPoint Quickhull::deepest(const std::vector<Below>& below) {
   return best->point;
 }
 
-// Ranks points by their depth below a line that is parallel to a random pair: the vertex there leaves on one
-// side at least one point of half of the pairs, whichever they are (Bhattacharya and Sen 1997). A pair of
-// equal u has no slope.
+// Ranks points by their depth below a line that is parallel to a random pair. On either side of the vertex
+// that results, about half of the pairs keep at most one of their points (Bhattacharya and Sen 1997). Pairs
+// of equal u have no slope and are not drawn.
 void Quickhull::tilt(double origin, std::size_t points, std::vector<Below>& below) {
   const Below* first = nullptr;
   const Below* second = nullptr;
@@ -145,7 +144,7 @@ void Quickhull::tilt(double origin, std::size_t points, std::vector<Below>& belo
     second = &q;
   });
   if (!first) return;
-  counter_.arithmetic(6 * points);
+  counter_.arithmetic(kernel::TILT_OPERATIONS * points);
   const double slope = (second->rank - first->rank) / (second->point.u() - first->point.u());
   for (Below& b : below) {
     const double tilted = b.rank - slope * (b.point.u() - origin);
@@ -153,8 +152,8 @@ void Quickhull::tilt(double origin, std::size_t points, std::vector<Below>& belo
   }
 }
 
-// In a pair on one side of e, the point nearer to e is no vertex if it is not below the chord of the other
-// and e.
+// Drops points that cannot be vertices: of a pair on the same side of e, the point nearer to e can only be a
+// vertex if it is below the chord between e and the other point.
 void Quickhull::drop_hidden(const HullPoint& e, std::vector<Below>& below) {
   for_each_pair(below, [&](Below& one, Below& two) {
     const bool swapped = one.point.u() > two.point.u();
@@ -174,18 +173,18 @@ void Quickhull::drop_hidden(const HullPoint& e, std::vector<Below>& below) {
 bool Quickhull::is_strict(const HullPoint& before, const HullPoint& p, const HullPoint& after) {
   counter_.arithmetic(2);
   if (before.u() == p.u() || after.u() == p.u()) {
-    counter_.arithmetic(kLowerOperations);
+    counter_.arithmetic(kernel::LOWER_OPERATIONS);
     return line_.is_lower(p, before.u() == p.u() ? before : after);
   }
   counter_.depth();
   return line_.depth(predicates_, before, after, p).sign > 0;
 }
 
-// What has kept its neighbours since it was looked at needs no second look.
+// A vertex needs no second test as long as its neighbours stay.
 void Quickhull::strict(Path& path) {
   std::vector<char> is_changed(path.size(), 1);
   for (int round = 1;; ++round) {
-    if (round == kCleanUpRounds) {
+    if (round == kernel::CLEAN_UP_ROUNDS) {
       int ignored = 0;
       path = run(path.front(), path.back(), path, ignored);
       is_changed.assign(path.size(), 1);
@@ -204,7 +203,7 @@ void Quickhull::strict(Path& path) {
       is_kept_changed.push_back(lost_last);
       lost_last = false;
     }
-    counter_.critical_path(2 + kDepthOperations + scan_depth(path.size()));
+    counter_.critical_path(2 + kernel::DEPTH_OPERATIONS + scan_depth(path.size()));
     if (kept.size() == path.size()) return;
     path = std::move(kept);
     is_changed = std::move(is_kept_changed);

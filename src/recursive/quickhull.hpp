@@ -1,49 +1,45 @@
-// The host's twin of the stage `quickhull`: paths that grow.
+// The stage `quickhull` on the host: paths that grow by the deepest points below their chords.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "recursive/counter.hpp"
 #include "recursive/line.hpp"
+#include "shared/limits.h"
+#include "statistics/counter.hpp"
 
 namespace flaunay::recursive {
-
-/// Rounds of quickhull before balanced splits: what Hull::balanced starts with, and after how many quickhull
-/// gives up on the deepest points. No input has been seen to take so many that was not made to.
-constexpr std::size_t kRoundsBeforeBalance = 4;
-constexpr std::size_t kMostQuickhullRounds = 64;
 
 /// A point below the chord of its segment.
 struct Below {
   HullPoint point;
-  double rank;           ///< how far below; the greatest becomes a vertex
-  std::size_t position;  ///< in the segment, of all of its points
+  double rank;           ///< its depth; the point with the greatest becomes a vertex
+  std::size_t position;  ///< its position among all points of the segment
   bool dropped = false;
 };
-/// By path vertex: what is below the chord from there to the next one.
+/// Per path vertex: the points below the chord from this vertex to the next one.
 using BelowChords = std::vector<std::vector<Below>>;
 
-/// Lower hulls in the projection of one line.
+/// Computes lower hulls in the projection of one line.
 class Quickhull {
  public:
-  /// From round `balanced_from` on segments split by Chan, Snoeyink and Yap's rule, else at their deepest
-  /// points.
+  /// Segments are split at their deepest points before round `balanced_from`, and by the rule of Chan,
+  /// Snoeyink and Yap from then on.
   Quickhull(const Predicates& predicates, const Line& line, std::size_t balanced_from, Counter& counter)
       : predicates_(predicates), line_(line), balanced_from_(balanced_from), counter_(counter) {}
 
-  /// The path from `first` to `last` over `points`, which may hold the ends and points more than once. Every
-  /// vertex of the strict hull is on the path; what else there is, strict() drops. Expected O(n log n) work;
-  /// rounds: how many it took, O(balanced_from + log n) expected.
+  /// Computes a path from `first` to `last` over `points`, which may contain the ends, and points more than
+  /// once. Every vertex of the strict hull is on the path; strict() removes the others. rounds: set to the
+  /// number of rounds. Expected O(n log n) work and O(balanced_from + log n) rounds.
   Path run(const HullPoint& first, const HullPoint& last, const std::vector<HullPoint>& points, int& rounds);
 
-  /// The same, but grows a path: its vertices stay on it, and nothing else is below its chords. What its
-  /// first round needs to know of them is known.
+  /// Extends a path, whose vertices stay on it. below: all points below its chords, with their depths, so
+  /// that the first round need not compute these.
   Path go_on(const Path& path, BelowChords below, int& rounds);
 
-  /// Drops what is on or above the segment of its neighbours, and of two neighbours of equal u the one that
-  /// is not the lower, until nothing is.
+  /// Removes vertices on or above the segment between their neighbours, and the higher one of two neighbours
+  /// of equal u, until there are none.
   void strict(Path& path);
 
  private:
@@ -64,8 +60,8 @@ class Quickhull {
   const Line& line_;
   const std::size_t balanced_from_;
   Counter& counter_;
-  Path path_;                             // what is done of it
-  std::vector<std::size_t> round_sizes_;  // points in all segments, by round
+  Path path_;                             // the finished part
+  std::vector<std::size_t> round_sizes_;  // per round: points in all segments
 };
 
 }  // namespace flaunay::recursive

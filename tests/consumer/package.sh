@@ -48,11 +48,12 @@ uses_installed() {
   done
 }
 
-# configure FOLDER ARGUMENTS...: the project beside this script. Debug, since that compiles fastest.
+# configure FOLDER ARGUMENTS...: the project beside this script, without optimisation and debug information, which compiles
+# fastest.
 configure() {
   local folder=$1
   shift
-  "$CMAKE" -S "$here" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_COMPILER="$CC" \
+  "$CMAKE" -S "$here" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE= -DCMAKE_C_COMPILER="$CC" \
     -DCMAKE_CXX_COMPILER="$CXX" -DFLAUNAY_HAS_C=$has_c "$@"
 }
 
@@ -135,10 +136,11 @@ case "$1" in
       s/^ *FLAUNAY_API [^(]*[ *&]([A-Za-z_]+|operator[^(]+)\(.*/\1/p' | sort -u)"
     [[ -n $marked ]] || fail 'no header marks anything'
     failed=false
-    # flaunay::NAME(...), flaunay::CLASS::NAME(...) or, in C, flaunay_NAME.
+    # flaunay::NAME(...), flaunay::CLASS::NAME(...), the same in flaunay::research or, in C, flaunay_NAME.
     while read -r symbol; do
       name="${symbol%%(*}"
       name="${name#flaunay::}"
+      name="${name#research::}"
       owner="${name%%::*}" member="${name#*::}"
       # A marked class or function, or a marked member of a class of the headers.
       if [[ $symbol == flaunay[:_]* && $member != *::* ]] && { grep -qxF -e "$owner" <<<"$marked" ||
@@ -159,23 +161,26 @@ case "$1" in
     ;;
 
   header)
-    # Alone, strictly, and without what flaunay itself is built from.
+    # Each header alone, strictly, and without what flaunay itself is built from.
+    rm -rf "$WORK/header"
     mkdir -p "$WORK/header"
     cd "$WORK/header"
-    echo '#include <flaunay/flaunay.hpp>' >header.cpp
-    echo '#include <flaunay/flaunay.h>' >header.c
-    compile=("$CXX" -std=c++17 -Wall -Wextra -Wpedantic -Werror -I "$prefix/include" -c header.cpp)
-    "${compile[@]}" -MD -MF header.d
-    "${compile[@]}" -DFLAUNAY_STATIC
+    warnings=(-Wall -Wextra -Wpedantic -Werror -I "$prefix/include")
+    for header in flaunay device_memory research; do
+      echo "#include <flaunay/$header.hpp>" >"$header.cpp"
+      "$CXX" -std=c++17 "${warnings[@]}" -c "$header.cpp" -MD -MF "$header.d"
+      "$CXX" -std=c++17 "${warnings[@]}" -c "$header.cpp" -DFLAUNAY_STATIC
+    done
     if $has_c; then
-      "$CC" -std=c99 -Wall -Wextra -Wpedantic -Werror -I "$prefix/include" -c header.c -MD -MF header_c.d
+      echo '#include <flaunay/flaunay.h>' >flaunay.c
+      "$CC" -std=c99 "${warnings[@]}" -c flaunay.c -MD -MF flaunay_c.d
     fi
-    if grep -E '/(CL|boost|fmt)/' header*.d; then
+    if grep -E '/(CL|boost|fmt)/' ./*.d; then
       fail 'the public headers include these'
     fi
     for _ in 1 2 3 4 5; do
       begin="$(date +%s%N)"
-      "${compile[@]}"
+      "$CXX" -std=c++17 "${warnings[@]}" -c flaunay.cpp
       echo $((($(date +%s%N) - begin) / 1000000))
     done | sort -n | sed -n '3s/.*/flaunay.hpp alone compiles in & ms, median of 5/p'
     ;;

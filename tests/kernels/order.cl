@@ -1,6 +1,8 @@
-// Sorting along an axis (shared/order.h) on arrays of cases, one case a work-item, for hybrid_stages_test.cpp.
+// Sorting along an axis (shared/order.h) on arrays of cases, one case a work-item, for
+// order_test.cpp.
 //
-// Case c has the points [offsets[c], offsets[c + 1]) and as many elements, whose places are counted from its first point.
+// Case c has the points [offsets[c], offsets[c + 1]) and as many elements, whose places are counted from its
+// first point.
 
 #include "shared/order.h"
 
@@ -8,19 +10,23 @@ static inline void copy_elements(global const keyed* restrict from, global keyed
   for (int i = 0; i < n; ++i) to[i] = from[i];
 }
 
-kernel void sort_cases(int n, int axis, global const int* restrict offsets, global const double2* restrict points,
-                       global keyed* restrict elements, global keyed* restrict spare, global keyed* restrict sorted) {
+kernel void sort_cases(int n, int axis, global const int* restrict offsets,
+                       global const double2* restrict points, global keyed* restrict elements,
+                       global keyed* restrict spare, global keyed* restrict sorted) {
   const int c = get_global_id(0);
   if (c < n) {
     const int first = offsets[c], size = offsets[c + 1] - first;
-    copy_elements(sort_along(elements + first, spare + first, size, points + first, axis), sorted + first, size);
+    copy_elements(sort_along(elements + first, spare + first, size, points + first, axis), sorted + first,
+                  size);
   }
 }
 
-// The same step by step: after the coarse keys, after their ties, which are finished or given up, and merged from there.
-kernel void sort_steps(int n, int axis, global const int* restrict offsets, global const double2* restrict points,
-                       global keyed* elements, global keyed* spare, global keyed* restrict coarse,
-                       global int* restrict finished, global keyed* restrict ties, global keyed* restrict merged) {
+// The same step by step: after the coarse keys, after their ties, which are finished or given up, and merged
+// from there.
+kernel void sort_steps(int n, int axis, global const int* restrict offsets,
+                       global const double2* restrict points, global keyed* elements, global keyed* spare,
+                       global keyed* restrict coarse, global int* restrict finished,
+                       global keyed* restrict ties, global keyed* restrict merged) {
   const int c = get_global_id(0);
   if (c < n) {
     const int first = offsets[c], size = offsets[c + 1] - first;

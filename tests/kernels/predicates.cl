@@ -1,13 +1,14 @@
 // The shared predicates on arrays of cases, one case a work-item, for predicates_test.cpp.
 //
-// A case is its points' coordinates one after the other (and the cut). `bound_scale` times the predicate's own bound is
-// the filter's bound: 1 as usual, 0 for coarse input. The signs: -1, 0, 1 or UNDECIDED.
+// A case is its points' coordinates one after the other (and the cut). The filters' bounds come from the
+// host, as they do in the library; 0 is for coarse input. The signs: -1, 0, 1 or UNDECIDED.
 
 #include "shared/hull_height.h"
+#include "shared/nearness.h"
 #include "shared/planar.h"
 
 // Cases of 7: a, b, p, cut. The filter is that of hull_depths in quickhull.cl.
-kernel void hull_filtered(int n, int axis, double bound_scale, global const double* restrict cases,
+kernel void hull_filtered(int n, int axis, double bound, global const double* restrict cases,
                           global double* restrict depth, global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -16,7 +17,6 @@ kernel void hull_filtered(int n, int axis, double bound_scale, global const doub
     const double2 d = hull_depth(project(to_frame((double2)(c[0], c[1]), axis), c[6], planar),
                                  project(to_frame((double2)(c[2], c[3]), axis), c[6], planar),
                                  project(to_frame((double2)(c[4], c[5]), axis), c[6], planar), planar);
-    const double bound = bound_scale * HULL_DEPTH_BOUND;
     const double error = bound * d.y;
     depth[i] = d.x;
     signs[i] = d.x > error ? 1 : d.x < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
@@ -43,13 +43,12 @@ kernel void lower_cases(int n, int axis, global const double* restrict cases, gl
 }
 
 // Cases of 6: a, b, c.
-kernel void orient_filtered_cases(int n, double bound_scale, global const double* restrict cases,
+kernel void orient_filtered_cases(int n, double bound, global const double* restrict cases,
                                   global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
     global const double* c = cases + 6 * i;
-    signs[i] = orient_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
-                               bound_scale * ORIENT_BOUND);
+    signs[i] = orient_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]), bound);
   }
 }
 
@@ -62,18 +61,18 @@ kernel void orient_exact_cases(int n, global const double* restrict cases, globa
 }
 
 // Cases of 8: a, b, c, d.
-kernel void circle_filtered_cases(int n, double bound_scale, global const double* restrict cases,
+kernel void circle_filtered_cases(int n, double bound, global const double* restrict cases,
                                   global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
     global const double* c = cases + 8 * i;
     signs[i] = circle_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
-                               (double2)(c[6], c[7]), bound_scale * CIRCLE_BOUND);
+                               (double2)(c[6], c[7]), bound);
   }
 }
 
-// The same, by the angles under which c and d see the edge from a to b.
-kernel void angle_compared_cases(int n, double bound_scale, global const double* restrict cases,
+// The same, by the angles under which c and d see the edge from a to b. bound: of the in-circle test.
+kernel void angle_compared_cases(int n, double bound, global const double* restrict cases,
                                  global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -81,7 +80,7 @@ kernel void angle_compared_cases(int n, double bound_scale, global const double*
     const double2 a = (double2)(c[0], c[1]);
     const double2 b = (double2)(c[2], c[3]);
     signs[i] = angle_compared(angle_at((double2)(c[6], c[7]), a, b), angle_at((double2)(c[4], c[5]), a, b),
-                              bound_scale * ANGLE_BOUND);
+                              angle_bound(bound));
   }
 }
 
@@ -94,11 +93,30 @@ kernel void circle_exact_cases(int n, global const double* restrict cases, globa
   }
 }
 
-kernel void circle_canonical_cases(int n, global const double* restrict cases, global char* restrict signs) {
+kernel void circle_canonical_cases(int n, double bound, global const double* restrict cases,
+                                   global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
     global const double* c = cases + 8 * i;
     signs[i] = circle_canonical((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
-                                (double2)(c[6], c[7]), CIRCLE_BOUND);
+                                (double2)(c[6], c[7]), bound);
+  }
+}
+
+// Cases of 6: a, b, q.
+kernel void nearness_filtered_cases(int n, double bound, global const double* restrict cases,
+                                    global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 6 * i;
+    signs[i] = nearness_filtered((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]), bound);
+  }
+}
+
+kernel void nearness_exact_cases(int n, global const double* restrict cases, global char* restrict signs) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* c = cases + 6 * i;
+    signs[i] = nearness_exact((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]));
   }
 }

@@ -8,14 +8,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "hybrid/cut_tree.hpp"
-#include "recursive/sort.hpp"
+#include "geometry/sort.hpp"
+#include "points/cut_tree.hpp"
 
 namespace flaunay::testing {
 
 struct CutTree {
   int depth = 0;
-  std::vector<hybrid::CutNode> nodes;
+  std::vector<kernel::cut_node> nodes;
 };
 
 namespace cut_tree_detail {
@@ -27,10 +27,10 @@ inline bool precedes(const cl_double2& p, const cl_double2& q, int axis) {
   return axis == 0 ? p.s[1] < q.s[1] : p.s[0] > q.s[0];
 }
 
-inline hybrid::CutNode node_of(const cl_double2& pivot, int axis) {
+inline kernel::cut_node node_of(const cl_double2& pivot, int axis) {
   // Adding 0 turns -0 into 0.
-  const cl_ulong x = recursive::sort_key(pivot.s[0] + 0.0), y = recursive::sort_key(pivot.s[1] + 0.0);
-  return axis == 0 ? hybrid::CutNode{x, y, 0} : hybrid::CutNode{y, ~x, ~cl_ulong{0}};
+  const cl_ulong x = geometry::sort_key(pivot.s[0] + 0.0), y = geometry::sort_key(pivot.s[1] + 0.0);
+  return axis == 0 ? kernel::cut_node{x, y, 0} : kernel::cut_node{y, ~x, ~cl_ulong{0}};
 }
 
 inline double interquartile_range(Iterator begin, Iterator end, int axis) {
@@ -69,8 +69,11 @@ inline std::vector<cl_int> spread_indices(std::size_t n, std::size_t count) {
   return indices;
 }
 
+/// As the tuning table has it.
+constexpr std::size_t kSamplesPerBlock = 16;
+
 /// Of a tree whose leaves are blocks.
-inline std::size_t samples_for(int depth) { return hybrid::kSamplesPerBlock << depth; }
+inline std::size_t samples_for(int depth) { return kSamplesPerBlock << depth; }
 inline std::vector<cl_int> sample_indices(std::size_t n, int depth) {
   return spread_indices(n, samples_for(depth));
 }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "flaunay/flaunay.hpp"
+#include "flaunay/device_memory.hpp"
 
 namespace flaunay::testing {
 

@@ -3,9 +3,9 @@
 #include <CL/cl.h>
 #pragma GCC visibility pop
 
-#include "tests/support/opencl_calls.hpp"
-
 #include <dlfcn.h>
+
+#include "tests/support/opencl_calls.hpp"
 
 namespace flaunay::testing {
 
@@ -69,7 +69,8 @@ void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking
 cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t bytes, void* value, size_t* needed) {
   static auto* const real = next(clGetDeviceInfo, "clGetDeviceInfo");
   const cl_int code = real(device, what, bytes, value, needed);
-  if (what == CL_DEVICE_DOUBLE_FP_CONFIG && opencl_calls().without_fp64 && code == CL_SUCCESS && value != nullptr) {
+  if (what == CL_DEVICE_DOUBLE_FP_CONFIG && opencl_calls().without_fp64 && code == CL_SUCCESS &&
+      value != nullptr) {
     *static_cast<cl_device_fp_config*>(value) = 0;
   }
   return code;

@@ -1,5 +1,5 @@
 // What tests find on disk: where the build has it, unless the environment names another place, for programs
-// that were built on another machine (scripts/gpu.sh --prebuilt).
+// that were built on another machine (scripts/gpu.py --prebuilt).
 #pragma once
 
 #include <cstdlib>
@@ -21,6 +21,9 @@ inline std::string flaunay_executable() { return path_or("FLAUNAY_EXECUTABLE", F
 #endif
 #ifdef FLAUNAY_BENCH
 inline std::string bench_executable() { return path_or("FLAUNAY_BENCH", FLAUNAY_BENCH); }
+#endif
+#ifdef FLAUNAY_PLOT
+inline std::string plot_program() { return path_or("FLAUNAY_PLOT", FLAUNAY_PLOT); }
 #endif
 
 }  // namespace flaunay

@@ -3,13 +3,25 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "host/device.hpp"
 #include "host/runtime.hpp"
+#include "tests/support/device.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::testing {
+
+/// "own": the tuning that the environment names, or else the device's.
+inline std::unique_ptr<host::Runtime> make_tuned_runtime(const std::string& tuning) {
+  const char* const before = std::getenv("FLAUNAY_TUNING");
+  const ScopedEnvironment kind("FLAUNAY_TUNING", tuning == "own" ? before : tuning.c_str());
+  const auto device = host::find_device("");
+  return std::make_unique<host::Runtime>(device, tuning_for(device));
+}
 
 /// A runtime for each name, made by `make` when it is first needed. They end with the tests, before the
 /// OpenCL implementation leaves, if an object of this is one of the program's global environments.

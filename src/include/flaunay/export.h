@@ -1,8 +1,8 @@
-/* What the shared library exports. For C and C++. */
+/* Marks the symbols that the shared library exports. For C and C++. */
 #ifndef FLAUNAY_EXPORT_H
 #define FLAUNAY_EXPORT_H
 
-/* FLAUNAY_STATIC: the library is static; the CMake target and flaunay.pc define it then.
+/* FLAUNAY_STATIC: the library is static; the CMake target and flaunay.pc define it.
    FLAUNAY_BUILDING: the shared library is being built. */
 #if defined(FLAUNAY_STATIC)
 #define FLAUNAY_API
@@ -16,7 +16,7 @@
 #define FLAUNAY_LOCAL
 #else
 #define FLAUNAY_API __attribute__((visibility("default")))
-/* A class inside of one that is exported, and not exported itself. */
+/* For a class that is not exported inside a class that is. */
 #define FLAUNAY_LOCAL __attribute__((visibility("hidden")))
 #endif
 

@@ -1,7 +1,6 @@
 // flaunay: exact two-dimensional Delaunay triangulation on any OpenCL device.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,232 +12,114 @@
 #include "flaunay/export.h"
 #include "flaunay/opencl.h"
 
-/// Exact two-dimensional Delaunay triangulation on any OpenCL device. All that fails throws Error.
+/// Exact two-dimensional Delaunay triangulation on any OpenCL device. Functions that fail throw Error.
 namespace flaunay {
 
-/// What went wrong, in the terms of the command's exit codes.
+namespace research {
+struct Options;  // see flaunay/research.hpp
+}
+
+/// The kinds of errors, one per exit code of the command.
 enum class ErrorKind {
-  usage,     ///< a request that makes no sense (exit code 2)
+  usage,     ///< the request makes no sense (exit code 2)
   input,     ///< bad points: not finite, out of range, too many, unreadable (exit code 3)
-  device,    ///< no device, device too small, an OpenCL call failed (exit code 4)
-  internal,  ///< a broken invariant of flaunay itself; please report it
+  device,    ///< no device, device too small, or an OpenCL call failed (exit code 4)
+  internal,  ///< a broken invariant of flaunay itself, which is a bug; please report it
 };
 
 /// The one exception type of the library.
 class FLAUNAY_API Error : public std::runtime_error {
  public:
-  /// code and call: of OpenCL, if it was one of its calls that failed.
+  /// code and call: the error code and the name of the OpenCL call that failed, if one did.
   explicit Error(ErrorKind kind, const std::string& message, int code = 0, const std::string& call = {})
       : std::runtime_error(message), kind_(kind), code_(code), call_(std::make_shared<std::string>(call)) {}
-  /// Copied, and never moved from, so that call() always has a string to return.
+  /// There is no move constructor, so that call() always has a string to return.
   Error(const Error&) = default;
-  /// Likewise.
+  /// Errors are assigned by copying, too.
   Error& operator=(const Error&) = default;
-  /// For programs; what() is for people, and names the place.
+  /// The kind of error, for programs. what() is the message for people.
   ErrorKind kind() const noexcept { return kind_; }
-  /// What the OpenCL call returned, such as -5 for CL_OUT_OF_RESOURCES; 0 if none failed.
+  /// The code that the OpenCL call returned, such as -5 for CL_OUT_OF_RESOURCES; 0 if none failed.
   int code() const noexcept { return code_; }
-  /// The OpenCL call that failed, such as "clCreateBuffer"; empty if none did.
+  /// The name of the OpenCL call that failed, such as "clCreateBuffer"; empty if none did.
   const std::string& call() const noexcept { return *call_; }
 
  private:
   ErrorKind kind_;
   int code_;
-  // Exceptions are copied, and their copies must not throw.
+  // Shared, because copying an exception must not throw.
   std::shared_ptr<const std::string> call_;
 };
 
-/// Which way each region is cut.
-enum class Cut {
-  interquartile,  ///< across the longer interquartile range of its internal points
-  alternate,      ///< x and y in turn, as in the paper
-};
-
-/// How the divide and conquer is executed. The result is the same set of triangles, whatever the mode.
-enum class Mode {
-  hybrid,            ///< on the device, blocks of points solved whole and merged: the fastest
-  flattened,         ///< on the device, all regions of a level at once
-  recursive_device,  ///< by the same kernels, one region at a time, depth first
-  recursive,         ///< plain recursion on the host, one thread: the readable twin
-  partition,         ///< a few flattened levels on the device, then Dwyer's algorithm on host threads
-  dwyer,             ///< Dwyer's divide and conquer on the host, one thread: the sequential rival
-};
-
-/// How the dividing paths are computed. The result is the same, whatever the variant.
-enum class Hull {
-  prune,           ///< prune by candidates from buckets, then quickhull
-  quickhull,       ///< quickhull alone
-  balanced,        ///< a few rounds of quickhull, then balanced splits (Chan, Snoeyink and Yap)
-  monotone_chain,  ///< Andrew's scan over points sorted along the cut; Mode::recursive only
-};
-
-/// As the command line names them: "recursive-device" and so on. The text is static.
-FLAUNAY_API const char* to_string(Mode mode) noexcept;
-/// Likewise: "monotone-chain" and so on.
-FLAUNAY_API const char* to_string(Hull hull) noexcept;
-
-/// What a caller can ask of one triangulation.
+/// The options of one triangulation.
 struct Options {
-  Mode mode = Mode::hybrid;      ///< how; the triangles are the same, the order of rows is the mode's own
-  Cut cut = Cut::interquartile;  ///< not in Mode::hybrid and Mode::dwyer
-  Hull hull = Hull::prune;       ///< likewise
-  bool neighbors = true;         ///< compute Triangulation::neighbors
-  bool halfedges = false;        ///< compute Triangulation::halfedges
-  bool profile = false;          ///< time every kernel by events; costs a little
-  bool count = false;            ///< count operations into Statistics::work; slow; not in Mode::hybrid
-  int partition_levels = 0;      ///< Mode::partition: levels on the device; 0 chooses
-  int threads = 0;               ///< Mode::partition: host threads; 0 takes one per core
-  /// Called between levels, on the calling thread; may be empty.
-  /// done is the share of the points' work that is finished, 0 to 1.
+  bool neighbors = true;   ///< compute Triangulation::neighbors
+  bool halfedges = false;  ///< compute Triangulation::halfedges
+  bool profile = false;    ///< measure the time of every kernel with OpenCL events; this costs a little time
+  /// If not empty, called from time to time on the calling thread. stage: the name of the stage that begins;
+  /// level: the level of the recursion, or -1 if there is none; done: the finished share of the work, 0 to 1.
   std::function<void(const std::string& stage, int level, double done)> progress;
 };
 
-/// The parts of the algorithm, as the paper divides its work.
-enum class Component {
-  cut,      ///< medians and axes; sorting and partitioning in Mode::dwyer
-  hull,     ///< dividing paths
-  merge,    ///< border merge; the merges of Mode::dwyer
-  split,    ///< points to either side
-  endgame,  ///< triangles of regions without internal points
-};
-/// How many components there are.
-constexpr std::size_t kComponents = 5;
-
-/// What one component did: numbers of operations by kind, and the length of its critical path in operations.
-/// See docs/counting.md for what counts, and for how the depth of each vector operation is defined.
-struct OperationCounts {
-  std::uint64_t arithmetic = 0;     ///< additions, multiplications and comparisons outside of predicates
-  std::uint64_t depths = 0;         ///< evaluations of the depth below a chord
-  std::uint64_t orientations = 0;   ///< evaluations of the orientation of three points
-  std::uint64_t circles = 0;        ///< evaluations of the in-circle test
-  std::uint64_t critical_path = 0;  ///< operations that have to be done one after the other
-
-  /// What is done one after the other: critical paths add up too.
-  FLAUNAY_API OperationCounts& operator+=(const OperationCounts& other) noexcept;
-  /// All as floating-point operations, arithmetic and comparisons: a predicate counts for the operations of
-  /// its plain evaluation, without the error bound's.
-  FLAUNAY_API std::uint64_t operations() const noexcept;
-  /// The same with the operations that bound each predicate's error.
-  FLAUNAY_API std::uint64_t operations_with_bounds() const noexcept;
-};
-
-/// Options::count: the work by component and level. Level 0 is the first cut (in Mode::dwyer the last merge);
-/// start is what precedes it: sorting and the first hulls.
-struct Work {
-  /// By Component.
-  using Components = std::array<OperationCounts, kComponents>;
-  Components start{};              ///< what precedes the first cut
-  std::vector<Components> levels;  ///< level by level
-  /// Corners of each region that the end game triangulated: histogram[k] regions of k corners. Regions of
-  /// more than 1023 corners count as such of 1023; there are no zeros at the end.
-  std::vector<std::uint64_t> endgame_sizes;
-};
-
-/// One level of the recursion.
-struct LevelStatistics {
-  std::size_t regions = 0;          ///< regions cut at this level
-  std::size_t internal_points = 0;  ///< their internal points, all together
-  std::size_t corners = 0;          ///< their border corners, all together
-  std::size_t largest_region = 0;   ///< internal points of the largest of them
-  std::size_t candidates = 0;       ///< for prune's paths, candidates of candidates included
-  std::size_t survivors = 0;        ///< points that prune leaves to quickhull
-  std::size_t path_vertices = 0;    ///< vertices of the dividing paths, all together
-  int candidate_rounds = 0;         ///< quickhull rounds on the candidates
-  int hull_rounds = 0;              ///< quickhull rounds on the survivors
-  double seconds = 0;               ///< wall time
-};
-
-/// Where one kernel's time went (Options::profile).
+/// The launches of one kernel and their time (Options::profile).
 struct KernelStatistics {
-  std::string name;          ///< as in its file in kernels/
-  std::size_t launches = 0;  ///< how often it ran
-  double seconds = 0;        ///< on the device, all launches together
+  std::string name;          ///< the kernel's name in its file in kernels/
+  std::size_t launches = 0;  ///< number of launches
+  double seconds = 0;        ///< time on the device, sum over all launches
 };
 
-/// A named part of the work and its wall time.
+/// A phase of a call and its wall time.
 struct PhaseStatistics {
-  std::string name;    ///< "blocks", "triangulate", "output" and others, by mode
-  double seconds = 0;  ///< wall time on the host, waits included
+  std::string name;    ///< "blocks", "triangulate", "output" and others; they depend on the mode
+  double seconds = 0;  ///< wall time on the host, including the time that it waits for the device
 };
 
-/// How a result came about.
+/// What a call did and how long it took.
 struct Statistics {
-  std::string device;                     ///< its name; "host" in modes of the host
-  std::size_t points = 0;                 ///< input points
-  std::size_t duplicates = 0;             ///< input points that are not their own representative
-  std::size_t triangles = 0;              ///< over all sets
-  std::size_t hull_vertices = 0;          ///< over all sets
-  double seconds = 0;                     ///< from points in host memory to results in host memory
-  double build_seconds = 0;               ///< building programs, part of no other figure
-  std::size_t kernel_launches = 0;        ///< enqueued on the device
-  std::size_t host_waits = 0;             ///< times the host waited for the device
-  std::size_t bytes_to_device = 0;        ///< copied by the host; memory that is used in place is not
-  std::size_t bytes_to_host = 0;          ///< likewise
-  std::size_t device_allocations = 0;     ///< OpenCL buffers made, sub-buffers not counted
-  std::size_t device_bytes_peak = 0;      ///< most device memory held at once
-  std::size_t undecided = 0;              ///< predicates that needed exact evaluation
-  std::vector<PhaseStatistics> phases;    ///< in the order of time
-  std::vector<LevelStatistics> levels;    ///< of the modes that go level by level
-  std::vector<KernelStatistics> kernels;  ///< the longest first; empty if not profiled
-  Work work;                              ///< empty without Options::count
+  std::string device;             ///< name of the device; "host" if none was used
+  std::size_t points = 0;         ///< input points
+  std::size_t duplicates = 0;     ///< input points that are not their own representative
+  std::size_t triangles = 0;      ///< number of triangles over all sets
+  std::size_t hull_vertices = 0;  ///< number of hull vertices over all sets
+  double seconds = 0;        ///< from points to results; for device memory, until everything was enqueued
+  double build_seconds = 0;  ///< compiling kernels; part of no other time
+  std::size_t kernel_launches = 0;      ///< kernels enqueued on the device
+  std::size_t host_waits = 0;           ///< times the host waited for the device
+  std::size_t bytes_to_device = 0;      ///< copied to the device; memory that is used in place does not count
+  std::size_t bytes_to_host = 0;        ///< copied to the host; memory that is used in place does not count
+  std::size_t device_allocations = 0;   ///< OpenCL buffers created, without sub-buffers
+  std::size_t device_bytes_peak = 0;    ///< most device memory held at the same time
+  std::size_t undecided = 0;            ///< predicates that needed exact evaluation
+  std::vector<PhaseStatistics> phases;  ///< in the order in which they ran
+  std::vector<KernelStatistics> kernels;  ///< the slowest first; empty without Options::profile
 };
 
-/// The triangulations of one or more point sets. All indices are those of the input points, over all sets;
-/// triangle indices count over all sets too.
+/// The triangulations of one or more point sets. Points and triangles are numbered over all sets.
 struct Triangulation {
   /// 3 per triangle, counter-clockwise, smallest index first.
   std::vector<std::int32_t> triangles;
-  /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull. Empty if not asked for.
+  /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull. Empty unless
+  /// Options::neighbors.
   std::vector<std::int32_t> neighbors;
-  /// 3 per triangle: halfedge 3t + k goes from vertex k of triangle t to the next one; here is the halfedge
-  /// that goes back, in the triangle beyond, or -1 on the hull. The convention of delaunator. Empty if not
-  /// asked for.
+  /// 3 per triangle. Halfedge 3t + k goes from vertex k of triangle t to its next vertex. Entry 3t + k is the
+  /// opposite halfedge, in the adjacent triangle, or -1 on the hull. This is the convention of delaunator.
+  /// Empty unless Options::halfedges.
   std::vector<std::int32_t> halfedges;
   /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
   /// point. Collinear sets: the distinct points in lexicographic order.
   std::vector<std::int32_t> hull;
   /// One per input point: the smallest index of a point of its set with the same coordinates.
   std::vector<std::int32_t> representatives;
-  /// Set s has triangles [triangle_offsets[s], triangle_offsets[s + 1]) and likewise hull vertices.
+  /// sets + 1 values: set s has triangles [triangle_offsets[s], triangle_offsets[s + 1]).
   std::vector<std::size_t> triangle_offsets;
-  std::vector<std::size_t> hull_offsets;  ///< sets + 1, as triangle_offsets
-  Statistics statistics;                  ///< how it came about
+  /// sets + 1 values: set s has hull vertices [hull_offsets[s], hull_offsets[s + 1]).
+  std::vector<std::size_t> hull_offsets;
+  Statistics statistics;  ///< what the call did and how long it took
 };
 
-/// A region of a partition: a part of the triangulation still to be computed. Its border is made of Delaunay
-/// edges, so the triangles on its inside depend on its own points alone.
-struct Region {
-  /// Indices of input points: those inside, and those of the border.
-  std::vector<std::int32_t> points;
-  /// Directed edges, two positions in points each, the region on the left.
-  std::vector<std::int32_t> border;
-};
-
-/// A set of points cut into regions by some levels of the recursion.
-struct Partition {
-  std::vector<Region> regions;  ///< what is left to do
-  /// Triangles that are final already, of regions that had no points inside: 3 indices of input points each.
-  std::vector<std::int32_t> triangles;
-  Statistics statistics;  ///< how it came about
-};
-
-/// Puts a partition together again. solutions: for each region any Delaunay triangulation of its points, 3
-/// positions in Region::points per triangle, in either orientation, what lies outside the border included.
-/// The result is that of triangulate. Throws Error(input) if a solution is not a triangulation of its
-/// region's points. Uses no device. O(n log n) work, on the calling thread.
-FLAUNAY_API Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
-                                   const std::vector<std::vector<std::int32_t>>& solutions,
-                                   const Options& options = {});
-
-/// Mode::recursive and Mode::dwyer without a device, on the calling thread. Points, offsets and result as of
-/// Triangulator::triangulate. Throws Error(usage) for another mode, and what that throws. O(n log n) work.
-FLAUNAY_API Triangulation triangulate_on_host(const double* coordinates,
-                                              const std::vector<std::size_t>& offsets,
-                                              const Options& options);
-
-/// What the library says of an OpenCL device.
+/// An OpenCL device.
 struct DeviceInfo {
-  std::string name;                      ///< as FLAUNAY_DEVICE matches it
+  std::string name;                      ///< CL_DEVICE_NAME; FLAUNAY_DEVICE may name a part of it
   std::string platform;                  ///< CL_PLATFORM_NAME
   std::string vendor;                    ///< CL_DEVICE_VENDOR
   std::string driver;                    ///< CL_DRIVER_VERSION
@@ -250,263 +131,201 @@ struct DeviceInfo {
   std::size_t largest_buffer_bytes = 0;  ///< CL_DEVICE_MAX_MEM_ALLOC_SIZE
   std::size_t local_memory_bytes = 0;    ///< CL_DEVICE_LOCAL_MEM_SIZE
   std::size_t work_group_size = 0;       ///< CL_DEVICE_MAX_WORK_GROUP_SIZE
-  bool fp64 = false;                     ///< double precision, without which flaunay refuses the device
-  /// Empty if the arithmetic self test passed, else what failed. Only filled if it was asked for.
+  bool fp64 = false;                     ///< whether it has double precision, without which it cannot be used
+  /// What the arithmetic self test found wrong; empty if it passed or was not run.
   std::string self_test_failure;
-  bool self_test_passed = false;  ///< it was asked for, and passed
+  bool self_test_passed = false;  ///< whether the arithmetic self test was run and passed
 };
 
-/// Every device of every platform, in the order that "#k" counts. Throws Error(device) if there is no OpenCL
-/// platform. With self_test, builds and runs the arithmetic self test on each device that has fp64.
+/// Lists every device of every platform, in the order in which "#k" counts them. With self_test, builds and
+/// runs the arithmetic self test on each device that has fp64, which takes some seconds per device. Throws
+/// Error(device) if there is no OpenCL platform.
 FLAUNAY_API std::vector<DeviceInfo> list_devices(bool self_test = false);
 
-/// What coordinates and values in device memory are made of.
-enum class Precision {
-  float64,  ///< double, 16 bytes a point
-  float32,  ///< float, 8 bytes a point; each is taken as the double of the same value
-};
+// Types for points and results in device memory. Include flaunay/device_memory.hpp to use them.
+struct DevicePoints;
+struct DeviceTriangulation;
+struct DeviceVoronoi;
+struct Enqueue;
+struct Parts;
+class DeviceBuffer;
+/// Returns Enqueue{}: the triangulator's own queue, without waiting for events. O(1).
+FLAUNAY_API const Enqueue& own_queue() noexcept;
+/// Returns Parts{}: the triangles alone. O(1).
+FLAUNAY_API const Parts& triangles_alone() noexcept;
 
-/// Points in device memory, in one or more sets.
-struct DevicePoints {
-  cl_mem memory = nullptr;                   ///< x0 y0 x1 y1 ..., as arrays of double2 or float2 are
-  std::size_t count = 0;                     ///< of points
-  Precision precision = Precision::float64;  ///< of the coordinates
-  std::size_t first = 0;                     ///< points that precede them in the buffer
-  /// Set s has points [offsets[s], offsets[s + 1]), counted from `first`; begins with 0 and ends with count.
-  /// Empty: one set, or what device_offsets says.
-  std::vector<std::size_t> offsets;
-  /// The same in device memory, sets + 1 int32; 4 bytes a set cross to the host.
-  cl_mem device_offsets = nullptr;
-  std::size_t sets = 0;  ///< of device_offsets
-};
-
-/// How a call on device memory is enqueued.
-struct Enqueue {
-  /// Of the triangulator's context and device; in order or not. Null: the triangulator's own. It is retained
-  /// until the triangulator gets another or goes; with one that its owner has released by then, a call works
-  /// or throws Error(usage), as far as OpenCL lets it be seen.
-  cl_command_queue queue = nullptr;
-  std::vector<cl_event> wait_for;  ///< what must be done before
-  /// If not null, gets an event that is complete when the results are there; the caller releases it.
-  cl_event* event = nullptr;
-  /// Time every kernel by events, for Statistics::kernels: waits for the end. The queue must have
-  /// CL_QUEUE_PROFILING_ENABLE, if one is given.
-  bool profile = false;
-};
-
-/// Results in device memory: in a buffer of the caller, or in one that flaunay makes when it is first needed,
-/// keeps for the next call, and replaces by a larger one where it is too small. A handle: copies refer to the
-/// same buffer.
-class FLAUNAY_API DeviceBuffer {
- public:
-  DeviceBuffer() noexcept = default;
-  /// The caller's, which is retained and never replaced. Throws Error(usage) if it is no buffer.
-  explicit DeviceBuffer(cl_mem memory);
-  /// Null as long as there is none. Valid as long as this or a copy of it; clRetainMemObject makes it stay
-  /// longer.
-  cl_mem memory() const noexcept { return memory_.get(); }
-  /// The buffer's size, which may be more than its contents need.
-  std::size_t bytes() const noexcept { return bytes_; }
-  /// Whether it was made from a buffer of the caller.
-  bool is_callers() const noexcept { return is_callers_; }
-
- private:
-  friend struct DeviceBufferAccess;
-  std::shared_ptr<struct _cl_mem> memory_;
-  std::size_t bytes_ = 0;
-  bool is_callers_ = false;
-};
-
-/// Which parts of a triangulation to compute on the device. Neighbours and halfedges need the triangles.
-struct Parts {
-  bool triangles = true;         ///< Triangulation::triangles
-  bool neighbors = false;        ///< Triangulation::neighbors
-  bool halfedges = false;        ///< Triangulation::halfedges
-  bool hull = false;             ///< Triangulation::hull
-  bool representatives = false;  ///< Triangulation::representatives
-};
-
-/// A Triangulation in device memory, all arrays int32. Bytes for n points, at most: triangles, neighbors,
-/// halfedges 24 n each, hull and representatives 4 n each; flaunay makes its own buffers so large, and the
-/// caller's must be.
-struct DeviceTriangulation {
-  DeviceBuffer triangles;        ///< 3 per triangle
-  DeviceBuffer neighbors;        ///< 3 per triangle
-  DeviceBuffer halfedges;        ///< 3 per triangle
-  DeviceBuffer hull;             ///< 1 per hull vertex
-  DeviceBuffer representatives;  ///< 1 per point
-  /// What the last call computed.
-  Parts parts{false, false, false, false, false};
-  std::size_t points = 0;  ///< over all sets
-  /// In host memory, sets + 1, known when the call returns: set s has points [point_offsets[s],
-  /// point_offsets[s + 1]).
-  std::vector<std::size_t> point_offsets;
-  std::vector<std::size_t> triangle_offsets;  ///< likewise its triangles, whatever the parts
-  std::vector<std::size_t> hull_offsets;      ///< likewise its hull vertices, whatever the parts
-  /// How it came about; seconds: until all was enqueued.
-  Statistics statistics;
-};
-
-/// The dual of a triangulation. Where more than three points are cocircular, circumcentres coincide.
+/// The dual of a triangulation of n points. Where more than three points are cocircular, circumcentres
+/// coincide.
 struct Voronoi {
-  /// 2 per triangle, rounded: exact predicates decide what is adjacent, not these.
+  /// x and y per triangle. They are rounded; which cells are adjacent was decided by exact predicates.
   std::vector<double> circumcentres;
-  /// The cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells. n + 1.
+  /// n + 1 values: the cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells.
   std::vector<std::int32_t> cell_offsets;
-  /// Triangles, whose circumcentres are the cells' corners, counter-clockwise around each point, from the
-  /// smallest index on. Of an unbounded cell: from the hull edge that leaves the point to the one that
-  /// arrives at it; a ray perpendicular to these edges goes outwards from the first and from the last corner.
-  /// None for a point that another represents, and for points on one line.
+  /// The triangles whose circumcentres are the corners of the cells. They go counter-clockwise around each
+  /// point and begin with the smallest index. In an unbounded cell they begin at the hull edge that leaves
+  /// the point and end at the hull edge that arrives at it; from the first and the last corner, a ray
+  /// perpendicular to that edge goes outwards. Points that another point represents, and points on one line,
+  /// have no corners.
   std::vector<std::int32_t> cells;
-  std::vector<std::uint8_t> unbounded;  ///< 1 for points on the hull, also for all of a set on one line; n
+  /// n values: 1 for points on the hull and for all points of a set on one line, otherwise 0.
+  std::vector<std::uint8_t> unbounded;
 };
 
-/// A Voronoi diagram in device memory, of n points.
-struct DeviceVoronoi {
-  DeviceBuffer circumcentres;  ///< Voronoi::circumcentres, double2, 16 bytes a triangle
-  DeviceBuffer cell_offsets;   ///< Voronoi::cell_offsets, int32, 4 (n + 1) bytes
-  DeviceBuffer cells;          ///< Voronoi::cells, int32, 12 bytes a triangle
-  DeviceBuffer unbounded;      ///< Voronoi::unbounded, uchar, n bytes
-};
-
-/// Owns a device's programs and memory, and its context and queue or the caller's; reusable, movable, one
-/// thread at a time. Triangulators on several threads may share a context and a device.
+/// Computes triangulations on one device. It owns the compiled kernels, the working memory and a queue; the
+/// context is its own or the caller's. Making one compiles kernels, so keep it for the next call. It must be
+/// used by one thread at a time; triangulators on several threads may share a context and a device.
 class FLAUNAY_API Triangulator {
  public:
-  /// device: "" (FLAUNAY_DEVICE if set, else the first GPU, else the first device with fp64),
-  /// "#k" (the k-th of list_devices, from 0), or a part of a device's or platform's name, whatever its case.
-  /// Throws Error(device) if there is none, or if its arithmetic fails the self test.
+  /// device: "" (FLAUNAY_DEVICE if set, else the first GPU, else the first device with fp64), "#k" (the k-th
+  /// device of list_devices, from 0), or a part of a device's or platform's name in upper or lower case.
+  /// Throws Error(device) if there is no such device, if it lacks fp64, or if its arithmetic fails the self
+  /// test.
   explicit Triangulator(const std::string& device = "");
-  /// In the caller's context, which is retained. Throws Error(usage) if the device is not one of the context,
-  /// Error(device) as above.
+  /// Makes a triangulator in the caller's context, which is retained. Throws Error(usage) if the device does
+  /// not belong to the context, and Error(device) if it lacks fp64 or its arithmetic fails the self test.
   Triangulator(cl_context context, cl_device_id device);
-  /// Results stay, and so do Locators.
+  /// Waits for the work that was enqueued. Locators and results of the triangulator stay valid.
   ~Triangulator();
-  /// What was moved from can only be destroyed or assigned to.
+  /// A triangulator that was moved from can only be destroyed or assigned to.
   Triangulator(Triangulator&&) noexcept;
-  /// Likewise.
+  /// Releases the memory of the triangulator that is assigned to. The other can then only be destroyed or
+  /// assigned to.
   Triangulator& operator=(Triangulator&&) noexcept;
 
-  /// Its device, which passed the self test.
+  /// The device, which passed the self test.
   DeviceInfo device() const;
-  /// For the caller's own buffers, kernels and queues; owned by the triangulator.
+  /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator.
   cl_context context() const noexcept;
-  /// The same device for OpenCL; owned by the triangulator.
+  /// The OpenCL handle of the device. Owned by the triangulator.
   cl_device_id device_id() const noexcept;
-  /// Its own queue, in order; owned by the triangulator.
+  /// The triangulator's own queue, which is in order. Owned by the triangulator.
   cl_command_queue queue() const noexcept;
 
   /// The largest number of points that one call can take on this device.
   std::size_t capacity() const;
 
-  /// Triangulates one set of points. coordinates: x0 y0 x1 y1 ..., n points.
-  /// The result is the caller's, in host memory, complete when the call returns. Throws Error(input) for a
-  /// coordinate that is not finite, a range of magnitudes beyond what is exact, or too many points;
-  /// Error(usage) for options that do not go together; Error(device) if an OpenCL call fails. O(n log n)
-  /// work.
+  /// Triangulates one set of n points. coordinates: 2 n values, x0 y0 x1 y1 ...; may be null if n is 0.
+  /// Throws Error(input) for a coordinate that is not finite, a range of magnitudes too large for exact
+  /// arithmetic, or too many points; Error(device) if an OpenCL call fails. O(n log n) work.
   Triangulation triangulate(const double* coordinates, std::size_t n, const Options& options = {});
-  /// The same of float; the result is that of the same numbers as double.
+  /// Triangulates one set of n points in single precision. The result and the errors are those for the
+  /// coordinates converted to double.
   Triangulation triangulate(const float* coordinates, std::size_t n, const Options& options = {});
 
-  /// Triangulates many sets at once: set s has points [offsets[s], offsets[s + 1]); offsets[0] is 0 and the
-  /// last offset the number of points; sets may be empty. Throws Error(usage) too if they decrease.
+  /// Triangulates many sets at once. Set s has points [offsets[s], offsets[s + 1]), which may be none; the
+  /// first offset is 0 and the last one is the number of points. Throws Error(usage) if the offsets decrease
+  /// or do not begin with 0, and otherwise what the call for one set throws. O(n log n) work.
   Triangulation triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
-  /// Many sets of float.
+  /// Triangulates many sets of points in single precision. The result and the errors are those for the
+  /// coordinates converted to double.
   Triangulation triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
+  /// Does not compile: research::triangulate takes these options, which this would ignore.
+  template <typename Coordinate, typename Size>
+  Triangulation triangulate(const Coordinate* coordinates, const Size& size,
+                            const research::Options& options) = delete;
 
-  /// Triangulates points in device memory into device memory (Mode::hybrid). No points and no results cross
-  /// to the host: only sizes do, some bytes for each block of 2,048 points, and the host waits 5 or 6 times
-  /// in between (Statistics::host_waits). Returns when all is enqueued, with the numbers of triangles known;
-  /// the results are there when the event is complete, or for whatever is enqueued on the same in-order queue
-  /// later. The points and the results' buffers must not change until then. A second call of the same size
-  /// allocates no device memory. Throws Error(usage) for buffers that are too small or of another context, a
-  /// queue of another context or device or (where that shows) one that was released, offsets that decrease or
-  /// do not end with the number of points; Error(input) and Error(device) as above. Results are unspecified
-  /// after an error.
-  void triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts = {},
-                   const Enqueue& enqueue = {});
+  /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
+  /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them
+  /// (Statistics::host_waits). The call returns when everything is enqueued; the number of triangles is known
+  /// then. The results are complete when the event is complete, and for all commands that are enqueued later
+  /// on the same in-order queue; until then the points and the buffers of the results must not be changed. A
+  /// second call of the same size allocates no device memory.
+  /// Throws Error(usage) for buffers that are too small or of another context, a queue of another context or
+  /// device, offsets that decrease or do not end with the number of points; Error(input) and Error(device) as
+  /// for points in host memory. The results are unspecified after an error. The queue, the events and the
+  /// buffers must be alive when the call is made; the behaviour with a released one is undefined. O(n log n)
+  /// work.
+  void triangulate(const DevicePoints& points, DeviceTriangulation& result,
+                   const Parts& parts = triangles_alone(), const Enqueue& enqueue = own_queue());
 
-  /// Bytes of device memory that calls in Mode::hybrid on up to n points need besides points and results, at
-  /// most.
+  /// An upper bound of the device memory, in bytes, that a call on n points in `sets` sets needs besides
+  /// points and results. Throws Error(input) or Error(device) if n is above the capacity.
   std::size_t workspace_bytes(std::size_t n, std::size_t sets = 1) const;
-  /// From now on that memory is the caller's buffer, which is retained; null: the triangulator's own again. A
-  /// call for which it is too small throws Error(usage) that says how much is needed. Other modes have memory
-  /// of their own. Waits for what was enqueued.
+  /// Makes later calls use the caller's buffer as their working memory; the buffer is retained. Null: the
+  /// triangulator uses its own memory again. A call that needs more throws Error(usage), whose message says
+  /// how much it needs. Modes other than blocks (research.hpp) always use the triangulator's own memory.
+  /// Waits for the work that was enqueued.
   void use_workspace(cl_mem workspace);
 
-  /// The dual, from triangles and neighbours, of one or more sets. Throws Error(usage) for a triangulation
-  /// without neighbours or of another number of points. O(n) work; a point of degree d takes one work-item d
-  /// steps.
+  /// Computes the dual of a triangulation of these n points, in one or more sets. Throws Error(usage) for a
+  /// triangulation without neighbours or of another number of points. O(n) work; one work-item per point
+  /// takes as many steps as the point has triangles.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
-  /// The same in device memory, enqueued as triangulate is. Needs the parts triangles, neighbors, hull and
-  /// representatives.
+  /// Computes the dual in device memory. The triangulation must have the parts triangles, neighbors, hull and
+  /// representatives. The work is enqueued like that of triangulate for device memory, with the same errors.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
-               const Enqueue& enqueue = {});
-
-  /// The regions after `levels` levels, up to 2^levels of them; O(levels n) work after sorting. Options::mode
-  /// and count mean nothing here. Throws Error(usage) if levels is negative, and what triangulate throws.
-  Partition partition(const double* coordinates, std::size_t n, int levels, const Options& options = {});
+               const Enqueue& enqueue = own_queue());
 
  private:
   friend class Locator;
+  friend struct TriangulatorAccess;
   struct FLAUNAY_LOCAL Implementation;
-  // A Locator keeps it, too.
+  // Shared with the locators, which may outlive the triangulator.
   std::shared_ptr<Implementation> implementation_;
 };
 
-/// Finds where queries lie in a triangulation: by a tree down to a vertex nearby, and from there by exact
-/// steps from triangle to triangle. Queries are points, as many at once as wanted; of nested triangulations
-/// they come in as many sets, each for its own. Shares device and memory with the triangulator that made
-/// it, so both are for one thread at a time; it may outlive it. A query that is not finite, or so fine that
-/// exactness is beyond doubles, is an Error(input) that names it.
+/// Answers queries on a triangulation: the containing triangle, the nearest point, an interpolated value. A
+/// search tree leads to a vertex near the query, and from there an exact walk goes from triangle to triangle.
+/// One call answers any number of queries. If the triangulation has several sets, there must be as many sets
+/// of queries, each for the set of the same number; their offsets are like those of points. A query that is
+/// not finite, or whose coordinates are too fine for exact arithmetic in doubles, is an Error(input) that
+/// names it. The locator shares device and memory with its triangulator, so one thread at a time may use
+/// them; it may outlive the triangulator.
 class FLAUNAY_API Locator {
  public:
-  /// Of a triangulation with neighbours. Copies what it needs: some 80 bytes of device memory a point. O(n
-  /// log n).
+  /// Makes a locator for a triangulation of these n points, which must have neighbours. The locator copies
+  /// what it needs, about 80 bytes of device memory per point. Throws Error(usage) for a triangulation
+  /// without neighbours or of another number of points. O(n log n) work.
   Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
           const Triangulation& triangulation);
-  /// The same of several sets.
+  /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
-  /// The same of points in device memory, enqueued as Triangulator::triangulate is. Needs the parts
-  /// triangles, neighbors, hull and representatives.
+  /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
+  /// neighbors, hull and representatives. The work is enqueued like that of Triangulator::triangulate for
+  /// device memory, with the same errors.
   Locator(Triangulator& triangulator, const DevicePoints& points, const DeviceTriangulation& triangulation,
-          const Enqueue& enqueue = {});
-  /// Releases its memory.
+          const Enqueue& enqueue = own_queue());
+  /// Releases its device memory.
   ~Locator();
-  /// What was moved from can only be destroyed or assigned to.
+  /// A locator that was moved from can only be destroyed or assigned to.
   Locator(Locator&&) noexcept;
-  /// Likewise.
+  /// Releases the memory of the locator that is assigned to. The other can then only be destroyed or assigned
+  /// to.
   Locator& operator=(Locator&&) noexcept;
 
-  /// For each of m queries, x0 y0 x1 y1 ..., the triangle that it lies in, exactly; on an edge or a vertex
-  /// the one of the smallest index of those that it lies in; -1 outside of the hull. About O(log n) a query.
+  /// Finds for each of m queries, x0 y0 x1 y1 ..., the triangle that contains it, exactly. On an edge or a
+  /// vertex it is the triangle of the smallest index that contains the query; outside of the hull it is -1.
+  /// About O(log n) per query.
   std::vector<std::int32_t> locate(const double* queries, std::size_t m);
-  /// Of several sets: as many sets of queries, their offsets as those of points.
+  /// Answers several sets of queries, one per set of the triangulation: set s has queries [offsets[s],
+  /// offsets[s + 1]). Throws Error(usage) if the number of sets differs.
   std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
-  /// In device memory, enqueued as Triangulator::triangulate is; triangles: int32, 4 bytes a query.
-  void locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue = {});
+  /// Answers queries in device memory, enqueued like Triangulator::triangulate for device memory. triangles:
+  /// int32, 4 m bytes.
+  void locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue = own_queue());
 
-  /// For each query the index of the nearest point, by exact comparisons; of several the first in the order
-  /// of x, then y. -1 if the set is empty.
+  /// Finds for each of m queries the index of the nearest point, by exact comparisons. If several points are
+  /// nearest, it is the first of them in the order of x, then y. It is -1 if the set is empty. About O(log n)
+  /// per query.
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
-  /// Of several sets, as locate.
+  /// Answers several sets of queries; see locate.
   std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
-  /// In device memory, as locate; points: int32, 4 bytes a query.
-  void nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue = {});
+  /// Answers queries in device memory; see locate. points: int32, 4 m bytes.
+  void nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue = own_queue());
 
-  /// For each query the linear interpolation of its triangle's three values, rounded; at a vertex exactly its
-  /// value; NaN outside of the hull. values: one for each input point, of which those of duplicates'
-  /// representatives count.
+  /// Computes for each of m queries the linear interpolation of the values at the corners of its triangle,
+  /// rounded; at a vertex exactly the value of that vertex, and outside of the hull NaN. values: one per
+  /// input point; for duplicates, the value of their representative is used. About O(log n) per query.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m);
-  /// Of several sets, as locate; values over all sets.
+  /// Answers several sets of queries; see locate. values: one per input point, over all sets.
   std::vector<double> interpolate(const double* values, const double* queries,
                                   const std::vector<std::size_t>& offsets);
-  /// In device memory, as locate; values and results: double, 8 bytes a point and a query.
+  /// Answers queries in device memory; see locate. values: double, 8 n bytes; results: double, 8 m bytes.
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
-                   const Enqueue& enqueue = {});
+                   const Enqueue& enqueue = own_queue());
 
  private:
   struct FLAUNAY_LOCAL Implementation;
@@ -514,7 +333,7 @@ class FLAUNAY_API Locator {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Of the library, not of the header: "0.1.0". The text is static.
+/// The version of the library that is linked, such as "0.1.0". The text is static.
 FLAUNAY_API const char* version() noexcept;
 
 }  // namespace flaunay

@@ -1,5 +1,5 @@
-/* The handles of OpenCL that flaunay takes, declared as OpenCL's headers declare them: whoever has those may
- * include them before or after, and whoever only has points in host memory needs none. C11 and C++. */
+/* The types of OpenCL handles in flaunay's interface, declared as in OpenCL's headers. Those may be included
+ * before or after this one; programs with points in host memory do not need them. C11 and C++. */
 #ifndef FLAUNAY_OPENCL_H
 #define FLAUNAY_OPENCL_H
 

@@ -1,0 +1,120 @@
+# cmake -DDIRECTORY=kernels -DFILE=flattened/cut.cl -DPROGRAM=flattened/cut -DOUTPUT=launchers/flattened/cut.cl.hpp
+#       -P launchers.cmake
+#
+# Writes a C++ header with a struct per kernel of the file: a member per argument, of the argument's type and name. Runtime
+# (host/runtime.hpp) launches these structs, so that a wrong, missing or unknown argument does not compile. PROGRAM is the
+# file that is built: the file itself, or the one that includes it.
+#
+# It understands the forms that our kernel files use: signatures `kernel void name(arguments)` without macros other than
+# COUNTERS (shared/counting.h), which Runtime sets; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
+
+# The launch sets the number of elements and the size of a chunk; Runtime::arg_reduce sets the reduction's others.
+set(LEADING_PerElement n)
+set(LEADING_PerChunk n chunk)
+set(ARG_REDUCE_MEMBERS "global const int* segment, global int* result, ")
+
+set(CPP_int cl_int)
+set(CPP_uint cl_uint)
+set(CPP_long cl_long)
+set(CPP_ulong cl_ulong)
+set(CPP_uchar cl_uchar)
+set(CPP_float cl_float)
+set(CPP_double cl_double)
+set(CPP_int2 cl_int2)
+set(CPP_int4 cl_int4)
+set(CPP_uint2 cl_uint2)
+set(CPP_uint8 cl_uint8)
+set(CPP_double2 cl_double2)
+# The vector types of kernels.
+set(CPP_keyed cl_uint2)
+
+# Sets ${RESULT} to the C++ type of a kernel's type. Types that are not listed are structs of shared/records.h.
+function(cpp_type TYPE RESULT)
+  if(DEFINED CPP_${TYPE})
+    set(${RESULT} ${CPP_${TYPE}} PARENT_SCOPE)
+  else()
+    set(${RESULT} kernel::${TYPE} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Appends the launcher of a kernel to CODE. ARGUMENTS: the text of the arguments, separated by commas.
+function(append_launcher NAME FORM ARGUMENTS)
+  string(REGEX REPLACE "[ \n]+" " " ARGUMENTS "${ARGUMENTS}")
+  string(REGEX REPLACE " ?COUNTERS" "" ARGUMENTS "${ARGUMENTS}")
+  string(REGEX REPLACE " (restrict|volatile)" "" ARGUMENTS "${ARGUMENTS}")
+  string(REPLACE "," ";" ARGUMENTS "${ARGUMENTS}")
+  set(TYPES "")
+  set(NAMES "")
+  foreach(ARGUMENT IN LISTS ARGUMENTS)
+    string(STRIP "${ARGUMENT}" ARGUMENT)
+    if(ARGUMENT MATCHES "^global const ([a-z_0-9]+)\\* ?([a-z_0-9]+)$")
+      cpp_type(${CMAKE_MATCH_1} TYPE)
+      list(APPEND TYPES "host::In<${TYPE}>")
+    elseif(ARGUMENT MATCHES "^global ([a-z_0-9]+)\\* ?([a-z_0-9]+)$")
+      cpp_type(${CMAKE_MATCH_1} TYPE)
+      list(APPEND TYPES "host::Out<${TYPE}>")
+    elseif(ARGUMENT MATCHES "^([a-z_0-9]+) ([a-z_0-9]+)$")
+      cpp_type(${CMAKE_MATCH_1} TYPE)
+      list(APPEND TYPES "host::Value<${TYPE}>")
+    else()
+      message(FATAL_ERROR "${DIRECTORY}/${FILE}: kernel ${NAME} has an argument that cannot be read: '${ARGUMENT}'")
+    endif()
+    list(APPEND NAMES ${CMAKE_MATCH_2})
+  endforeach()
+  if(FORM STREQUAL "")
+    set(FORM Plain)
+    foreach(CANDIDATE PerElement PerChunk)
+      list(LENGTH LEADING_${CANDIDATE} COUNT)
+      list(SUBLIST NAMES 0 ${COUNT} FIRST)
+      if(FIRST STREQUAL "${LEADING_${CANDIDATE}}")
+        set(FORM ${CANDIDATE})
+      endif()
+    endforeach()
+    foreach(LEADING IN LISTS LEADING_${FORM})
+      list(POP_FRONT TYPES)
+      list(POP_FRONT NAMES)
+    endforeach()
+  endif()
+  set(MEMBERS "")
+  set(VISITS "")
+  foreach(TYPE MEMBER IN ZIP_LISTS TYPES NAMES)
+    string(APPEND MEMBERS "  ${TYPE} ${MEMBER};\n")
+    if(NOT FORM STREQUAL "ArgReduce" OR NOT MEMBER MATCHES "^(segment|result)$")
+      string(APPEND VISITS "    visit(${MEMBER});\n")
+    endif()
+  endforeach()
+  string(CONCAT LAUNCHER
+    "\n/// See kernel ${NAME} in kernels/${FILE}.\n"
+    "struct ${NAME} {\n"
+    "  static constexpr host::KernelName kernel_name{\"${PROGRAM}\", \"${NAME}\"};\n"
+    "  static constexpr host::Form form = host::Form::${FORM};\n"
+    "${MEMBERS}\n"
+    "  template <typename Visit>\n"
+    "  void for_each_argument([[maybe_unused]] const Visit& visit) const {\n${VISITS}  }\n"
+    "};\n")
+  set(CODE "${CODE}${LAUNCHER}" PARENT_SCOPE)
+endfunction()
+
+file(READ ${DIRECTORY}/${FILE} TEXT)
+string(REGEX REPLACE "//[^\n]*" "" TEXT "${TEXT}")
+# Semicolons separate the elements of CMake's lists, so they are replaced.
+string(REPLACE ";" " " TEXT "${TEXT}")
+string(REGEX REPLACE "[][]" " " TEXT "${TEXT}")
+string(REGEX MATCHALL "(kernel void [a-z_0-9]+|\nSEGMENTED_ARG_REDUCE)\\([^)]*\\)" SIGNATURES "${TEXT}")
+set(CODE "")
+foreach(SIGNATURE IN LISTS SIGNATURES)
+  if(SIGNATURE MATCHES "kernel void ([a-z_0-9]+)\\(([^)]*)\\)")
+    append_launcher(${CMAKE_MATCH_1} "" "${CMAKE_MATCH_2}")
+  elseif(SIGNATURE MATCHES "SEGMENTED_ARG_REDUCE\\(([a-z_0-9]+),[^,]*,[^,]*,([^)]*)\\)")
+    append_launcher(${CMAKE_MATCH_1} ArgReduce "${ARG_REDUCE_MEMBERS}${CMAKE_MATCH_2}")
+  endif()
+endforeach()
+
+string(CONCAT HEADER
+  "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n"
+  "#pragma once\n\n"
+  "#include \"host/kernel_arguments.hpp\"\n"
+  "#include \"kernels/shared/records.h\"\n\n"
+  "namespace flaunay::kernels {\n${CODE}\n}  // namespace flaunay::kernels\n")
+# Written only if it has changed, so that files that include it are compiled again only if a signature changed.
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "${HEADER}" @ONLY)

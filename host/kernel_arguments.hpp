@@ -1,0 +1,59 @@
+// The types of kernel arguments in launchers. A launcher is a struct with one member per argument of its
+// kernel, generated from the kernel's signature (cmake/launchers.cmake); Runtime launches it. Members have no
+// defaults, so code with a missing argument, or with one of another type, does not compile.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <cassert>
+#include <memory>
+#include <type_traits>
+
+#include "host/arena.hpp"
+
+namespace flaunay::host {
+
+/// A kernel's program and name. The program is the kernel's file in kernels/, or the file that includes it.
+/// Runtime finds kernels by the address of this struct.
+struct KernelName {
+  const char* program;
+  const char* name;
+};
+
+/// The first arguments of a kernel, which the launch sets and the launcher does not have.
+enum class Form {
+  Plain,       ///< no such arguments
+  PerElement,  ///< the number of elements; there is one work-item per element
+  PerChunk,    ///< the number of elements and the chunk size; there is one work-item per chunk
+  ArgReduce,   ///< the arguments of kernels/shared/segmented_arg_reduce.h
+};
+
+/// An array that a kernel reads. The launcher keeps it alive.
+template <typename T>
+struct In {
+  In(const Buffer<T>& buffer) : memory(buffer.kept_memory()) {}
+  std::shared_ptr<_cl_mem> memory;
+};
+
+/// An array that a kernel writes, or reads and writes. The launcher keeps it alive.
+template <typename T>
+struct Out {
+  Out(const Buffer<T>& buffer) : memory(buffer.kept_memory()) {}
+  std::shared_ptr<_cl_mem> memory;
+};
+
+/// A number or a struct. Numbers of elements fit into the kernels' 32-bit integers: callers have checked
+/// that.
+template <typename T>
+struct Value {
+  template <typename U>
+  Value(U given) : value(static_cast<T>(given)) {
+    static_assert(
+        std::is_same_v<T, U> || (std::is_integral_v<T> && (std::is_integral_v<U> || std::is_enum_v<U>)),
+        "no conversion from or to floating point");
+    if constexpr (!std::is_same_v<T, U>) assert(static_cast<U>(value) == given);
+  }
+  T value;
+};
+
+}  // namespace flaunay::host

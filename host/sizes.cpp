@@ -1,0 +1,46 @@
+#include "host/sizes.hpp"
+
+#include <CL/cl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace flaunay::host {
+namespace {
+
+/// The local memory of the sort's kernels, which count digits per work-item.
+std::size_t sort_table_bytes(const Sizes& sizes) {
+  return (sizes.sort_group << sizes.sort_bits) * sizeof(cl_uint);
+}
+
+}  // namespace
+
+std::size_t Sizes::chunk(std::size_t n) const {
+  if (chunks_most == 0) return chunk_least;
+  return std::max(chunk_least, (n + chunks_most - 1) / chunks_most);
+}
+
+std::string Sizes::build_options() const {
+  return fmt::format("-DSORT_BITS={} -DSORT_GROUP={}", sort_bits, sort_group);
+}
+
+DeviceLimits limits_of(const boost::compute::device& device) {
+  DeviceLimits limits{device.max_work_group_size(),
+                      static_cast<std::size_t>(device.get_info<cl_ulong>(CL_DEVICE_LOCAL_MEM_SIZE))};
+  // The first dimension of a group may have a smaller limit.
+  const auto sizes = device.get_info<std::vector<std::size_t>>(CL_DEVICE_MAX_WORK_ITEM_SIZES);
+  if (!sizes.empty()) limits.work_group = std::min(limits.work_group, sizes.front());
+  return limits;
+}
+
+void fit(Sizes& sizes, const DeviceLimits& limits) {
+  const std::size_t most = std::max<std::size_t>(1, limits.work_group);
+  for (std::size_t* group : {&sizes.map_group, &sizes.chunk_group, &sizes.sort_group}) {
+    *group = std::min(*group, most);
+  }
+  while (sort_table_bytes(sizes) > limits.local_memory && sizes.sort_group > 1) sizes.sort_group /= 2;
+  while (sort_table_bytes(sizes) > limits.local_memory && sizes.sort_bits > 1) --sizes.sort_bits;
+}
+
+}  // namespace flaunay::host

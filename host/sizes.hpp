@@ -1,0 +1,55 @@
+// The sizes of launches and of the vector operations.
+#pragma once
+
+#include <boost/compute/device.hpp>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+namespace flaunay::host {
+
+/// Sizes for one device. A user of Runtime derives a struct with the sizes that its own kernels need, and
+/// gets it back from Runtime::sizes.
+struct Sizes {
+  /// Work-group size of kernels with one work-item per element.
+  std::size_t map_group = 1;
+  /// Work-group size of kernels where each work-item walks a contiguous chunk.
+  std::size_t chunk_group = 1;
+  /// A chunk has at least this many elements; at least 2.
+  std::size_t chunk_least = 2;
+  /// There are at most this many chunks; 0: no limit.
+  std::size_t chunks_most = 0;
+  /// Radix sort: bits per pass, work-group size, and elements per work-item (0: those of a chunk).
+  std::size_t sort_bits = 1;
+  std::size_t sort_group = 1;
+  std::size_t sort_items = 0;
+  /// Other than 0: kernels read and write the caller's host memory instead of copies.
+  std::size_t in_host_memory = 0;
+  /// Other than 0: every array is a separate buffer; see Arena::separate_buffers.
+  std::size_t separate_buffers = 0;
+
+  virtual ~Sizes() = default;
+  Sizes() = default;
+  Sizes(const Sizes&) = default;
+  Sizes& operator=(const Sizes&) = default;
+
+  /// Returns a copy. Derived structs override it to copy all of their members.
+  virtual std::shared_ptr<Sizes> copy() const { return std::make_shared<Sizes>(*this); }
+  /// The number of elements per chunk if there are n elements.
+  std::size_t chunk(std::size_t n) const;
+  /// The compiler options of the kernels: "-DNAME=VALUE ...".
+  virtual std::string build_options() const;
+};
+
+/// The limits of a device.
+struct DeviceLimits {
+  std::size_t work_group;    ///< largest number of work-items per group
+  std::size_t local_memory;  ///< bytes of local memory per group
+};
+DeviceLimits limits_of(const boost::compute::device& device);
+
+/// Reduces group sizes, and the sort's bits per pass, to what the limits allow. A single kernel may support
+/// only smaller groups; Runtime reduces those when it launches the kernel.
+void fit(Sizes& sizes, const DeviceLimits& limits);
+
+}  // namespace flaunay::host

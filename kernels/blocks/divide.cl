@@ -1,0 +1,180 @@
+// Dwyer's divide and conquer (Algorithmica 2, 1987) on blocks of points, and the merges of blocks.
+//
+// solve_blocks is one launch; each work-item takes one block after the other. It sorts the block's points along x and
+// along y, drops duplicates, cuts the block in halves down to leaves of one to four vertices, each time across the
+// longer interquartile range, and merges from the leaves up (shared/rings.h). Vertices are numbered in the order of the
+// leaves, so what a merge touches lies together. merge_blocks merges the two triangulations on either side of the cut
+// of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
+
+#include "shared/cut_tree.h"
+#include "shared/rings.h"
+
+// Where a point stands in either order.
+typedef int2 ranks;
+#define MOST_DEPTH 32
+
+// A work-item's own arrays, with room for one block.
+typedef struct {
+  global double2* points;  // distinct, by x
+  global int* source;
+  global ranks* by_x;
+  global ranks* by_y;
+  global ranks* spare;
+  global uchar* axes;  // by node
+} block_scratch;
+
+// Writes a block's distinct points into scratch, in the order of x, and returns their number.
+static inline int distinct_by_x(int count, global const double2* points, global const int* source,
+                                const block_scratch* s, global int* representatives) {
+  global keyed* elements = (global keyed*)s->by_x;
+  for (int i = 0; i < count; ++i) elements[i] = (keyed)(0, i);
+  elements = sort_along(elements, (global keyed*)s->by_y, count, points, 0);
+  int distinct = 0;
+  double2 last = (double2)(0.0, 0.0);
+  for (int i = 0; i < count; ++i) {
+    const int from = elements[i].y;
+    const double2 p = points[from];
+    if (distinct > 0 && p.x == last.x && p.y == last.y) {
+      representatives[source[from]] = s->source[distinct - 1];
+    } else {
+      s->points[distinct] = last = p;
+      s->source[distinct++] = source[from];
+    }
+  }
+  return distinct;
+}
+
+static inline void rank(int count, block_scratch* s) {
+  global keyed* elements = (global keyed*)s->by_y;
+  // Of equal y, the larger x comes first.
+  for (int i = 0; i < count; ++i) elements[i] = (keyed)(0, count - 1 - i);
+  elements = sort_along(elements, (global keyed*)s->spare, count, s->points, 1);
+  if (elements != (global keyed*)s->by_y) {
+    s->spare = s->by_y;
+    s->by_y = (global ranks*)elements;
+  }
+  for (int r = 0; r < count; ++r) {
+    const ranks both = (ranks)((int)elements[r].y, r);
+    s->by_y[r] = both;
+    s->by_x[both.x] = both;
+  }
+}
+
+// Where part j begins, of the 2^depth parts into which count vertices are cut.
+static inline int part_begin(int count, int depth, int j) { return (int)(((long)j * count) >> depth); }
+
+// 1 if the part is longer in y, by its interquartile ranges.
+static inline int axis_of(int begin, int end, const block_scratch* s) {
+  const int low = begin + (end - begin) / 4, high = end - 1 - (end - begin) / 4;
+  const double width = s->points[s->by_x[high].x].x - s->points[s->by_x[low].x].x;
+  const double height = s->points[s->by_y[high].x].y - s->points[s->by_y[low].x].y;
+  return height > width;
+}
+
+// Cuts a part at its middle. The order along the axis is split by position, the other one by comparison, stably.
+static inline int cut_part(int begin, int middle, int end, const block_scratch* s) {
+  const int axis = axis_of(begin, end, s);
+  global ranks* const order = axis ? s->by_x : s->by_y;
+  const int threshold = axis ? s->by_y[middle].y : s->by_x[middle].x;
+  int low = begin, high = 0;
+  for (int i = begin; i < end; ++i) {
+    const ranks both = order[i];
+    const int is_low = (axis ? both.y : both.x) < threshold;
+    order[low] = both;  // low <= i
+    s->spare[high] = both;
+    low += is_low;
+    high += !is_low;
+  }
+  for (int i = 0; i < high; ++i) order[low + i] = s->spare[i];
+  return axis;
+}
+
+// Triangulates one block, which is not empty. Writes its vertices in the order of the leaves; returns its hull's ends.
+static inline hull_ends solve_block(rings* g, int first, int count, const block_scratch* s, global double2* points,
+                                    global int* source) {
+  int depth = 0;
+  while (count > LEAF_VERTICES << depth) ++depth;
+  for (int d = 0; d < depth; ++d) {
+    for (int j = 0; j < 1 << d; ++j) {
+      s->axes[(1 << d) + j] =
+          cut_part(part_begin(count, d, j), part_begin(count, d + 1, 2 * j + 1), part_begin(count, d, j + 1), s);
+    }
+  }
+  for (int k = 0; k < count; ++k) {
+    const int r = s->by_x[k].x;
+    points[first + k] = s->points[r];
+    source[first + k] = s->source[r];
+  }
+  // Depth first: after leaf i, as many merges as its number has trailing ones.
+  hull_ends stack[MOST_DEPTH];
+  int height = 0;
+  for (int i = 0; i < 1 << depth; ++i) {
+    const int begin = part_begin(count, depth, i);
+    hull_ends whole = make_leaf(g, first + begin, part_begin(count, depth, i + 1) - begin);
+    for (int node = ((1 << depth) + i); node & 1 && node > 1; node >>= 1) {
+      const int axis = s->axes[node >> 1];
+      const hull_ends low = stack[--height];
+      merge_triangulations(g, last_along(low, axis), first_along(whole, axis));
+      whole = joined_ends(g, low, whole, axis);
+    }
+    stack[height++] = whole;
+  }
+  return stack[0];
+}
+
+// Solves the blocks of more than `larger` and at most `capacity` points. Each work-item's part of the scratch arrays
+// has room for `capacity` points. next: the next block to be taken; 0 at first.
+kernel void solve_blocks(int workers, int blocks, int capacity, int larger, global const int* restrict offsets,
+                         filter_bounds bounds, global volatile int* next, global double2* points, global int* source,
+                         global int* representatives, global ring_edge* edges, global int* vertex_edge,
+                         global solved_block* solved, global int* distinct_counts, global volatile uint* undecided,
+                         global double2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
+                         global uchar* scratch_axes) {
+  const int w = get_global_id(0);
+  if (w < workers) {
+    const long base = (long)w * capacity;
+    for (int b = atomic_inc(next); b < blocks; b = atomic_inc(next)) {
+      const int first = offsets[b], count = offsets[b + 1] - first;
+      if (count > capacity || count <= larger) continue;
+      block_scratch s;
+      s.points = scratch_points + base;
+      s.source = scratch_source + base;
+      s.by_x = scratch_ranks + 3 * base;
+      s.by_y = s.by_x + capacity;
+      s.spare = s.by_y + capacity;
+      s.axes = scratch_axes + base;
+      const int distinct = distinct_by_x(count, points + first, source + first, &s, representatives);
+      rank(distinct, &s);
+      rings g = rings_on(edges, points, vertex_edge, bounds);
+      g.unused = EDGES_PER_VERTEX * first;
+      const hull_ends ends = distinct == 0 ? no_ends() : solve_block(&g, first, distinct, &s, points, source);
+      for (int v = first + distinct; v < first + count; ++v) vertex_edge[v] = NO_EDGE;
+      free_unused(&g, EDGES_PER_VERTEX * (first + count));
+      const solved_block done = {ends, free_list(&g)};
+      solved[b] = done;
+      distinct_counts[b] = distinct;
+      if (g.undecided > 0) atomic_add(undecided, g.undecided);
+    }
+  }
+}
+
+// The first block of either side of a merge has the side's triangulation.
+kernel void merge_blocks(int n, int first_merge, global const block_merge* restrict merges,
+                         global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
+                         global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
+                         global volatile uint* undecided) {
+  const int m = get_global_id(0);
+  if (m < n) {
+    const block_merge merge = merges[first_merge + m];
+    const hull_ends low = solved[merge.low].ends, high = solved[merge.high].ends;
+    const int axis = cut_axis(nodes[merge.node]);
+    rings g = rings_on(edges, points, vertex_edge, bounds);
+    join_free_lists(&g, solved[merge.low].unused, solved[merge.high].unused);
+    if (low.first_x != NO_VERTEX && high.first_x != NO_VERTEX) {
+      merge_triangulations(&g, last_along(low, axis), first_along(high, axis));
+    }
+    solved[merge.low].ends = joined_ends(&g, low, high, axis);
+    solved[merge.low].unused = free_list(&g);
+    if (g.undecided > 0) atomic_add(undecided, g.undecided);
+  }
+}

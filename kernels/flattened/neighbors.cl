@@ -1,0 +1,58 @@
+// Twins: for each half-edge the same edge in the triangle beyond it, or -1.
+//
+// Two passes over a hash table of undirected edges, with one work-item per half-edge. insert_edges puts the half-edges
+// that ascend (from a smaller to a larger vertex) into free slots; match_edges looks there for the twins of the others.
+// Which slot an edge gets depends on scheduling; the result does not, since each edge is in the table once.
+
+#include "shared/halfedges.h"
+
+static inline uint edge_hash(int low, int high) {
+  ulong z = ((ulong)(uint)low << 32 | (uint)high) * 0x9e3779b97f4a7c15UL;
+  z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93UL;
+  return (uint)(z >> 32);
+}
+
+// The first slots tried are those of the smaller vertex, which has three edges on average: neighbours in the plane are
+// neighbours in the table. A vertex with many edges overflows into slots all over it, by double hashing.
+#define SLOTS_PER_VERTEX 4
+#define SLOTS_NEAR 8
+
+static inline uint edge_slot(int low, int high, uint attempt) {
+  if (attempt < SLOTS_NEAR) return SLOTS_PER_VERTEX * (uint)low + attempt;
+  const uint hash = edge_hash(low, high);
+  return hash + (attempt - SLOTS_NEAR) * (hash >> 7 | 1);
+}
+
+// table: mask + 1 slots (a power of two, more than there are edges), -1 throughout.
+kernel void insert_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table) {
+  const int h = get_global_id(0);
+  if (h < n) {
+    const int from = halfedge_from(triangles, h);
+    const int to = halfedge_to(triangles, h);
+    int searching = from < to;
+    for (uint attempt = 0; searching; ++attempt) {
+      searching = atomic_cmpxchg(&table[edge_slot(from, to, attempt) & mask], -1, h) != -1;
+    }
+  }
+}
+
+// twins: -1 throughout.
+kernel void match_edges(int n, uint mask, global const int* restrict triangles, global const int* restrict table,
+                        global int* restrict twins) {
+  const int h = get_global_id(0);
+  if (h < n) {
+    const int from = halfedge_from(triangles, h);
+    const int to = halfedge_to(triangles, h);
+    int searching = from > to;
+    for (uint attempt = 0; searching; ++attempt) {
+      const int other = table[edge_slot(to, from, attempt) & mask];
+      if (other < 0) {
+        searching = 0;
+      } else if (halfedge_from(triangles, other) == to && halfedge_to(triangles, other) == from) {
+        twins[h] = other;
+        twins[other] = h;
+        searching = 0;
+      }
+    }
+  }
+}

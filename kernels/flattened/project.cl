@@ -1,0 +1,17 @@
+// The projections of every region's internal points for its cut line. One pass, with one work-item per point.
+
+#include "shared/counting.h"
+#include "shared/hull_height.h"
+
+// The internal points' projections, in the places of the list that is sorted along their region's cut line.
+kernel void project_points(int n, global const int* restrict regions, global const int* restrict x_list,
+                           global const int* restrict y_list, global const int* restrict axis,
+                           global const double* restrict cut, global const double2* restrict points,
+                           global double2* restrict projections COUNTERS) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int r = regions[i];
+    const int a = axis[r];
+    projections[i] = project(to_frame(points[a == AXIS_Y ? x_list[i] : y_list[i]], a), cut[r], is_planar(a));
+  }
+}

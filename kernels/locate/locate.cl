@@ -1,0 +1,498 @@
+// Queries in a triangulation: the triangle that a query lies in, the nearest vertex, and interpolated values.
+//
+// Making the locator: what walks read is brought together, in the order of the triangles, which mostly is an order by
+// place; the points may be in any order.
+// 1. make_faces, one pass over the triangles, finds the first triangle of each vertex. The host scans the numbers of
+//    vertices that each triangle is the first of; number_vertices numbers and copies them, and renumber_faces puts the
+//    numbers into the triangles.
+// 2. measure_clearances computes how near other vertices are. place_hull copies the hull, for sets without triangles.
+// 3. start_triangles gives each leaf of the sets' cut trees the triangle where walks begin.
+// make_faces, place_hull and check_representatives find indices that are out of range.
+//
+// Queries: if there are many, find_query_leaves finds the leaf of each query in its set's tree, the host sorts the
+// queries by leaf, and place_queries brings them into that order, so that queries that follow each other read the same
+// memory. Then each of these is one pass:
+// 1. find_triangles, with one work-item per chunk of queries. If the leaves are not known yet, several queries go down
+//    the tree at the same time. Then each walks from triangle to triangle, over any edge that has the query strictly
+//    beyond it: a visibility walk (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002). In a Delaunay
+//    triangulation it ends, whichever edge is tried first: the power of the query with respect to the triangle's circle
+//    falls with each step, except within a cocircular polygon, whose triangles form a tree.
+// 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query.
+
+#include "shared/cut_tree.h"
+#include "shared/nearness.h"
+#include "shared/prefetch.h"
+#include "shared/records.h"
+#include "shared/search.h"
+
+static inline int next_corner(int k) { return k == 2 ? 0 : k + 1; }
+static inline int corner_before(int k) { return k == 0 ? 2 : k - 1; }
+static inline int corner_at(face f, int vertex) { return f.corner[0] == vertex ? 0 : f.corner[1] == vertex ? 1 : 2; }
+static inline int corner_opposite(face f, int neighbor) {
+  return f.neighbor[0] == neighbor ? 0 : f.neighbor[1] == neighbor ? 1 : 2;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Making
+
+static inline face read_face(int t, global const int* triangles, global const int* neighbors) {
+  face f;
+  for (int k = 0; k < 3; ++k) {
+    f.corner[k] = triangles[3 * t + k];
+    f.neighbor[k] = neighbors[3 * t + k];
+  }
+  return f;
+}
+
+// Whether the neighbour opposite to corner k of triangle t, if there is one, is of the same set and has the same edge.
+static inline int is_mutual(int t, face f, int k, int first, int last, global const int* triangles,
+                            global const int* neighbors) {
+  const int u = f.neighbor[k];
+  if (u == -1) return 1;
+  if (u < first || u >= last || u == t) return 0;
+  const face beyond = read_face(u, triangles, neighbors);
+  const int back = corner_opposite(beyond, t);
+  return beyond.neighbor[back] == t && beyond.corner[next_corner(back)] == f.corner[corner_before(k)] &&
+         beyond.corner[corner_before(back)] == f.corner[next_corner(k)];
+}
+
+// incident: INT_MAX throughout; gets the first triangle of each vertex. bad[0]: the first triangle that cannot be.
+kernel void make_faces(int n, int sets, global const int* restrict triangle_offsets,
+                       global const int* restrict point_offsets, global const int* restrict triangles,
+                       global const int* restrict neighbors, global face* restrict faces,
+                       global volatile int* restrict incident, global volatile int* restrict bad) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    const int s = segment_of(t, sets, triangle_offsets);
+    face f = read_face(t, triangles, neighbors);
+    int good = f.corner[0] != f.corner[1] && f.corner[1] != f.corner[2] && f.corner[2] != f.corner[0];
+    for (int k = 0; k < 3; ++k) {
+      good &= f.corner[k] >= point_offsets[s] && f.corner[k] < point_offsets[s + 1] &&
+              is_mutual(t, f, k, triangle_offsets[s], triangle_offsets[s + 1], triangles, neighbors);
+    }
+    if (good) {
+      for (int k = 0; k < 3; ++k) atomic_min(&incident[f.corner[k]], t);
+    } else {
+      // Leads nowhere, for those that come before it is told.
+      for (int k = 0; k < 3; ++k) {
+        f.corner[k] = 0;
+        f.neighbor[k] = -1;
+      }
+      atomic_min(&bad[0], t);
+    }
+    faces[t] = f;
+  }
+}
+
+kernel void count_vertices(int n, global const face* restrict faces, global const int* restrict incident,
+                           global uint* restrict counts) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    uint count = 0;
+    for (int k = 0; k < 3; ++k) count += incident[faces[t].corner[k]] == t;
+    counts[t] = count;
+  }
+}
+
+// Of each vertex: its number, and by number where it is, its index among the points, and its first triangle.
+kernel void number_vertices(int n, global const face* restrict faces, global const int* restrict incident,
+                            global const uint* restrict firsts, global const double* restrict input, scaling scale,
+                            global int* restrict numbers, global double2* restrict points, global int* restrict source,
+                            global int* restrict first_triangle) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    int to = (int)firsts[t];
+    for (int k = 0; k < 3; ++k) {
+      const int from = faces[t].corner[k];
+      if (incident[from] == t) {
+        numbers[from] = to;
+        points[to] = scaled_point(from, input, scale);
+        source[to] = from;
+        first_triangle[to++] = t;
+      }
+    }
+  }
+}
+
+kernel void renumber_faces(int n, global const int* restrict numbers, global face* restrict faces) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    for (int k = 0; k < 3; ++k) faces[t].corner[k] = numbers[faces[t].corner[k]];
+  }
+}
+
+// A vertex' clearance: the square of the distance to its nearest neighbour, by the upper half of the double, which is
+// in the order of the numbers, and rounds downwards.
+static inline void lower(global volatile int* clearance, double squared) {
+  atomic_min(clearance, (int)(as_ulong(squared) >> 32));
+}
+
+// clearances: INT_MAX throughout. Each edge leaves its origin in one triangle; the reverse of a hull edge is in none.
+kernel void measure_clearances(int n, global const face* restrict faces, global const double2* restrict points,
+                               global volatile int* restrict clearances) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    const face f = faces[t];
+    for (int k = 0; k < 3; ++k) {
+      const int from = f.corner[k], to = f.corner[next_corner(k)];
+      const double2 edge = points[to] - points[from];
+      const double squared = edge.x * edge.x + edge.y * edge.y;
+      lower(&clearances[from], squared);
+      if (f.neighbor[corner_before(k)] < 0) lower(&clearances[to], squared);
+    }
+  }
+}
+
+// bad[1]: the first index that is not of its set.
+kernel void place_hull(int n, int sets, global const int* restrict offsets, global const int* restrict point_offsets,
+                       global const int* restrict hull, global const double* restrict input, scaling scale,
+                       global double2* restrict points, global int* restrict source,
+                       global volatile int* restrict bad) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int s = segment_of(i, sets, offsets);
+    const int from = hull[i];
+    if (from < point_offsets[s] || from >= point_offsets[s + 1]) {
+      atomic_min(&bad[1], i);
+    } else {
+      points[i] = scaled_point(from, input, scale);
+      source[i] = from;
+    }
+  }
+}
+
+// bad[2]: the first representative that is not of its set.
+kernel void check_representatives(int n, int sets, global const int* restrict point_offsets,
+                                  global const int* restrict representatives, global volatile int* restrict bad) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int s = segment_of(i, sets, point_offsets);
+    if (representatives[i] < point_offsets[s] || representatives[i] >= point_offsets[s + 1]) atomic_min(&bad[2], i);
+  }
+}
+
+// by_leaf: each leaf's sample; drawn: the point that a sample is. last: the last triangle. Representatives may be
+// wrong, which check_representatives says.
+kernel void start_triangles(int n, int points, int last, global const int* restrict by_leaf,
+                            global const int* restrict drawn, global const int* restrict representatives,
+                            global const int* restrict incident, global int* restrict starts) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int vertex = representatives[drawn[by_leaf[i]]];
+    starts[i] = vertex < 0 || vertex >= points ? last : min(last, incident[vertex]);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Walking
+
+// The triangle that q lies in, the smallest one of several; outside of the hull the complement of a triangle that has q
+// beyond one of its edges, on the hull. start: a triangle; most: steps that a Delaunay triangulation can need: it has
+// no triangle visited twice. points are scaled by unit more, as q is.
+static inline int walk(double2 q, int start, int most, double bound, double unit, global const double2* points,
+                       global const face* faces, global const int* first_triangle) {
+  // Triangle t, the corner k that was reached last, and the edge from a to b opposite to it, which has q on its left,
+  // or on it if it is the first one.
+  int t = start, k = 2;
+  face f = faces[t];
+  double2 a = unit * points[f.corner[0]], b = unit * points[f.corner[1]];
+  int ab = orient_sign(a, b, q, bound);
+  if (ab < 0) {
+    if (f.neighbor[2] < 0) return ~t;
+    const int u = f.neighbor[2];
+    const double2 swapped = a;
+    a = b;
+    b = swapped;
+    f = faces[u];
+    k = corner_opposite(f, t);
+    t = u;
+    ab = 1;
+  }
+  for (int step = 0; step < most; ++step) {
+    const double2 c = unit * points[f.corner[k]];
+    const int bc = orient_sign(b, c, q, bound);
+    const int ca = bc < 0 ? 1 : orient_sign(c, a, q, bound);
+    const int at_a = next_corner(k), at_b = corner_before(k);
+    if (bc >= 0 && ca >= 0) {
+      const int zeros = (ab == 0) + (bc == 0) + (ca == 0);
+      if (zeros == 0) return t;
+      if (zeros == 2) return first_triangle[f.corner[ab != 0 ? k : bc != 0 ? at_a : at_b]];
+      const int beyond = f.neighbor[ab == 0 ? k : bc == 0 ? at_a : at_b];
+      return beyond < 0 ? t : min(t, beyond);
+    }
+    const int u = f.neighbor[bc < 0 ? at_a : at_b];
+    if (u < 0) return ~t;
+    if (bc < 0) {
+      a = c;
+    } else {
+      b = c;
+    }
+    ab = 1;
+    f = faces[u];
+    k = corner_opposite(f, t);
+    t = u;
+  }
+  return ~t;
+}
+
+// n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set. keys: each
+// query's leaf, counted over all sets, where a set has one leaf more than its tree, or one alone: so in the order of
+// keys each set's queries take the places that they had. order: 0, 1, 2...
+kernel void find_query_leaves(int n, int chunk, int sets, global const int* restrict query_offsets,
+                              global const mesh_set* restrict records, global const cut_node* restrict nodes,
+                              global const double* restrict queries, global ulong* restrict keys,
+                              global int* restrict order) {
+  const int c = get_global_id(0);
+  if ((long)c * chunk < n) {
+    const int last = (int)min((long)n, (c + 1L) * chunk);
+    int s = sets > 1 ? segment_of(c * chunk, sets, query_offsets) : 0;
+    int begin = c * chunk;
+    while (begin < last) {
+      while (sets > 1 && query_offsets[s + 1] <= begin) ++s;
+      const int end = min(begin + DESCENTS, sets > 1 ? min(last, query_offsets[s + 1]) : last);
+      const mesh_set set = records[s];
+      int leaf[DESCENTS];
+      find_leaves(begin, end, queries, nodes + set.nodes, set.depth, leaf);
+      for (int i = begin; i < end; ++i) {
+        keys[i] = (ulong)set.nodes + s + leaf[i - begin];
+        order[i] = i;
+      }
+      begin = end;
+    }
+  }
+}
+
+// order: the query at a place.
+kernel void place_queries(int n, global const int* restrict order, global const double* restrict queries, scaling scale,
+                          global double2* restrict placed) {
+  const int i = get_global_id(0);
+  if (i < n) placed[i] = scaled_point(order[i], queries, scale);
+}
+
+// are_placed: whether there are keys, in their order, and placed queries; else queries go down the trees here, and
+// their order and places are those that they have. is_answer: whether found is by query, with -1 outside of the hull;
+// else it is by place, with what walk() says. Without triangles it is -1.
+kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer,
+                           global const int* restrict query_offsets, global const mesh_set* restrict records,
+                           global const cut_node* restrict nodes, global const int* restrict starts,
+                           global const double* restrict queries, scaling scale, global const ulong* restrict keys,
+                           global int* restrict order, global double2* restrict placed, double bound, double unit,
+                           global const double2* restrict points, global const face* restrict faces,
+                           global const int* restrict first_triangle, global int* restrict found) {
+  const int c = get_global_id(0);
+  if ((long)c * chunk < n) {
+    const int last = (int)min((long)n, (c + 1L) * chunk);
+    int s = sets > 1 ? segment_of(c * chunk, sets, query_offsets) : 0;
+    int begin = c * chunk;
+    while (begin < last) {
+      while (sets > 1 && query_offsets[s + 1] <= begin) ++s;
+      const int end = min(begin + DESCENTS, sets > 1 ? min(last, query_offsets[s + 1]) : last);
+      const mesh_set set = records[s];
+      int start[DESCENTS];
+      if (are_placed) {
+        for (int i = begin; i < end; ++i) start[i - begin] = (int)keys[i] - set.nodes - s;
+      } else {
+        find_leaves(begin, end, queries, nodes + set.nodes, set.depth, start);
+        for (int i = begin; i < end; ++i) {
+          order[i] = i;
+          placed[i] = scaled_point(i, queries, scale);
+        }
+      }
+      for (int j = 0; j < end - begin; ++j) {
+        start[j] = set.depth > 0 ? starts[set.starts + start[j]] : set.starts;
+        fetch(&faces[start[j]]);
+      }
+      for (int j = 0; j < end - begin && set.triangles > 0; ++j) fetch(&points[faces[start[j]].corner[0]]);
+      for (int i = begin; i < end; ++i) {
+        int at = -1;
+        if (set.triangles > 0) {
+          at = walk(placed[i], start[i - begin], set.triangles, bound, unit, points, faces, first_triangle);
+        }
+        found[is_answer ? order[i] : i] = is_answer ? max(at, -1) : at;
+      }
+      begin = end;
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The nearest vertex
+
+// The nearest vertex known so far, a triangle that has it as a corner, and where it is.
+typedef struct {
+  int vertex, triangle;
+  double2 at;
+} nearby;
+
+// Of two vertices that are as near, the first in the order of x and y is taken.
+static inline void consider(nearby* best, int vertex, int triangle, double2 q, double bound, double unit,
+                            global const double2* points) {
+  const double2 p = unit * points[vertex];
+  const int sign = nearness_sign(best->at, p, q, bound);
+  if (sign > 0 || (sign == 0 && comes_before(p, best->at))) {
+    best->vertex = vertex;
+    best->triangle = triangle;
+    best->at = p;
+  }
+}
+
+// The best of a vertex and its neighbours: counter-clockwise around it, and on the hull then the other way.
+static inline nearby best_around(nearby vertex, double2 q, double bound, double unit, global const double2* points,
+                                 global const face* faces) {
+  nearby best = vertex;
+  const face first = faces[vertex.triangle];
+  const int k = corner_at(first, vertex.vertex);
+  consider(&best, first.corner[next_corner(k)], vertex.triangle, q, bound, unit, points);
+  int last = first.corner[corner_before(k)];
+  consider(&best, last, vertex.triangle, q, bound, unit, points);
+  int t = first.neighbor[next_corner(k)];
+  while (t >= 0 && t != vertex.triangle) {
+    const face f = faces[t];
+    const int at = corner_at(f, vertex.vertex);
+    consider(&best, f.corner[corner_before(at)], t, q, bound, unit, points);
+    t = f.neighbor[next_corner(at)];
+  }
+  if (t < 0) {
+    t = first.neighbor[corner_before(k)];
+    while (t >= 0) {
+      const face f = faces[t];
+      const int at = corner_at(f, vertex.vertex);
+      consider(&best, f.corner[next_corner(at)], t, q, bound, unit, points);
+      t = f.neighbor[corner_before(at)];
+    }
+  }
+  return best;
+}
+
+// Whether q is nearer to the vertex than half its clearance: nothing is as near then. So the neighbours of a vertex
+// that has very many mostly need not be looked at. Rounding is far below the margin, as long as there is no underflow.
+#define CLEARANCE_MARGIN (1.0 + 0x1p-20)
+#define LEAST_CLEARANCE 0x1p-1000
+static inline int is_clear(nearby vertex, double2 q, double unit, global const int* clearances) {
+  const double2 away = q - vertex.at;
+  const double clearance = as_double((ulong)(uint)clearances[vertex.vertex] << 32) * unit * unit;
+  return clearance > LEAST_CLEARANCE && 4.0 * CLEARANCE_MARGIN * (away.x * away.x + away.y * away.y) < clearance;
+}
+
+// Greedy descent, from a corner of triangle t. In a Delaunay triangulation a vertex that is not nearest has a neighbour
+// that is nearer; those that are nearest with others lie on one empty circle, whose first vertex is joined to all.
+static inline int nearest_vertex(double2 q, int t, double bound, double unit, global const double2* points,
+                                 global const face* faces, global const int* clearances) {
+  nearby best, before;
+  best.vertex = faces[t].corner[0];
+  best.triangle = t;
+  best.at = unit * points[best.vertex];
+  for (int k = 1; k < 3; ++k) consider(&best, faces[t].corner[k], t, q, bound, unit, points);
+  do {
+    before = best;
+    if (!is_clear(before, q, unit, clearances)) best = best_around(before, q, bound, unit, points, faces);
+  } while (best.vertex != before.vertex);
+  return best.vertex;
+}
+
+// Of points on one line, in their order: distances fall and then rise, with two equal ones at most. -1 of none.
+static inline int nearest_on_line(double2 q, int first, int end, double bound, double unit,
+                                  global const double2* hull_points) {
+  if (first == end) return -1;
+  int low = first, high = end - 1;
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    const double2 a = unit * hull_points[middle], b = unit * hull_points[middle + 1];
+    if (nearness_sign(a, b, q, bound) > 0) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// found: of find_triangles, by place; the answer is by query.
+kernel void nearest_points(int n, int sets, global const int* restrict query_offsets,
+                           global const mesh_set* restrict records, global const int* restrict order,
+                           global const double2* restrict placed, double bound, double unit,
+                           global const double2* restrict points, global const int* restrict source,
+                           global const int* restrict clearances, global const face* restrict faces,
+                           global const double2* restrict hull_points, global const int* restrict hull,
+                           global const int* restrict found, global int* restrict nearest) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const double2 q = placed[i];
+    const mesh_set set = records[sets > 1 ? segment_of(i, sets, query_offsets) : 0];
+    int answer;
+    if (set.triangles == 0) {
+      const int at = nearest_on_line(q, set.hull, set.hull_end, bound, unit, hull_points);
+      answer = at < 0 ? -1 : hull[at];
+    } else {
+      const int t = found[i];
+      answer = source[nearest_vertex(q, t < 0 ? ~t : t, bound, unit, points, faces, clearances)];
+    }
+    nearest[order[i]] = answer;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Interpolation
+
+// Twice the area of q, a and b, with the sum of magnitudes that bounds its error.
+static inline double2 area_filtered(double2 a, double2 b, double2 q) {
+  const double left = (a.x - q.x) * (b.y - q.y);
+  const double right = (a.y - q.y) * (b.x - q.x);
+  return (double2)(left - right, fabs(left) + fabs(right));
+}
+
+// The same, with all bits right except the last.
+static inline double area_exact(double2 a, double2 b, double2 q) {
+  const double2 ax = two_sum(a.x, -q.x), ay = two_sum(a.y, -q.y);
+  const double2 bx = two_sum(b.x, -q.x), by = two_sum(b.y, -q.y);
+  expansion sum;
+  sum.size = 0;
+  expansion_add_product(&sum, ax, by);
+  expansion_add_product(&sum, -ay, bx);
+  expansion_compress(&sum);
+  double area = 0.0;
+  for (int k = 0; k < sum.size; ++k) area += sum.part[k];
+  return area;
+}
+
+// Of slender triangles, whose magnitudes are larger by this factor than their area, areas are computed exactly.
+#define SLENDER 4096.0
+
+// Weights are areas by the whole. Where q lies on an edge, the opposite corner has none, not even that of a NaN.
+kernel void interpolate_queries(int n, global const int* restrict order, global const double2* restrict placed,
+                                double bound, double unit, global const double2* restrict points,
+                                global const int* restrict source, global const face* restrict faces,
+                                global const int* restrict found, global const double* restrict values,
+                                global double* restrict results) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const double2 q = placed[i];
+    double result = as_double(0x7ff8000000000000UL);
+    if (found[i] >= 0) {
+      const face f = faces[found[i]];
+      double2 p[3];
+      double weight[3];
+      double whole = 0.0, magnitude = 0.0;
+      for (int k = 0; k < 3; ++k) p[k] = unit * points[f.corner[k]];
+      for (int k = 0; k < 3; ++k) {
+        const double2 a = p[next_corner(k)], b = p[corner_before(k)];
+        const double2 area = area_filtered(a, b, q);
+        weight[k] = orient_sign(a, b, q, bound) == 0 ? 0.0 : max(area.x, 0.0);
+        whole += weight[k];
+        magnitude += area.y;
+      }
+      if (magnitude > SLENDER * whole) {
+        whole = 0.0;
+        for (int k = 0; k < 3; ++k) {
+          weight[k] = area_exact(p[next_corner(k)], p[corner_before(k)], q);
+          whole += weight[k];
+        }
+      }
+      result = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        if (weight[k] != 0.0) result += weight[k] / whole * values[source[f.corner[k]]];
+      }
+    }
+    results[order[i]] = result;
+  }
+}

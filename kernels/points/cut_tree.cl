@@ -1,0 +1,249 @@
+// Cut trees (shared/cut_tree.h) of sets of points, made from samples of the points; all sets at once.
+//
+// The samples of a tree are cut in halves down to the leaves: those of each node at the median, across the longer of
+// their interquartile ranges. One work-item takes one chunk of samples of one tree: those of a leaf, or 2, 4, 8...
+// times as many.
+//
+// 1. draw_samples fetches one point from each of equal parts of a set.
+// 2. sort_chunks sorts each chunk along x and along y. merge_runs merges sorted runs, in one launch per doubling.
+// 3. Nodes larger than a chunk are cut level by level: count_low counts how many samples of each chunk go low, the
+//    counts are scanned, and split_chunks moves the samples. cut_chunks then cuts all other nodes, in one launch.
+//
+// So each level of nodes larger than chunks costs one pass over the samples for sorting and two for cutting. The levels
+// below cost one pass each, all in two launches.
+
+#include "shared/cut_tree.h"
+#include "shared/order.h"
+#include "shared/records.h"
+#include "shared/search.h"
+
+// A chunk's tree and its first sample.
+typedef struct {
+  sampled_tree own;
+  int first;
+} sample_chunk;
+
+// Chunk c of all trees; of each, the first is known.
+static inline sample_chunk chunk_of(int c, int tree_count, global const int* first_chunks,
+                                    global const sampled_tree* trees) {
+  const int t = segment_of(c, tree_count, first_chunks);
+  sample_chunk chunk;
+  chunk.own = trees[t];
+  chunk.first = chunk.own.first_sample + (c - first_chunks[t]) * chunk.own.chunk;
+  return chunk;
+}
+
+// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+static inline ulong mixed(ulong x) {
+  x += 0x9e3779b97f4a7c15UL;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9UL;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebUL;
+  return x ^ x >> 31;
+}
+
+kernel void draw_samples(int n, int tree_count, global const int* restrict first_chunks,
+                         global const sampled_tree* restrict trees, global const double* restrict input,
+                         global double2* restrict samples, global int* restrict indices) {
+  const int c = get_global_id(0);
+  if (c < n) {
+    const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
+    const sampled_tree own = chunk.own;
+    const int first = chunk.first;
+    for (int i = first; i < first + own.chunk; ++i) {
+      const ulong k = i - own.first_sample;
+      const ulong begin = k * own.points / own.samples, end = (k + 1) * own.points / own.samples;
+      indices[i] = own.first_point + (int)(begin + mixed(k) % max(1UL, end - begin));
+      samples[i] = vload2(indices[i], input);
+    }
+  }
+}
+
+// Two work-items per chunk, one per axis. elements, spare and order hold the order along x and then the one along y. Of
+// equal points the one drawn first comes first, here and in all that follows.
+kernel void sort_chunks(int n, int tree_count, global const int* restrict first_chunks,
+                        global const sampled_tree* restrict trees, int all_samples, global const double2* samples,
+                        global keyed* elements, global keyed* spare, global int* order) {
+  const int w = get_global_id(0);
+  if (w < n) {
+    const int c = w / 2, axis = w % 2;
+    const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
+    const sampled_tree own = chunk.own;
+    const int first = chunk.first;
+    const int place = axis * all_samples + first;
+    for (int i = 0; i < own.chunk; ++i) elements[place + i] = (keyed)(0, i);
+    global const keyed* const sorted = sort_along(elements + place, spare + place, own.chunk, samples + first, axis);
+    for (int i = 0; i < own.chunk; ++i) order[place + i] = first + (int)sorted[i].y;
+  }
+}
+
+// How many of the first `taken` elements of two merged runs are from the low one.
+static inline int taken_from_low(int taken, int run, global const int* low, global const int* high,
+                                 global const double2* samples, int axis) {
+  int least = max(0, taken - run), most = min(taken, run);
+  while (least < most) {
+    const int middle = (least + most) / 2;
+    if (precedes(samples[high[taken - 1 - middle]], samples[low[middle]], axis)) {
+      most = middle;
+    } else {
+      least = middle + 1;
+    }
+  }
+  return least;
+}
+
+// Merges pairs of runs of 2^doublings chunks each. Two work-items per chunk of the result, one per axis. Trees that are
+// sorted already are copied.
+kernel void merge_runs(int n, int tree_count, global const int* restrict first_chunks,
+                       global const sampled_tree* restrict trees, int all_samples, int doublings,
+                       global const double2* samples, global const int* from, global int* to) {
+  const int w = get_global_id(0);
+  if (w < n) {
+    const int c = w / 2, axis = w % 2;
+    const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
+    const sampled_tree own = chunk.own;
+    const int first = axis * all_samples + chunk.first;
+    const int run = own.chunk << doublings;
+    if (run >= own.samples) {
+      for (int i = first; i < first + own.chunk; ++i) to[i] = from[i];
+    } else {
+      const int tree_first = axis * all_samples + own.first_sample;
+      const int pair = tree_first + (first - tree_first) / (2 * run) * (2 * run);
+      global const int* const low = from + pair;
+      global const int* const high = low + run;
+      int a = taken_from_low(first - pair, run, low, high, samples, axis);
+      int b = first - pair - a;
+      for (int i = first; i < first + own.chunk; ++i) {
+        const int take_high = a == run || (b < run && precedes(samples[high[b]], samples[low[a]], axis));
+        to[i] = take_high ? high[b++] : low[a++];
+      }
+    }
+  }
+}
+
+// A cut, at a sample.
+typedef struct {
+  int axis, sample;
+  double2 pivot;
+} sample_cut;
+
+// Of the node with the samples of both orders from `begin` on.
+static inline sample_cut cut_of(int begin, int size, global const double2* samples, global const int* by_x,
+                                global const int* by_y) {
+  const int low = begin + size / 4, high = begin + size - 1 - size / 4;
+  const double width = samples[by_x[high]].x - samples[by_x[low]].x;
+  const double height = samples[by_y[high]].y - samples[by_y[low]].y;
+  sample_cut cut;
+  cut.axis = height > width;
+  cut.sample = (cut.axis ? by_y : by_x)[begin + size / 2];
+  cut.pivot = samples[cut.sample];
+  return cut;
+}
+
+static inline cut_node node_of(sample_cut cut) {
+  const ulong x = orderable(cut.pivot.x), y = orderable(cut.pivot.y);
+  cut_node node;
+  node.major = cut.axis ? y : x;
+  node.minor = cut.axis ? ~x : y;
+  node.turn = cut.axis ? ~0UL : 0UL;
+  return node;
+}
+
+static inline int goes_low(int sample, sample_cut cut, global const double2* samples) {
+  const double2 p = samples[sample];
+  const int is_equal = (p.x == cut.pivot.x) & (p.y == cut.pivot.y);
+  return precedes(p, cut.pivot, cut.axis) | (is_equal & (sample < cut.sample));
+}
+
+// The samples of a node at a level; of a level below its leaves, fewer.
+static inline int node_samples(sampled_tree own, int level) { return own.samples >> level; }
+
+// Writes the nodes of a level, if they are larger than chunks. Counts how many samples of each chunk of the other order
+// than the one along the axis go low. order: along x, then along y.
+kernel void count_low(int n, int tree_count, global const int* restrict first_chunks,
+                      global const sampled_tree* restrict trees, int all_samples, int level,
+                      global const double2* samples, global const int* order, global cut_node* restrict nodes,
+                      global uint* restrict counts) {
+  const int c = get_global_id(0);
+  if (c < n) {
+    const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
+    const sampled_tree own = chunk.own;
+    const int size = node_samples(own, level);
+    uint low = 0;
+    if (size > own.chunk) {
+      const int first = chunk.first;
+      const int number = (first - own.first_sample) / size;
+      const int begin = own.first_sample + number * size;
+      const sample_cut cut = cut_of(begin, size, samples, order, order + all_samples);
+      if (first == begin) nodes[own.first_node + (1 << level) + number] = node_of(cut);
+      global const int* const other = order + (cut.axis ? 0 : all_samples);
+      for (int i = first; i < first + own.chunk; ++i) low += goes_low(other[i], cut, samples);
+    }
+    counts[c] = low;
+  }
+}
+
+// Of nodes that are larger than chunks, halves to their places in both orders; what else there is, as it is. The order
+// along the axis falls apart by position, the other one by a stable split.
+kernel void split_chunks(int n, int tree_count, global const int* restrict first_chunks,
+                         global const sampled_tree* restrict trees, int all_samples, int level,
+                         global const double2* samples, global const uint* restrict scanned, global const int* from,
+                         global int* to) {
+  const int c = get_global_id(0);
+  if (c < n) {
+    const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
+    const sampled_tree own = chunk.own;
+    const int first = chunk.first;
+    const int size = node_samples(own, level);
+    if (size > own.chunk) {
+      const int begin = first - (first - own.first_sample) % size;
+      const sample_cut cut = cut_of(begin, size, samples, from, from + all_samples);
+      const int cut_order = cut.axis ? all_samples : 0, other = all_samples - cut_order;
+      const int before = (int)(scanned[c] - scanned[c - (first - begin) / own.chunk]);
+      int low = begin + before, high = begin + size / 2 + (first - begin - before);
+      for (int i = first; i < first + own.chunk; ++i) {
+        to[cut_order + i] = from[cut_order + i];
+        const int sample = from[other + i];
+        to[other + (goes_low(sample, cut, samples) ? low++ : high++)] = sample;
+      }
+    } else {
+      for (int i = first; i < first + own.chunk; ++i) {
+        to[i] = from[i];
+        to[all_samples + i] = from[all_samples + i];
+      }
+    }
+  }
+}
+
+// Splits [begin, begin + size) of an order stably.
+static inline void split_run(int begin, int size, sample_cut cut, global const double2* samples, global int* order,
+                             global int* spare) {
+  int low = begin, high = begin;
+  for (int i = begin; i < begin + size; ++i) {
+    const int sample = order[i];
+    const int is_low = goes_low(sample, cut, samples);
+    order[low] = sample;  // low <= i
+    spare[high] = sample;
+    low += is_low;
+    high += !is_low;
+  }
+  for (int i = begin; i < high; ++i) order[low + i - begin] = spare[i];
+}
+
+// Cuts the nodes of a chunk's samples and all nodes below. Both orders are then that of the leaves.
+kernel void cut_chunks(int n, int tree_count, global const int* restrict first_chunks,
+                       global const sampled_tree* restrict trees, int all_samples, global const double2* samples,
+                       global int* order, global int* spare, global cut_node* restrict nodes) {
+  const int c = get_global_id(0);
+  if (c < n) {
+    const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
+    const sampled_tree own = chunk.own;
+    const int first = chunk.first;
+    for (int size = own.chunk; size > own.leaf; size /= 2) {
+      for (int begin = first; begin < first + own.chunk; begin += size) {
+        const sample_cut cut = cut_of(begin, size, samples, order, order + all_samples);
+        nodes[own.first_node + (own.samples + begin - own.first_sample) / size] = node_of(cut);
+        split_run(begin, size, cut, samples, order + (cut.axis ? 0 : all_samples), spare);
+      }
+    }
+  }
+}

@@ -1,0 +1,100 @@
+// Structs that kernels and the host share, as kernels' arguments and in arrays in device memory.
+#ifndef FLAUNAY_RECORDS_H
+#define FLAUNAY_RECORDS_H
+
+#include "shared/language.h"
+
+BEGIN_SHARED
+
+// Bounds of the predicates' filters: HULL_DEPTH_BOUND, ORIENT_BOUND and CIRCLE_BOUND of shared/bounds.h, or 0 where the
+// input is so coarse that floating point is exact.
+typedef struct {
+  double hull, orient, circle;
+} filter_bounds;
+ASSERT_SIZE(filter_bounds, 24);
+
+// Coordinates are scaled by the product of three powers of two, which may be no double itself.
+typedef struct {
+  double s0, s1, s2;
+} scaling;
+ASSERT_SIZE(scaling, 24);
+
+// A directed edge e in the ring of its origin; its reverse is e ^ 1. (Quad-edges without the dual half.)
+typedef struct {
+  int to;        // vertex, or NO_VERTEX for a free edge
+  int next;      // counter-clockwise about the origin; of a free edge the next free one
+  int previous;  // clockwise
+} ring_edge;
+ASSERT_SIZE(ring_edge, 12);
+
+// The first and the last vertex in the orders (x, y) and (y, -x). All are corners of the hull, strictly convex.
+// NO_VERTEX, all of them, if there is no vertex.
+typedef struct {
+  int first_x, last_x, first_y, last_y;
+} hull_ends;
+ASSERT_SIZE(hull_ends, 16);
+
+// A list of free edges by its first and its last one; NO_EDGE, both of them, if it is empty.
+typedef struct {
+  int first, last;
+} free_edges;
+ASSERT_SIZE(free_edges, 8);
+
+// A block's triangulation; of the first of blocks that were merged, that of them all.
+typedef struct {
+  hull_ends ends;
+  free_edges unused;
+} solved_block;
+ASSERT_SIZE(solved_block, 24);
+
+// A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
+// has all bits set: a point goes high unless it comes before the pivot. Nodes are in the order of a heap, from 1 on.
+typedef struct {
+  ulong major, minor, turn;
+} cut_node;
+ASSERT_SIZE(cut_node, 24);
+
+// A tree that is made from samples: its samples [first_sample, first_sample + samples), how many of them a leaf has
+// and a chunk has; where its nodes begin; its points. Samples and chunks are leaves times powers of two.
+typedef struct {
+  int first_sample, samples, leaf, chunk, first_node, first_point, points;
+} sampled_tree;
+ASSERT_SIZE(sampled_tree, 28);
+
+// Points [first, last) that one work-item brings to their blocks. Of a set with a tree: its depth, where its nodes
+// begin, where the chunk's row of cursors begins, the set's first count, the chunk's number in the set, and the set's
+// number of chunks.
+typedef struct {
+  int first, last, depth, nodes, row, counts, number, chunks;
+} chunk_of_points;
+ASSERT_SIZE(chunk_of_points, 32);
+
+// Where a block begins: behind point `first`, by as many points as the counts of its set before `count` say. count is
+// -1 if the set is one block.
+typedef struct {
+  int first, count;
+} block_place;
+ASSERT_SIZE(block_place, 8);
+
+// Two neighbouring parts of a set, by their first blocks, and the node that cuts between them.
+typedef struct {
+  int low, high, node;
+} block_merge;
+ASSERT_SIZE(block_merge, 12);
+
+// A triangle: its corners, and for each the triangle opposite, or -1.
+typedef struct {
+  int corner[3], neighbor[3];
+} face;
+ASSERT_SIZE(face, 24);
+
+// A set of a locator: where its tree's nodes begin, the tree's depth, where its leaves' starts begin, its number of
+// triangles, and where its hull begins and ends.
+typedef struct {
+  int nodes, depth, starts, triangles, hull, hull_end;
+} mesh_set;
+ASSERT_SIZE(mesh_set, 24);
+
+END_SHARED
+
+#endif

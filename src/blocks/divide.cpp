@@ -1,0 +1,101 @@
+#include <algorithm>
+
+#include "blocks/stages.hpp"
+#include "launchers/blocks/divide.cl.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+// Triangulates the blocks that have more than `larger` and at most `capacity` points.
+void solve(Workspace& work, const Blocks& blocks, std::size_t workers, std::size_t capacity,
+           std::ptrdiff_t larger, const Rings& rings, const Buffer<cl_int>& representatives) {
+  host::Runtime& runtime = work.runtime;
+  Arena& scratch = work.scratch();
+  Arena::Scope scope(scratch);
+  const auto next = scratch.allocate<cl_int>(1);
+  runtime.fill(next, 1, cl_int{0});
+  const auto points = scratch.allocate<cl_double2>(workers * capacity);
+  const auto source = scratch.allocate<cl_int>(workers * capacity);
+  const auto ranks = scratch.allocate<cl_int2>(3 * workers * capacity);
+  const auto axes = scratch.allocate<cl_uchar>(workers * capacity);
+  runtime.launch(workers, tuning_of(runtime).block_group,
+                 kernels::solve_blocks{.workers = workers,
+                                       .blocks = blocks.count,
+                                       .capacity = capacity,
+                                       .larger = larger,
+                                       .offsets = blocks.device_offsets,
+                                       .bounds = work.bounds,
+                                       .next = next,
+                                       .points = blocks.vertices,
+                                       .source = blocks.source,
+                                       .representatives = representatives,
+                                       .edges = rings.edges,
+                                       .vertex_edge = rings.vertex_edge,
+                                       .solved = rings.solved,
+                                       .distinct_counts = rings.device_distinct,
+                                       .undecided = rings.device_undecided,
+                                       .scratch_points = points,
+                                       .scratch_source = source,
+                                       .scratch_ranks = ranks,
+                                       .scratch_axes = axes});
+}
+
+}  // namespace
+
+std::size_t solve_bytes(const Tuning& tuning, std::size_t n) {
+  constexpr std::size_t kBytes = sizeof(cl_double2) + sizeof(cl_int) + 3 * sizeof(cl_int2) + sizeof(cl_uchar);
+  // The larger of two cases: many work-items solve blocks at once, or one block has all points.
+  return kBytes * std::max(n, std::min(tuning.scratch_per_point * n,
+                                       tuning.block_workers * tuning.large_blocks * tuning.block_points));
+}
+
+Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives) {
+  host::Runtime& runtime = work.runtime;
+  Rings rings;
+  rings.edges = work.persistent.allocate<kernel::ring_edge>(kernel::EDGES_PER_VERTEX * blocks.points);
+  rings.vertex_edge = work.persistent.allocate<cl_int>(blocks.points);
+  rings.solved = work.persistent.allocate<kernel::solved_block>(blocks.count);
+  rings.device_distinct = work.persistent.allocate<cl_int>(blocks.count);
+  rings.device_undecided = work.persistent.allocate<cl_uint>(1);
+  runtime.fill(rings.device_undecided, 1, cl_uint{0});
+
+  std::size_t largest = 1;
+  for (std::size_t b = 0; b < blocks.count; ++b) {
+    largest = std::max<std::size_t>(largest, blocks.offsets[b + 1] - blocks.offsets[b]);
+  }
+  const Tuning& tuning = tuning_of(runtime);
+  const std::size_t capacity = std::min(largest, tuning.large_blocks * tuning.block_points);
+  const std::size_t affordable =
+      std::max<std::size_t>(1, tuning.scratch_per_point * blocks.points / capacity);
+  solve(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
+        representatives);
+  if (largest > capacity) {
+    solve(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives);
+  }
+  std::size_t first = 0;
+  for (const std::size_t end : blocks.level_ends) {
+    runtime.launch(end - first, tuning.block_group, end - first,
+                   kernels::merge_blocks{.first_merge = first,
+                                         .merges = blocks.device_merges,
+                                         .nodes = blocks.device_nodes,
+                                         .bounds = work.bounds,
+                                         .points = blocks.vertices,
+                                         .edges = rings.edges,
+                                         .vertex_edge = rings.vertex_edge,
+                                         .solved = rings.solved,
+                                         .undecided = rings.device_undecided});
+    first = end;
+  }
+  runtime.flush();
+  return rings;
+}
+
+void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {
+  rings.distinct.resize(blocks.count);
+  const host::Runtime::Settled settled(work.runtime);
+  work.runtime.read_later(rings.device_distinct, 0, blocks.count, rings.distinct.data());
+  rings.undecided = work.runtime.read_one(rings.device_undecided, 0);
+}
+
+}  // namespace flaunay::blocks

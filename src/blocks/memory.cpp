@@ -1,0 +1,48 @@
+#include "blocks/memory.hpp"
+
+#include <algorithm>
+
+#include "blocks/stages.hpp"
+#include "points/cut_tree.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+// Number of arrays that exist at the same time. Each is rounded up to the device's alignment.
+constexpr std::size_t kArrays = 48;
+// Per point: a vertex, its source, its representative, its edge, and the edges.
+constexpr std::size_t kPersistent =
+    sizeof(cl_double2) + 3 * sizeof(cl_int) + kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge);
+// Per block: its first point, its set, its merge, its node, its triangulation, its number of vertices.
+constexpr std::size_t kPersistentByBlock = 3 * sizeof(cl_int) + sizeof(kernel::block_merge) +
+                                           sizeof(kernel::cut_node) + sizeof(kernel::solved_block);
+// Per point, until it is in its block.
+constexpr std::size_t kInput = sizeof(cl_double2);
+// Per point, while points are moved to blocks: the block, the cursor, the count and the sum of its scan.
+constexpr std::size_t kMoving = 4 * sizeof(cl_int);
+// Per block: a place, the first count of its set, and the further values of the last chunk of its set.
+constexpr std::size_t kMovingByBlock = 6 * sizeof(cl_int);
+constexpr std::size_t kMovingByChunk = 9 * sizeof(cl_int);
+// Per point, while triangles are written: first rows with the sums of their scan, and the corner of each
+// edge.
+constexpr std::size_t kWriting = (2 + kernel::EDGES_PER_VERTEX) * sizeof(cl_int);
+
+}  // namespace
+
+WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std::size_t sets) {
+  const Tuning& tuning = tuning_of(runtime);
+  // The blocks of a set that is cut are more than half full on average.
+  const std::size_t leaves = 2 * n / tuning.block_points;
+  const std::size_t blocks = sets + leaves + 1;
+  const std::size_t chunks = std::min(n, 3 * n / tuning.chunk(n)) + blocks + 2;
+  const std::size_t rounding = kArrays * runtime.arena().alignment();
+  const std::size_t cutting = CutTrees::bytes(std::min(sets, leaves), leaves, tuning.samples_per_block);
+  const std::size_t moving = n * kMoving + blocks * kMovingByBlock + chunks * kMovingByChunk;
+  const std::size_t solving = solve_bytes(tuning, n);
+  const std::size_t writing = n * kWriting + 2 * (sets + 1) * sizeof(cl_int);
+  return {n * kPersistent + (blocks + 1) * kPersistentByBlock + rounding,
+          std::max({n * kInput + std::max(cutting, moving), solving, writing}) + rounding};
+}
+
+}  // namespace flaunay::blocks

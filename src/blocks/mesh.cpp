@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "blocks/stages.hpp"
+#include "host/vector_operations.hpp"
+#include "launchers/blocks/mesh.cl.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+// Euler's formula: d points, of which h are on the hull, have 2d - 2 - h triangles. The hull of points on one
+// line is a walk there and back, so h is 2d - 2.
+MeshSizes set_sizes(const Blocks& blocks, const Rings& rings, const std::vector<cl_int>& walked) {
+  MeshSizes sizes;
+  sizes.triangle_offsets.assign(1, 0);
+  sizes.hull_offsets.assign(1, 0);
+  for (std::size_t s = 0; s < blocks.sets; ++s) {
+    const cl_int points = std::accumulate(rings.distinct.begin() + blocks.set_blocks[s],
+                                          rings.distinct.begin() + blocks.set_blocks[s + 1], 0);
+    const cl_int triangles = points < 3 ? 0 : 2 * points - 2 - walked[s];
+    sizes.vertices += points;
+    sizes.triangle_offsets.push_back(sizes.triangle_offsets.back() + triangles);
+    sizes.hull_offsets.push_back(sizes.hull_offsets.back() + (triangles == 0 ? points : walked[s]));
+  }
+  return sizes;
+}
+
+void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
+                 const Buffer<cl_int>& hull) {
+  host::Runtime& runtime = work.runtime;
+  const auto offsets = work.scratch().allocate<cl_int>(blocks.sets + 1);
+  runtime.write_kept(offsets, std::vector<cl_int>(sizes.hull_offsets.begin(), sizes.hull_offsets.end()));
+  runtime.map(blocks.sets, kernels::write_hulls{.set_blocks = blocks.device_set_blocks,
+                                                .solved = rings.solved,
+                                                .vertex_edge = rings.vertex_edge,
+                                                .edges = rings.edges,
+                                                .source = blocks.source,
+                                                .offsets = offsets,
+                                                .hull = hull});
+}
+
+}  // namespace
+
+MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) {
+  host::Runtime& runtime = work.runtime;
+  Arena& scratch = work.scratch();
+  std::vector<cl_int> walked(blocks.sets);
+  const host::Runtime::Settled settled(runtime);
+  const auto rows = scratch.allocate<cl_uint>(blocks.points + 1);
+  const auto hull_sizes = scratch.allocate<cl_int>(blocks.sets);
+  runtime.map(blocks.points, kernels::vertex_triangles{.vertex_edge = rings.vertex_edge, .counts = rows});
+  runtime.map(blocks.sets, kernels::mark_outside{.set_blocks = blocks.device_set_blocks,
+                                                 .solved = rings.solved,
+                                                 .vertex_edge = rings.vertex_edge,
+                                                 .edges = rings.edges,
+                                                 .counts = rows,
+                                                 .hull_sizes = hull_sizes});
+  host::exclusive_scan(runtime, rows, blocks.points, rows);
+
+  runtime.read_later(hull_sizes, 0, blocks.sets, walked.data());
+  const cl_uint counted = runtime.read_one(rows, blocks.points);
+  MeshSizes sizes = set_sizes(blocks, rings, walked);
+  if (counted != sizes.triangles()) {
+    throw Error(ErrorKind::internal, fmt::format("{} triangles instead of {}; please report the input",
+                                                 counted, sizes.triangles()));
+  }
+  sizes.first_rows = rows;
+  return sizes;
+}
+
+void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
+                const MeshBuffers& buffers) {
+  host::Runtime& runtime = work.runtime;
+  Arena::Scope scope(work.scratch());
+  const std::size_t pairs = rings.edges.size() / 2;
+  const bool with_neighbors = buffers.neighbors.memory() != nullptr;
+  const bool with_halfedges = buffers.halfedges.memory() != nullptr;
+  const bool with_corners = with_neighbors || with_halfedges;
+  if (buffers.triangles.memory() != nullptr) {
+    const auto corner_of_edge = work.scratch().allocate<cl_int>(with_corners ? rings.edges.size() : 0);
+    runtime.chunks(pairs, runtime.sizes().chunk(pairs),
+                   kernels::write_triangles{.with_corners = with_corners,
+                                            .points = blocks.vertices,
+                                            .source = blocks.source,
+                                            .edges = rings.edges,
+                                            .first_rows = sizes.first_rows,
+                                            .triangles = buffers.triangles,
+                                            .corner_of_edge = corner_of_edge});
+    if (with_neighbors) {
+      runtime.map(
+          pairs, kernels::write_neighbors{
+                     .edges = rings.edges, .corner_of_edge = corner_of_edge, .neighbors = buffers.neighbors});
+    }
+    if (with_halfedges) {
+      runtime.map(
+          pairs, kernels::write_halfedges{
+                     .edges = rings.edges, .corner_of_edge = corner_of_edge, .halfedges = buffers.halfedges});
+    }
+  }
+  if (buffers.hull.memory() != nullptr) write_hulls(work, blocks, rings, sizes, buffers.hull);
+}
+
+}  // namespace flaunay::blocks

@@ -1,0 +1,74 @@
+// The stages of mode blocks and the data between them: divide turns blocks into edge rings, mesh turns edge
+// rings into triangles. Each stage is one file with the name of its kernel file. points/distribute.hpp makes
+// the blocks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "host/runtime.hpp"
+#include "points/distribute.hpp"
+#include "shared/limits.h"
+#include "shared/records.h"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::blocks {
+
+using namespace geometry;
+using namespace points;
+
+using host::Arena;
+using host::Buffer;
+
+/// Bytes of the persistent arena per point: vertices, their sources and edges, and the arrays of blocks.
+constexpr std::size_t kPersistentBytesPerPoint = 97;
+
+/// The triangulations of all sets, as rings of edges around their vertices.
+struct Rings {
+  Buffer<kernel::ring_edge> edges{};  ///< kernel::EDGES_PER_VERTEX per point
+  Buffer<cl_int> vertex_edge{};
+  Buffer<kernel::solved_block> solved{};
+  Buffer<cl_int> device_distinct{};
+  Buffer<cl_uint> device_undecided{};
+  std::vector<cl_int> distinct;  ///< number of vertices of each block
+  std::size_t undecided = 0;     ///< predicates that were evaluated exactly
+};
+
+/// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
+/// sets the numbers in Rings that are on the host.
+Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives);
+/// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
+std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
+void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
+
+/// The size of a mesh.
+struct MeshSizes {
+  std::vector<std::size_t> triangle_offsets, hull_offsets;  ///< sets + 1
+  std::size_t vertices = 0;
+  Buffer<cl_uint> first_rows{};  ///< the first triangle of each vertex; the last entry is their total
+
+  std::size_t triangles() const { return triangle_offsets.back(); }
+  std::size_t hull_vertices() const { return hull_offsets.back(); }
+};
+
+/// Counts triangles and hull vertices, and marks the edges on the hull in `rings`. first_rows are for
+/// write_mesh and come from the scratch arena. Waits once. Throws Error(internal) if numbers contradict each
+/// other.
+MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings);
+
+/// A triangle is written at its vertex in the middle; no vertex is in the middle of more than two triangles.
+constexpr std::size_t kMostTrianglesPerPoint = 2;
+
+/// The arrays for the parts of a mesh, as flaunay.hpp describes them. Parts that are not wanted have no
+/// memory.
+struct MeshBuffers {
+  Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{};
+};
+
+/// Writes the parts of the mesh. Neighbours and halfedges need the triangles. Does not wait.
+void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
+                const MeshBuffers& buffers);
+
+}  // namespace flaunay::blocks

@@ -1,0 +1,120 @@
+// The C interface to locators and their queries.
+#include <CL/cl.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::guarded;
+using c::required;
+
+struct flaunay_locator {
+  Locator cpp;
+};
+
+namespace {
+
+// compute(locator, offsets) returns one value per query; the values are copied to the caller's array.
+template <typename Value, typename Compute>
+flaunay_status answer(flaunay_locator* locator, const double* queries, size_t m, const size_t* offsets,
+                      size_t sets, Value* place, const Compute& compute) {
+  return guarded([&] {
+    Locator& cpp = required(locator, "the locator").cpp;
+    const std::vector<std::size_t> checked = c::to_offsets(offsets, sets, m);
+    if (m > 0) required(queries, "the queries");
+    if (m > 0) required(place, "the array of results");
+    const auto values = compute(cpp, checked);
+    std::copy(values.begin(), values.end(), place);
+  });
+}
+
+// compute(locator, queries, buffer, enqueue) writes to the caller's buffer. If there is none, it writes to a
+// new buffer, which the caller receives.
+template <typename Compute>
+flaunay_status answer_on_device(flaunay_locator* locator, const flaunay_device_points* queries,
+                                const flaunay_enqueue* enqueue, cl_mem* place, const Compute& compute) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Locator& cpp = required(locator, "the locator").cpp;
+    DeviceBuffer buffer = c::to_buffer(required(place, "the pointer to the buffer of results"));
+    compute(cpp, c::to_points(queries), buffer, queued);
+    if (*place == nullptr && buffer.memory() != nullptr) {
+      clRetainMemObject(buffer.memory());
+      *place = buffer.memory();
+    }
+  });
+}
+
+}  // namespace
+
+flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+                                      const size_t* offsets, size_t sets,
+                                      const flaunay_triangulation* triangulation, flaunay_locator** locator) {
+  return create(locator, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const Triangulation& searched = required(triangulation, "the triangulation").cpp;
+    return std::make_unique<flaunay_locator>(
+        flaunay_locator{Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched)});
+  });
+}
+
+flaunay_status flaunay_locator_create_device(flaunay_triangulator* triangulator,
+                                             const flaunay_device_points* points,
+                                             const flaunay_device_triangulation* triangulation,
+                                             const flaunay_enqueue* enqueue, flaunay_locator** locator) {
+  return create(locator, [&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const DeviceTriangulation& searched = required(triangulation, "the triangulation").cpp;
+    return std::make_unique<flaunay_locator>(
+        flaunay_locator{Locator(cpp, c::to_points(points), searched, queued)});
+  });
+}
+
+void flaunay_locator_destroy(flaunay_locator* locator) { delete locator; }
+
+flaunay_status flaunay_locator_locate(flaunay_locator* locator, const double* queries, size_t m,
+                                      const size_t* offsets, size_t sets, int32_t* triangles) {
+  return answer(locator, queries, m, offsets, sets, triangles,
+                [&](Locator& cpp, const auto& checked) { return cpp.locate(queries, checked); });
+}
+
+flaunay_status flaunay_locator_nearest(flaunay_locator* locator, const double* queries, size_t m,
+                                       const size_t* offsets, size_t sets, int32_t* points) {
+  return answer(locator, queries, m, offsets, sets, points,
+                [&](Locator& cpp, const auto& checked) { return cpp.nearest(queries, checked); });
+}
+
+flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
+                                           const double* queries, size_t m, const size_t* offsets,
+                                           size_t sets, double* results) {
+  return answer(locator, queries, m, offsets, sets, results, [&](Locator& cpp, const auto& checked) {
+    if (m > 0) required(values, "the values of points");
+    return cpp.interpolate(values, queries, checked);
+  });
+}
+
+flaunay_status flaunay_locator_locate_device(flaunay_locator* locator, const flaunay_device_points* queries,
+                                             const flaunay_enqueue* enqueue, cl_mem* triangles) {
+  return answer_on_device(locator, queries, enqueue, triangles,
+                          [](Locator& cpp, auto&&... given) { cpp.locate(given...); });
+}
+
+flaunay_status flaunay_locator_nearest_device(flaunay_locator* locator, const flaunay_device_points* queries,
+                                              const flaunay_enqueue* enqueue, cl_mem* points) {
+  return answer_on_device(locator, queries, enqueue, points,
+                          [](Locator& cpp, auto&&... given) { cpp.nearest(given...); });
+}
+
+flaunay_status flaunay_locator_interpolate_device(flaunay_locator* locator, cl_mem values,
+                                                  const flaunay_device_points* queries,
+                                                  const flaunay_enqueue* enqueue, cl_mem* results) {
+  return answer_on_device(locator, queries, enqueue, results,
+                          [&](Locator& cpp, auto&&... given) { cpp.interpolate(values, given...); });
+}

@@ -1,0 +1,110 @@
+// The C interface to Voronoi diagrams.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::guarded;
+using c::read;
+using c::required;
+
+struct flaunay_voronoi {
+  Voronoi cpp;
+};
+
+struct flaunay_device_voronoi {
+  DeviceVoronoi cpp;
+};
+
+namespace {
+
+template <typename Handle>
+auto& buffer_of(Handle& voronoi, unsigned part) {
+  switch (part) {
+    case FLAUNAY_VORONOI_CIRCUMCENTRES:
+      return voronoi.cpp.circumcentres;
+    case FLAUNAY_VORONOI_CELL_OFFSETS:
+      return voronoi.cpp.cell_offsets;
+    case FLAUNAY_VORONOI_CELLS:
+      return voronoi.cpp.cells;
+    case FLAUNAY_VORONOI_UNBOUNDED:
+      return voronoi.cpp.unbounded;
+  }
+  throw Error(ErrorKind::usage, fmt::format("{} is not one part of a Voronoi diagram", part));
+}
+
+}  // namespace
+
+flaunay_status flaunay_voronoi_compute(flaunay_triangulator* triangulator, const double* coordinates,
+                                       size_t n, const flaunay_triangulation* triangulation,
+                                       flaunay_voronoi** voronoi) {
+  return create(voronoi, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const Triangulation& primal = required(triangulation, "the triangulation").cpp;
+    return std::make_unique<flaunay_voronoi>(flaunay_voronoi{cpp.voronoi(coordinates, n, primal)});
+  });
+}
+
+void flaunay_voronoi_destroy(flaunay_voronoi* voronoi) { delete voronoi; }
+
+size_t flaunay_voronoi_point_count(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return handle.cpp.unbounded.size(); });
+}
+
+size_t flaunay_voronoi_triangle_count(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return handle.cpp.circumcentres.size() / 2; });
+}
+
+size_t flaunay_voronoi_corner_count(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return handle.cpp.cells.size(); });
+}
+
+const double* flaunay_voronoi_circumcentres(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.circumcentres); });
+}
+
+const int32_t* flaunay_voronoi_cell_offsets(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.cell_offsets); });
+}
+
+const int32_t* flaunay_voronoi_cells(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.cells); });
+}
+
+const uint8_t* flaunay_voronoi_unbounded(const flaunay_voronoi* voronoi) {
+  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.unbounded); });
+}
+
+flaunay_status flaunay_device_voronoi_create(flaunay_device_voronoi** voronoi) {
+  return create(voronoi, [] { return std::make_unique<flaunay_device_voronoi>(); });
+}
+
+void flaunay_device_voronoi_destroy(flaunay_device_voronoi* voronoi) { delete voronoi; }
+
+flaunay_status flaunay_device_voronoi_set_buffer(flaunay_device_voronoi* voronoi, unsigned part,
+                                                 cl_mem memory) {
+  return guarded([&] { buffer_of(required(voronoi, "the Voronoi diagram"), part) = c::to_buffer(memory); });
+}
+
+cl_mem flaunay_device_voronoi_buffer(const flaunay_device_voronoi* voronoi, unsigned part) {
+  return read(voronoi, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
+}
+
+flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* triangulator,
+                                              const flaunay_device_points* points,
+                                              const flaunay_device_triangulation* triangulation,
+                                              const flaunay_enqueue* enqueue,
+                                              flaunay_device_voronoi* result) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const DeviceTriangulation& primal = required(triangulation, "the triangulation").cpp;
+    cpp.voronoi(c::to_points(points), primal, required(result, "the result").cpp, queued);
+  });
+}

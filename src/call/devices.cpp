@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <boost/compute/platform.hpp>
+
+#include "call/device_info.hpp"
+#include "call/errors.hpp"
+#include "call/self_test.hpp"
+#include "host/device.hpp"
+#include "launchers/call/self_test.cl.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay {
+namespace call {
+
+std::string self_test_failure(host::Runtime& runtime) {
+  // Operands as in kernels/call/self_test.cl, and their results, which were computed with rational
+  // arithmetic.
+  const cl_double operands[] = {1 + 0x1p-30, 1 - 0x1p-30,          -1.0,
+                                0x1p-1060,   0x1.5555555555555p-2, 0x1.0000000000001p+60};
+  const cl_ulong expected[] = {0x0000000000000000, 0xbc30000000000000, 0x0000000000002000,
+                               0x43b0000000000001, 0x3fbc71c71c71c71c, 0x3fd5555555555555,
+                               0xbc5c71c71c71c71c, 0x0000000000000000};
+  static const char* const checks[] = {
+      "contraction is off",    "fma rounds once",           "subnormal numbers are kept",
+      "sums round to nearest", "products round to nearest", "two_sum is exact",
+      "two_product is exact",  "vectors round as scalars",  "sums are not reordered"};
+  host::Arena::Scope scope(runtime.arena());
+  const auto device_operands = runtime.arena().allocate<cl_double>(std::size(operands));
+  const auto device_expected = runtime.arena().allocate<cl_ulong>(std::size(expected));
+  const auto failed = runtime.arena().allocate<cl_uint>(1);
+  runtime.write(device_operands, 0, std::size(operands), operands);
+  runtime.write(device_expected, 0, std::size(expected), expected);
+  runtime.launch(
+      1, 1, kernels::self_test{.operands = device_operands, .expected = device_expected, .failed = failed});
+  const cl_uint bits = runtime.read_one(failed, 0);
+  std::string failure;
+  for (std::size_t k = 0; k < std::size(checks); ++k) {
+    if (bits >> k & 1)
+      failure += fmt::format("{}it does not hold that {}", failure.empty() ? "" : "; ", checks[k]);
+  }
+  return failure;
+}
+
+DeviceInfo describe(const boost::compute::device& device) {
+  DeviceInfo info;
+  info.name = device.name();
+  info.platform = device.platform().name();
+  info.vendor = device.vendor();
+  info.driver = device.driver_version();
+  info.version = device.get_info<std::string>(CL_DEVICE_VERSION);
+  const cl_device_type type = device.type();
+  info.type = type & CL_DEVICE_TYPE_GPU ? "GPU" : type & CL_DEVICE_TYPE_CPU ? "CPU" : "accelerator";
+  info.compute_units = device.compute_units();
+  info.clock_mhz = device.clock_frequency();
+  info.memory_bytes = device.global_memory_size();
+  info.largest_buffer_bytes = device.max_memory_alloc_size();
+  info.local_memory_bytes = device.local_memory_size();
+  info.work_group_size = device.max_work_group_size();
+  info.fp64 = host::has_fp64(device);
+  return info;
+}
+
+}  // namespace call
+
+std::vector<DeviceInfo> list_devices(bool self_test) {
+  return with_errors([&] {
+    std::vector<DeviceInfo> infos;
+    for (const boost::compute::device& device : host::all_devices()) {
+      DeviceInfo info = call::describe(device);
+      if (self_test && info.fp64) {
+        try {
+          host::Runtime runtime(device, tuning_for(device));
+          info.self_test_failure = call::self_test_failure(runtime);
+          info.self_test_passed = info.self_test_failure.empty();
+        } catch (const std::exception& error) {
+          info.self_test_failure = error.what();
+        }
+      } else if (self_test) {
+        info.self_test_failure = "no double precision (fp64)";
+      }
+      infos.push_back(info);
+    }
+    return infos;
+  });
+}
+
+}  // namespace flaunay

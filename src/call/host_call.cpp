@@ -1,0 +1,138 @@
+#include "call/host_call.hpp"
+
+#include <cstdint>
+#include <utility>
+
+#include "blocks/run.hpp"
+#include "points/inspect.hpp"
+
+namespace flaunay::call {
+
+using host::Arena;
+using host::Buffer;
+
+namespace {
+
+// An array of results with three entries per triangle.
+class Rows {
+ public:
+  Rows(host::Runtime& runtime, std::vector<std::int32_t>& values, bool is_wanted)
+      : runtime_(runtime), values_(values), is_wanted_(is_wanted) {}
+
+  // Touches the memory while the device computes; otherwise page faults would take longer than writing the
+  // results.
+  void reserve(std::size_t triangles) {
+    if (!is_wanted_) return;
+    values_.reserve(3 * triangles);
+    host::prefer_huge_pages(values_.data(), 3 * triangles * sizeof(std::int32_t));
+    values_.resize(3 * triangles);
+  }
+  // The buffer to which kernels write this many triangles. If more than half of the memory is unused, it is
+  // released.
+  Buffer<cl_int> buffer(std::size_t triangles) {
+    if (!is_wanted_) return {};
+    values_.resize(3 * triangles);
+    if (values_.capacity() / 2 > values_.size()) values_.shrink_to_fit();
+    buffer_ = runtime_.output(values_);
+    return buffer_;
+  }
+  void fetch_later() { runtime_.fetch_later(buffer_, values_); }
+
+ private:
+  host::Runtime& runtime_;
+  std::vector<std::int32_t>& values_;
+  bool is_wanted_;
+  Buffer<cl_int> buffer_;
+};
+
+// Points and results in host memory. A device that works in host memory uses them in place.
+class HostExchange : public blocks::Exchange {
+ public:
+  HostExchange(host::Runtime& runtime, const HostPoints& points, std::size_t n, const Options& options,
+               Triangulation& result)
+      : runtime_(runtime),
+        points_(points),
+        n_(n),
+        result_(result),
+        rows_{{runtime, result.triangles, true},
+              {runtime, result.neighbors, options.neighbors},
+              {runtime, result.halfedges, options.halfedges}} {}
+
+  Buffer<cl_double> points() override {
+    if (points_.wide != nullptr) return runtime_.view(points_.wide, 2 * n_);
+    const auto wide = runtime_.arena().allocate<cl_double>(2 * n_);
+    Arena::Scope scope(runtime_.arena());
+    points::widen(runtime_, runtime_.view(points_.narrow, 2 * n_), 0, n_, wide);
+    return wide;
+  }
+
+  Buffer<cl_int> representatives() override {
+    result_.representatives.resize(n_);
+    representatives_ = runtime_.output(result_.representatives);
+    return representatives_;
+  }
+
+  void while_device_computes() override {
+    for (Rows& rows : rows_) rows.reserve(blocks::kMostTrianglesPerPoint * n_);
+  }
+
+  blocks::MeshBuffers mesh(const blocks::MeshSizes& sizes) override {
+    result_.hull.resize(sizes.hull_vertices());
+    hull_ = runtime_.output(result_.hull);
+    return {rows_[0].buffer(sizes.triangles()), rows_[1].buffer(sizes.triangles()),
+            rows_[2].buffer(sizes.triangles()), hull_};
+  }
+
+  void fetch() {
+    runtime_.fetch_later(representatives_, result_.representatives);
+    for (Rows& rows : rows_) rows.fetch_later();
+    runtime_.fetch_later(hull_, result_.hull);
+    runtime_.finish();
+  }
+
+ private:
+  host::Runtime& runtime_;
+  const HostPoints& points_;
+  std::size_t n_;
+  Triangulation& result_;
+  Rows rows_[3];
+  Buffer<cl_int> representatives_{}, hull_{};
+};
+
+}  // namespace
+
+Triangulation empty_result(Implementation& self, std::size_t sets) {
+  Triangulation result;
+  result.statistics.device = self.runtime.device().name();
+  result.triangle_offsets.assign(sets + 1, 0);
+  result.hull_offsets.assign(sets + 1, 0);
+  return result;
+}
+
+Triangulation triangulate(Implementation& self, const HostPoints& points,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  const std::size_t n = offsets.back();
+  const std::size_t sets = offsets.size() - 1;
+  Triangulation result = empty_result(self, sets);
+  if (n == 0) return result;
+  statistics::Phases phases(options);
+  self.begin_call(options.profile);
+  if (self.workspace != nullptr) self.provide_memory(n, sets);
+  Arena::Scope scope(self.persistent), scratch_scope(self.runtime.arena());
+  self.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+  const host::Runtime::Settled settled(self.runtime);
+  HostExchange exchange(self.runtime, points, n, options, result);
+  blocks::Outcome outcome = blocks::run(self.runtime, self.persistent, offsets, exchange, phases);
+  exchange.fetch();
+  phases.end("output");
+
+  outcome.write(n, result.statistics);
+  result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
+  result.hull_offsets = std::move(outcome.sizes.hull_offsets);
+  self.write_accounts(result.statistics);
+  phases.write(result.statistics);
+  phases.progress("output", 1);
+  return result;
+}
+
+}  // namespace flaunay::call

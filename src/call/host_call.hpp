@@ -1,0 +1,24 @@
+// Mode blocks for points and results in host memory.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "call/implementation.hpp"
+
+namespace flaunay::call {
+
+/// Coordinates in host memory, x0 y0 x1 y1 ..., in double or single precision; the other pointer is null.
+struct HostPoints {
+  const double* wide = nullptr;
+  const float* narrow = nullptr;
+};
+
+/// Implements Triangulator::triangulate for host memory. The offsets must have been checked.
+Triangulation triangulate(Implementation& self, const HostPoints& points,
+                          const std::vector<std::size_t>& offsets, const Options& options);
+
+/// Returns a result for this many sets without any triangles.
+Triangulation empty_result(Implementation& self, std::size_t sets);
+
+}  // namespace flaunay::call

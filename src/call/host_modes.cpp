@@ -1,0 +1,47 @@
+#include "call/host_modes.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "geometry/sort.hpp"
+
+namespace flaunay::call {
+namespace {
+
+void count_sorting(const geometry::PointSets& sets, const std::vector<std::size_t>& offsets,
+                   research::Work& work) {
+  std::uint64_t path = 0;
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    path = std::max(path, geometry::depth_of_sort(offsets[s + 1] - offsets[s]));
+  }
+  research::OperationCounts& start = work.start[static_cast<std::size_t>(research::Component::cut)];
+  start.arithmetic += sets.comparisons;
+  start.critical_path += path;
+}
+
+}  // namespace
+
+research::Triangulation run_on_host(const double* coordinates, const Request& request, HostMode mode) {
+  const research::Options& options = request.options;
+  statistics::Phases phases(options);
+  phases.progress("sort", 0);
+  const geometry::PointSets sets = geometry::ingest(coordinates, request.offsets);
+  phases.end("sort");
+
+  phases.progress("triangulate", statistics::kSorted);
+  research::Triangulation counted;
+  geometry::Mesh mesh = mode(sets, options, phases, counted);
+  if (options.count) count_sorting(sets, request.offsets, counted.work);
+  phases.end("triangulate");
+
+  phases.progress("canonical form", statistics::kTriangulated);
+  static_cast<Triangulation&>(counted) =
+      geometry::finish(sets, std::move(mesh.triangles), std::move(mesh.twins), options);
+  phases.end("canonical form");
+  phases.write(counted.statistics);
+  phases.progress("canonical form", 1);
+  return counted;
+}
+
+}  // namespace flaunay::call

@@ -1,0 +1,178 @@
+// The public class Locator.
+#include "locate/locator.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "call/device_mesh.hpp"
+#include "call/errors.hpp"
+#include "call/handles.hpp"
+#include "geometry/magnitudes.hpp"
+
+namespace flaunay {
+
+using host::Arena;
+using host::Buffer;
+
+struct Locator::Implementation {
+  explicit Implementation(std::shared_ptr<Triangulator::Implementation> used)
+      : owner(std::move(used)), own(owner->runtime.context(), owner->runtime.device()) {
+    if (owner->runtime.sizes().separate_buffers) own.separate_buffers();
+  }
+
+  // Kernels use 32-bit indices for the coordinates of queries.
+  static void check_queries(std::size_t m) {
+    call::expect(m <= std::numeric_limits<std::int32_t>::max() / 2,
+                 "more queries than 32-bit indices can count");
+  }
+
+  /// Answers queries in host memory. work(runtime, queries, m, offsets, results) enqueues the kernels that
+  /// write the results.
+  template <typename Result, typename Work>
+  std::vector<Result> answer(const double* queries, const std::vector<std::size_t>& offsets,
+                             const Work& work) {
+    return with_errors([&] {
+      geometry::check_offsets(offsets);
+      const std::size_t m = offsets.back();
+      check_queries(m);
+      call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
+      const call::OwnCall own_call(*owner);
+      host::Runtime& runtime = own_call.runtime;
+      std::vector<Result> result(m);
+      const host::Runtime::Settled settled(runtime);
+      const auto output = runtime.output(result);
+      work(runtime, runtime.view(queries, 2 * m), m, offsets, output);
+      runtime.fetch_later(output, result);
+      runtime.finish();
+      return result;
+    });
+  }
+
+  /// Answers queries in device memory. values: a further buffer that is read, or null.
+  template <typename Result, typename Work>
+  void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
+              const Enqueue& enqueue, const Work& work) {
+    with_errors([&] {
+      owner->use_own_memory();
+      host::Runtime& runtime = owner->runtime;
+      call::check_enqueue(runtime, enqueue);
+      call::check_points(runtime, queries, "queries");
+      call::QueuedCall queued(runtime, enqueue);
+      Arena::Scope scope(runtime.arena());
+      check_queries(queries.count);
+      const std::vector<std::size_t> offsets = call::checked_offsets(runtime, queries);
+      const auto output =
+          call::result_buffer<Result>(runtime, result, queries.count, what, owner->buffer_allocations);
+      call::check_distinct({queries.memory, queries.device_offsets, values, result.memory()});
+      work(runtime, call::wide_points(runtime, runtime.arena(), queries), queries.count, offsets, output);
+      queued.end();
+    });
+  }
+
+  std::shared_ptr<Triangulator::Implementation> owner;
+  Arena own;
+  locate::Locator locator;
+  std::size_t points = 0;
+};
+
+std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator) {
+  return with_errors([&] { return std::make_unique<Implementation>(triangulator.implementation_); });
+}
+
+Locator::Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
+                 const Triangulation& triangulation)
+    : Locator(triangulator, coordinates, std::vector<std::size_t>{0, n}, triangulation) {}
+
+Locator::Locator(Triangulator& triangulator, const double* coordinates,
+                 const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
+    : implementation_(make(triangulator)) {
+  with_errors([&] {
+    implementation_->owner->check_size(offsets.empty() ? 0 : offsets.back());
+    const call::OwnCall own_call(*implementation_->owner);
+    const host::Runtime::Settled settled(own_call.runtime);
+    const points::DeviceMesh mesh = call::mesh_of(own_call.runtime, coordinates, offsets, triangulation);
+    implementation_->locator = locate::make_locator(own_call.runtime, implementation_->own, mesh);
+    implementation_->points = offsets.back();
+    own_call.runtime.finish();
+  });
+}
+
+Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
+                 const DeviceTriangulation& triangulation, const Enqueue& enqueue)
+    : implementation_(make(triangulator)) {
+  with_errors([&] {
+    Triangulator::Implementation& owner = *implementation_->owner;
+    owner.use_own_memory();
+    host::Runtime& runtime = owner.runtime;
+    call::check_enqueue(runtime, enqueue);
+    call::check_points(runtime, points, "points");
+    call::QueuedCall queued(runtime, enqueue);
+    Arena::Scope scope(runtime.arena());
+    implementation_->locator =
+        locate::make_locator(runtime, implementation_->own, call::mesh_of(runtime, points, triangulation));
+    implementation_->points = points.count;
+    queued.end();
+  });
+}
+
+Locator::~Locator() = default;
+Locator::Locator(Locator&&) noexcept = default;
+Locator& Locator::operator=(Locator&&) noexcept = default;
+
+std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) {
+  return locate(queries, std::vector<std::size_t>{0, m});
+}
+
+std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
+  return implementation_->answer<std::int32_t>(queries, offsets, [&](auto& runtime, const auto&... all) {
+    locate::locate(runtime, implementation_->locator, all...);
+  });
+}
+
+void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
+  implementation_->answer<cl_int>(
+      queries, nullptr, triangles, "located triangles", enqueue,
+      [&](auto& runtime, const auto&... all) { locate::locate(runtime, implementation_->locator, all...); });
+}
+
+std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m) {
+  return nearest(queries, std::vector<std::size_t>{0, m});
+}
+
+std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
+  return implementation_->answer<std::int32_t>(queries, offsets, [&](auto& runtime, const auto&... all) {
+    locate::nearest(runtime, implementation_->locator, all...);
+  });
+}
+
+void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
+  implementation_->answer<cl_int>(
+      queries, nullptr, points, "nearest points", enqueue,
+      [&](auto& runtime, const auto&... all) { locate::nearest(runtime, implementation_->locator, all...); });
+}
+
+std::vector<double> Locator::interpolate(const double* values, const double* queries, std::size_t m) {
+  return interpolate(values, queries, std::vector<std::size_t>{0, m});
+}
+
+std::vector<double> Locator::interpolate(const double* values, const double* queries,
+                                         const std::vector<std::size_t>& offsets) {
+  const std::size_t n = implementation_->points;
+  if (n > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
+  return implementation_->answer<double>(queries, offsets, [&](auto& runtime, const auto&... all) {
+    locate::interpolate(runtime, implementation_->locator, runtime.view(values, n), all...);
+  });
+}
+
+void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
+                          const Enqueue& enqueue) {
+  const std::size_t n = implementation_->points;
+  implementation_->answer<cl_double>(
+      queries, values, results, "interpolated values", enqueue, [&](auto& runtime, const auto&... all) {
+        call::check_buffer(runtime, values, n * sizeof(cl_double), call::Access::read, "values");
+        const Buffer<cl_double> given(values == nullptr ? nullptr : call::retained(values), n);
+        locate::interpolate(runtime, implementation_->locator, given, all...);
+      });
+}
+
+}  // namespace flaunay

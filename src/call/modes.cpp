@@ -1,0 +1,150 @@
+#include "call/modes.hpp"
+
+#include <array>
+#include <utility>
+
+#include "call/host_modes.hpp"
+#include "dwyer/run.hpp"
+#include "flattened/run.hpp"
+#include "partition/regions.hpp"
+#include "recursive/run.hpp"
+
+namespace flaunay {
+namespace call {
+namespace {
+
+using research::Mode;
+
+research::Triangulation run_blocks(Implementation& self, const Request& request) {
+  research::Triangulation result;
+  static_cast<Triangulation&>(result) = triangulate(self, request.points, request.offsets, request.options);
+  return result;
+}
+
+// Runs the modes that go level by level on the device. solve_regions: empty except in Mode::partition.
+research::Triangulation run_levels(Implementation& self, const Request& request, int partition_levels,
+                                   const flattened::SolveRegions& solve_regions) {
+  const std::size_t n = request.offsets.back();
+  research::Triangulation result;
+  static_cast<Triangulation&>(result) = empty_result(self, request.offsets.size() - 1);
+  if (n == 0) return result;
+  const std::vector<double> doubles = widened(request.points, n);
+  const double* const coordinates = doubles.empty() ? request.points.wide : doubles.data();
+  self.begin_call(request.options.profile);
+  flattened::run(self.runtime, {self.persistent, self.even, self.odd}, coordinates, request.offsets,
+                 request.options, partition_levels, solve_regions, result);
+  self.write_accounts(result.statistics);
+  return result;
+}
+
+research::Triangulation run_flattened(Implementation& self, const Request& request) {
+  return run_levels(self, request, 0, {});
+}
+
+// Dwyer's algorithm triangulates the regions that are left after the levels.
+research::Triangulation run_partition(Implementation& self, const Request& request) {
+  const research::Options& options = request.options;
+  const int levels = partition::levels_for(request.offsets.back(), options.partition_levels, options.threads);
+  return run_levels(self, request, levels,
+                    [&](const geometry::PointSets& sets, const geometry::RegionArrays& regions,
+                        research::OperationCounts* counts) {
+                      return partition::solve_regions(sets.predicates, sets.points.data(), regions,
+                                                      dwyer::triangulate, options.threads, counts);
+                    });
+}
+
+research::Triangulation run_recursive(const double* coordinates, const Request& request) {
+  return run_on_host(coordinates, request,
+                     [](const geometry::PointSets& sets, const research::Options& options,
+                        const statistics::Phases&, research::Triangulation& result) {
+                       // Regions too large for the end game are triangulated like those of a partition.
+                       const auto solve_region = [&sets](const geometry::RegionArrays& region,
+                                                         research::Work& work) {
+                         return partition::solve_region(sets.predicates, sets.points.data(), region, 0,
+                                                        dwyer::triangulate, &work);
+                       };
+                       return geometry::Mesh{recursive::run(sets, options, solve_region, result), {}};
+                     });
+}
+
+research::Triangulation run_dwyer(const double* coordinates, const Request& request) {
+  return run_on_host(coordinates, request, dwyer::run);
+}
+
+const std::array<ModeRow, 6> kModes = {{
+    {{Mode::blocks, "blocks", "blocks of points triangulated one per work-item, and merged (default)", false,
+      false, false},
+     run_blocks,
+     nullptr},
+    {{Mode::flattened, "flattened", "all regions of a level at once, down to single points: no merge", false,
+      true, true},
+     run_flattened,
+     nullptr},
+    {{Mode::recursive_device, "recursive-device", "the same kernels, one region at a time", false, true,
+      true},
+     run_flattened,
+     nullptr},
+    {{Mode::recursive, "recursive", "plain recursion on the host, one thread", true, true, true},
+     nullptr,
+     run_recursive},
+    {{Mode::partition, "partition", "some levels on the device, then Dwyer's algorithm on host threads",
+      false, true, true},
+     run_partition,
+     nullptr},
+    {{Mode::dwyer, "dwyer", "Dwyer's algorithm on the host, one thread", true, false, true},
+     nullptr,
+     run_dwyer},
+}};
+
+}  // namespace
+
+std::vector<double> widened(const HostPoints& points, std::size_t n) {
+  return points.narrow == nullptr ? std::vector<double>()
+                                  : std::vector<double>(points.narrow, points.narrow + 2 * n);
+}
+
+const ModeRow& row_of(research::Mode mode) {
+  for (const ModeRow& row : kModes) {
+    if (row.info.mode == mode) return row;
+  }
+  throw Error(ErrorKind::usage, "there is no such mode");
+}
+
+}  // namespace call
+
+namespace research {
+
+const std::vector<ModeInfo>& list_modes() {
+  static const std::vector<ModeInfo> modes = [] {
+    std::vector<ModeInfo> infos;
+    for (const call::ModeRow& row : call::kModes) infos.push_back(row.info);
+    return infos;
+  }();
+  return modes;
+}
+
+const char* to_string(Mode mode) noexcept {
+  for (const call::ModeRow& row : call::kModes) {
+    if (row.info.mode == mode) return row.info.name;
+  }
+  return "";
+}
+
+const char* to_string(Cut cut) noexcept { return cut == Cut::alternate ? "alternate" : "iqr"; }
+
+const char* to_string(Hull hull) noexcept {
+  switch (hull) {
+    case Hull::prune:
+      return "prune";
+    case Hull::quickhull:
+      return "quickhull";
+    case Hull::balanced:
+      return "balanced";
+    case Hull::monotone_chain:
+      return "monotone-chain";
+  }
+  return "";
+}
+
+}  // namespace research
+}  // namespace flaunay

@@ -1,0 +1,33 @@
+// The table of modes, one row per mode, with what it supports and how it is run.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "call/host_call.hpp"
+#include "flaunay/research.hpp"
+
+namespace flaunay::call {
+
+/// The input of every mode. Offsets, options and the number of points have been checked.
+struct Request {
+  const HostPoints& points;
+  const std::vector<std::size_t>& offsets;
+  const research::Options& options;
+};
+
+struct ModeRow {
+  research::ModeInfo info;
+  /// Runs the mode on the device of a Triangulator; null for a mode that runs on the host.
+  research::Triangulation (*on_device)(Implementation& self, const Request& request);
+  /// Runs the mode on the host; null for a mode that runs on the device. coordinates: in double precision.
+  research::Triangulation (*on_host)(const double* coordinates, const Request& request);
+};
+
+/// Converts the points to double precision. Returns an empty vector if they already are in it.
+std::vector<double> widened(const HostPoints& points, std::size_t n);
+
+/// The row of a mode. Throws Error(usage) for an unknown mode.
+const ModeRow& row_of(research::Mode mode);
+
+}  // namespace flaunay::call

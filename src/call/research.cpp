@@ -1,0 +1,101 @@
+// The functions of flaunay/research.hpp that triangulate.
+#include "flaunay/research.hpp"
+
+#include <fmt/format.h>
+
+#include "call/errors.hpp"
+#include "call/modes.hpp"
+#include "flattened/run.hpp"
+#include "geometry/magnitudes.hpp"
+
+namespace flaunay::research {
+namespace {
+
+void check_options(const Options& options) {
+  const ModeInfo& mode = call::row_of(options.mode).info;
+  if (options.hull == Hull::monotone_chain && options.mode != Mode::recursive && !mode.on_host) {
+    throw Error(ErrorKind::usage, "monotone-chain hulls are computed by mode recursive only");
+  }
+  if (options.count && !mode.counts) {
+    throw Error(ErrorKind::usage,
+                fmt::format("mode {} does not count operations; take flattened", mode.name));
+  }
+}
+
+Triangulation checked_call(Triangulator& triangulator, const call::HostPoints& points,
+                           const std::vector<std::size_t>& offsets, const Options& options) {
+  return with_errors([&] {
+    geometry::check_offsets(offsets);
+    const std::size_t n = offsets.back();
+    if (points.narrow == nullptr) geometry::check_coordinates(points.wide, n);
+    const call::ModeRow& row = call::row_of(options.mode);
+    const call::Request request{points, offsets, options};
+    if (row.on_host != nullptr) {
+      const std::vector<double> doubles = call::widened(points, n);
+      return row.on_host(points.narrow != nullptr ? doubles.data() : points.wide, request);
+    }
+    check_options(options);
+    call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+    self.check_size(n);
+    return row.on_device(self, request);
+  });
+}
+
+}  // namespace
+
+Triangulation triangulate(Triangulator& triangulator, const double* coordinates, std::size_t n,
+                          const Options& options) {
+  return triangulate(triangulator, coordinates, std::vector<std::size_t>{0, n}, options);
+}
+
+Triangulation triangulate(Triangulator& triangulator, const float* coordinates, std::size_t n,
+                          const Options& options) {
+  return triangulate(triangulator, coordinates, std::vector<std::size_t>{0, n}, options);
+}
+
+Triangulation triangulate(Triangulator& triangulator, const double* coordinates,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  return checked_call(triangulator, {coordinates, nullptr}, offsets, options);
+}
+
+Triangulation triangulate(Triangulator& triangulator, const float* coordinates,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  return checked_call(triangulator, {nullptr, coordinates}, offsets, options);
+}
+
+Triangulation triangulate_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                  const Options& options) {
+  const call::ModeRow& row = call::row_of(options.mode);
+  if (row.on_host == nullptr) {
+    std::string names;
+    for (const ModeInfo& mode : list_modes()) {
+      if (mode.on_host) names += (names.empty() ? "" : " and ") + std::string(mode.name);
+    }
+    throw Error(ErrorKind::usage, fmt::format("only the modes {} run without a device", names));
+  }
+  return row.on_host(coordinates, {{coordinates, nullptr}, offsets, options});
+}
+
+Partition partition(Triangulator& triangulator, const double* coordinates, std::size_t n, int levels,
+                    const Options& options) {
+  return with_errors([&] {
+    if (levels < 0) throw Error(ErrorKind::usage, "a partition's number of levels cannot be negative");
+    Options uncounted = options;
+    uncounted.mode = Mode::flattened;
+    uncounted.count = false;
+    check_options(uncounted);
+    call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+    self.check_size(n);
+    geometry::check_coordinates(coordinates, n);
+    Partition result;
+    result.statistics.device = self.runtime.device().name();
+    if (n == 0) return result;
+    self.begin_call(options.profile);
+    flattened::partition(self.runtime, {self.persistent, self.even, self.odd}, coordinates, n, levels,
+                         uncounted, result);
+    self.write_accounts(result.statistics);
+    return result;
+  });
+}
+
+}  // namespace flaunay::research

@@ -1,0 +1,148 @@
+// The public members of Triangulator, which turn errors of OpenCL into Errors. Other files do the work.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "blocks/memory.hpp"
+#include "call/device_call.hpp"
+#include "call/device_info.hpp"
+#include "call/errors.hpp"
+#include "call/handles.hpp"
+#include "call/host_call.hpp"
+#include "call/implementation.hpp"
+#include "geometry/magnitudes.hpp"
+
+namespace flaunay {
+namespace {
+
+boost::compute::device checked_member(cl_context context, cl_device_id device) {
+  if (context == nullptr || device == nullptr) {
+    throw Error(ErrorKind::usage, "a triangulator needs a context and a device, or neither");
+  }
+  std::size_t bytes = 0;
+  const cl_int code = clGetContextInfo(context, CL_CONTEXT_DEVICES, 0, nullptr, &bytes);
+  if (code != CL_SUCCESS) {
+    throw Error(ErrorKind::usage, fmt::format("the context is none: {}", host::error_name(code)), code,
+                "clGetContextInfo");
+  }
+  std::vector<cl_device_id> members(bytes / sizeof(cl_device_id));
+  FLAUNAY_CL(clGetContextInfo(context, CL_CONTEXT_DEVICES, bytes, members.data(), nullptr));
+  if (std::find(members.begin(), members.end(), device) == members.end()) {
+    throw Error(ErrorKind::usage, "the device is not one of the context");
+  }
+  return boost::compute::device(device);
+}
+
+Triangulation checked_call(call::Implementation& self, const call::HostPoints& points,
+                           const std::vector<std::size_t>& offsets, const Options& options) {
+  geometry::check_offsets(offsets);
+  if (points.narrow == nullptr) geometry::check_coordinates(points.wide, offsets.back());
+  self.check_size(offsets.back());
+  return call::triangulate(self, points, offsets, options);
+}
+
+}  // namespace
+
+Triangulator::Triangulator(const std::string& device)
+    : implementation_(with_errors([&] { return std::make_shared<Implementation>(device); })) {}
+
+Triangulator::Triangulator(cl_context context, cl_device_id device)
+    : implementation_(with_errors([&] {
+        const boost::compute::device member = checked_member(context, device);
+        return std::make_shared<Implementation>(boost::compute::context(context), member);
+      })) {}
+
+Triangulator::~Triangulator() {
+  // Waits even if a locator keeps the runtime alive. A destructor cannot report errors, so they are ignored.
+  if (implementation_) clFinish(implementation_->runtime.queue());
+}
+Triangulator::Triangulator(Triangulator&&) noexcept = default;
+Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
+
+DeviceInfo Triangulator::device() const {
+  return with_errors([&] {
+    DeviceInfo info = call::describe(implementation_->runtime.device());
+    info.self_test_passed = true;
+    return info;
+  });
+}
+
+cl_context Triangulator::context() const noexcept { return implementation_->runtime.context().get(); }
+cl_device_id Triangulator::device_id() const noexcept { return implementation_->runtime.device().id(); }
+cl_command_queue Triangulator::queue() const noexcept { return implementation_->runtime.own_queue(); }
+
+std::size_t Triangulator::capacity() const {
+  return with_errors([&] { return implementation_->capacity(); });
+}
+
+Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n, const Options& options) {
+  return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
+}
+
+Triangulation Triangulator::triangulate(const float* coordinates, std::size_t n, const Options& options) {
+  return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
+}
+
+Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                        const Options& options) {
+  return with_errors([&] {
+    return checked_call(*implementation_, {coordinates, nullptr}, offsets, options);
+  });
+}
+
+Triangulation Triangulator::triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
+                                        const Options& options) {
+  return with_errors([&] {
+    return checked_call(*implementation_, {nullptr, coordinates}, offsets, options);
+  });
+}
+
+void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
+                               const Enqueue& enqueue) {
+  with_errors([&] { call::triangulate(*implementation_, points, result, parts, enqueue); });
+}
+
+std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {
+  return with_errors([&] {
+    implementation_->check_size(n);
+    // Sums with larger numbers could overflow.
+    if (sets > call::kMostCountable) throw Error(ErrorKind::usage, "too many sets of points");
+    const blocks::WorkspaceBytes needed = blocks::workspace_bytes(implementation_->runtime, n, sets);
+    return needed.persistent + needed.scratch;
+  });
+}
+
+void Triangulator::use_workspace(cl_mem workspace) {
+  with_errors([&] {
+    Implementation& self = *implementation_;
+    std::shared_ptr<_cl_mem> lent;
+    if (workspace != nullptr) {
+      call::check_buffer(self.runtime, workspace, 1, call::Access::workspace, "the workspace");
+      cl_mem parent = nullptr;
+      FLAUNAY_CL(clGetMemObjectInfo(workspace, CL_MEM_ASSOCIATED_MEMOBJECT, sizeof parent, &parent, nullptr));
+      if (parent != nullptr) {
+        throw Error(ErrorKind::usage,
+                    "the workspace must not be a sub-buffer: it is divided into such itself");
+      }
+      lent = call::retained(workspace);
+    }
+    self.use_own_memory();
+    self.runtime.finish();
+    self.workspace = std::move(lent);
+  });
+}
+
+const char* version() noexcept { return FLAUNAY_VERSION; }
+
+const Enqueue& own_queue() noexcept {
+  static const Enqueue enqueue;
+  return enqueue;
+}
+
+const Parts& triangles_alone() noexcept {
+  static const Parts parts;
+  return parts;
+}
+
+}  // namespace flaunay

@@ -1,0 +1,64 @@
+// The public calls for Voronoi diagrams.
+#include "voronoi/voronoi.hpp"
+
+#include "call/device_mesh.hpp"
+#include "call/errors.hpp"
+#include "call/handles.hpp"
+
+namespace flaunay {
+
+using host::Arena;
+
+Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation) {
+  return with_errors([&] {
+    implementation_->check_size(n);
+    const call::OwnCall own(*implementation_);
+    host::Runtime& runtime = own.runtime;
+    Voronoi result;
+    const host::Runtime::Settled settled(runtime);
+    const points::DeviceMesh mesh = call::mesh_of(runtime, coordinates, n, triangulation);
+    result.circumcentres.resize(2 * mesh.triangle_count());
+    result.cell_offsets.resize(n + 1);
+    result.cells.resize(3 * mesh.triangle_count());
+    result.unbounded.resize(n);
+    const voronoi::Buffers buffers{runtime.output(result.circumcentres), runtime.output(result.cell_offsets),
+                                   runtime.output(result.cells), runtime.output(result.unbounded)};
+    voronoi::compute(runtime, mesh, buffers);
+    runtime.fetch_later(buffers.circumcentres, result.circumcentres);
+    runtime.fetch_later(buffers.cell_offsets, result.cell_offsets);
+    runtime.fetch_later(buffers.cells, result.cells);
+    runtime.fetch_later(buffers.unbounded, result.unbounded);
+    runtime.finish();
+    return result;
+  });
+}
+
+void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
+                           DeviceVoronoi& result, const Enqueue& enqueue) {
+  with_errors([&] {
+    implementation_->use_own_memory();
+    host::Runtime& runtime = implementation_->runtime;
+    std::size_t& made = implementation_->buffer_allocations;
+    call::check_enqueue(runtime, enqueue);
+    call::check_points(runtime, points, "points");
+    call::QueuedCall queued(runtime, enqueue);
+    Arena::Scope scope(runtime.arena());
+    const points::DeviceMesh mesh = call::mesh_of(runtime, points, triangulation);
+    const std::size_t triangles = mesh.triangle_count();
+    voronoi::Buffers buffers;
+    buffers.circumcentres =
+        call::result_buffer<cl_double>(runtime, result.circumcentres, 2 * triangles, "circumcentres", made);
+    buffers.cell_offsets =
+        call::result_buffer<cl_int>(runtime, result.cell_offsets, points.count + 1, "cell offsets", made);
+    buffers.cells = call::result_buffer<cl_int>(runtime, result.cells, 3 * triangles, "cells", made);
+    buffers.unbounded =
+        call::result_buffer<cl_uchar>(runtime, result.unbounded, points.count, "unbounded cells", made);
+    call::check_distinct({mesh.triangles.memory(), mesh.neighbors.memory(), mesh.hull.memory(),
+                          mesh.representatives.memory(), points.memory, buffers.circumcentres.memory(),
+                          buffers.cell_offsets.memory(), buffers.cells.memory(), buffers.unbounded.memory()});
+    voronoi::compute(runtime, mesh, buffers);
+    queued.end();
+  });
+}
+
+}  // namespace flaunay

@@ -1,0 +1,204 @@
+#include "flattened/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "flattened/levels.hpp"
+#include "flattened/partition.hpp"
+#include "flattened/stages.hpp"
+#include "geometry/mesh.hpp"
+#include "statistics/phases.hpp"
+
+namespace flaunay::flattened {
+namespace {
+
+// Bytes per input point that the arenas reserve, which are enough for points in general position
+// (docs/performance.md). If an input needs more, the arenas allocate further blocks.
+constexpr std::size_t kPersistentBytesPerPoint = 54;
+constexpr std::size_t kStateBytesPerPoint = 37;  // needed twice: for the current level and for the next one
+constexpr std::size_t kScratchBytesPerPoint = 118;
+
+// The state of one call: the sorted points, and statistics so far.
+class Call {
+ public:
+  Call(host::Runtime& runtime, const Memory& memory, const double* coordinates,
+       const std::vector<std::size_t>& offsets, const research::Options& wanted, Statistics& statistics,
+       std::vector<LevelStatistics>& levels, Work& work_done, std::vector<std::int32_t>& representatives);
+
+  /// To be called after the last level: checks invariants, and reads the largest regions and the counts.
+  void end_levels(std::size_t done, std::size_t wanted);
+  void finish_statistics(const Borders& borders);
+
+  statistics::Phases phases;
+  const research::Options& options;
+  Statistics& statistics;
+
+ private:
+  Arena::Scope scope_;
+
+ public:
+  Workspace work;
+  PointTable table;
+
+ private:
+  std::unique_ptr<Counting> counting_;
+};
+
+Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinates,
+           const std::vector<std::size_t>& offsets, const research::Options& wanted, Statistics& noted,
+           std::vector<LevelStatistics>& levels, Work& work_done, std::vector<std::int32_t>& representatives)
+    : phases(wanted),
+      options(wanted),
+      statistics(noted),
+      scope_(memory.persistent),
+      work{runtime, memory.persistent, levels} {
+  const std::size_t n = offsets.back();
+  Arena& persistent = memory.persistent;
+  persistent.reserve(n * kPersistentBytesPerPoint);
+  memory.even.reserve(n * kStateBytesPerPoint);
+  memory.odd.reserve(n * kStateBytesPerPoint);
+  runtime.arena().reserve(n * kScratchBytesPerPoint);
+  work.hull = options.hull;
+  work.broken = persistent.allocate<cl_int>(1);
+  work.list_length = persistent.allocate<cl_uint>(1);
+  work.undecided = persistent.allocate<cl_uint>(1);
+  work.largest = persistent.allocate<cl_int>(kMostLevels);
+  runtime.fill(work.largest, kMostLevels, cl_int{0});
+  runtime.fill(work.broken, 1, cl_int{0});
+  runtime.fill(work.undecided, 1, cl_uint{0});
+  if (options.count) {
+    counting_ = std::make_unique<Counting>(runtime, persistent, work_done);
+    work.counting = counting_.get();
+  }
+  phases.progress("sorting", 0.0);
+  representatives.resize(n);
+  table = ingest(work, coordinates, offsets, representatives.data());
+  if (counting_) {
+    const std::vector<cl_int> distinct = read_all(work, table.set_offsets, table.sets + 1);
+    counting_->add_sort(offsets);
+    counting_->add_sort({distinct.begin(), distinct.end()});
+  }
+  statistics.device = runtime.device().name();
+  statistics.points = n;
+  statistics.duplicates = n - table.count;
+  phases.end("sort");
+  phases.progress("borders", 0.05);
+}
+
+void Call::end_levels(std::size_t done, std::size_t wanted) {
+  check_invariants(work);
+  auto& levels = work.levels;
+  const std::vector<cl_int> largest = read_all(work, work.largest, levels.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    levels[l].largest_region = static_cast<std::size_t>(largest[l]);
+  }
+  if (done != wanted) {
+    throw Error(ErrorKind::internal,
+                fmt::format("{} triangles instead of {}; please report the input", done, wanted));
+  }
+  if (counting_) counting_->finish();
+  // The remaining steps are the same in every mode and are not counted.
+  work.counting = nullptr;
+  counting_.reset();
+}
+
+void Call::finish_statistics(const Borders& borders) {
+  statistics.undecided = work.runtime.read_one(work.undecided, 0);
+  statistics.triangles = borders.triangles;
+  statistics.hull_vertices = borders.size;
+  phases.write(statistics);
+}
+
+// Makes the triangles canonical, finds neighbours, and copies all results to the host.
+void write_result(Call& call, const Buffer<cl_int>& triangles, const Borders& borders,
+                  research::Triangulation& result) {
+  Workspace& work = call.work;
+  const PointTable& table = call.table;
+  const std::size_t count = borders.triangles;
+  Arena::Scope scope(work.scratch());
+  result.triangle_offsets = order_by_sets(work, table, triangles, count);
+  const auto twins = work.scratch().allocate<cl_int>(3 * count);
+  match_edges(work, triangles, count, twins);
+  canonicalize(work, table, triangles, count, twins);
+  check_invariants(work);
+  call.phases.end("canonical form");
+
+  call.phases.progress("output", 0.95);
+  read_rows(work, table, triangles, twins, count, call.options, result);
+  result.hull = read_indices(work, table, borders.hull, borders.size);
+  result.hull_offsets = borders.hull_offsets;
+  call.phases.end("output");
+}
+
+// Runs a few levels on the device. The host triangulates the remaining regions and makes the result
+// canonical.
+void finish_partition(Call& call, Recursion& recursion, const Borders& borders, int levels,
+                      const SolveRegions& solve_regions, research::Triangulation& result) {
+  const research::Options& options = call.options;
+  recursion.flattened(std::min<int>(levels, kMostLevels));
+  const geometry::PointSets sets = to_host(call.work, call.table, result.representatives);
+  std::vector<std::int32_t> triangles = recursion.read_triangles();
+  const RegionArrays regions = recursion.read_regions();
+  call.phases.end("partition");
+  call.phases.progress("regions", 0.4);
+  OperationCounts counts;
+  const std::vector<std::int32_t> solved = solve_regions(sets, regions, options.count ? &counts : nullptr);
+  triangles.insert(triangles.end(), solved.begin(), solved.end());
+  call.end_levels(triangles.size() / 3, borders.triangles);
+  Work& work = result.work;
+  Work::Components& last = work.levels.empty() ? work.start : work.levels.back();
+  statistics::add_beside(last[static_cast<std::size_t>(Component::endgame)], counts);
+  call.phases.end("regions");
+  call.phases.progress("canonical form", 0.9);
+  Triangulation finished = finish(sets, std::move(triangles), {}, options);
+  finished.statistics = std::move(result.statistics);
+  static_cast<Triangulation&>(result) = std::move(finished);
+  call.phases.end("canonical form");
+}
+
+}  // namespace
+
+void run(host::Runtime& runtime, const Memory& memory, const double* coordinates,
+         const std::vector<std::size_t>& offsets, const research::Options& options, int partition_levels,
+         const SolveRegions& solve_regions, research::Triangulation& result) {
+  Call call(runtime, memory, coordinates, offsets, options, result.statistics, result.levels, result.work,
+            result.representatives);
+  Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd});
+  const Borders borders = recursion.begin();
+  call.phases.end("borders");
+  if (solve_regions) {
+    finish_partition(call, recursion, borders, partition_levels, solve_regions, result);
+  } else {
+    if (options.mode == research::Mode::flattened) {
+      recursion.flattened();
+    } else {
+      recursion.recursive();
+    }
+    call.end_levels(recursion.done(), borders.triangles);
+    call.phases.end("levels");
+    call.phases.progress("canonical form", 0.9);
+    write_result(call, recursion.triangles(), borders, result);
+  }
+  call.finish_statistics(borders);
+}
+
+void partition(host::Runtime& runtime, const Memory& memory, const double* coordinates, std::size_t n,
+               int levels, const research::Options& options, research::Partition& result) {
+  std::vector<std::int32_t> representatives;
+  Work uncounted;
+  Call call(runtime, memory, coordinates, {0, n}, options, result.statistics, result.levels, uncounted,
+            representatives);
+  Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd});
+  const Borders borders = recursion.begin();
+  call.phases.end("borders");
+  recursion.flattened(std::min<int>(levels, kMostLevels));
+  check_invariants(call.work);
+  result.regions = to_input(call.work, call.table, recursion.read_regions());
+  result.triangles = read_indices(call.work, call.table, recursion.triangles(), 3 * recursion.done());
+  call.phases.end("levels");
+  call.finish_statistics(borders);
+}
+
+}  // namespace flaunay::flattened

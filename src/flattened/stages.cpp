@@ -1,0 +1,26 @@
+#include "flattened/stages.hpp"
+
+#include <fmt/format.h>
+
+#include "shared/codes.h"
+
+namespace flaunay::flattened {
+
+Buffer<cl_int> pack_undecided(Workspace& work, const Buffer<cl_uchar>& flags, std::size_t n) {
+  const auto list = work.scratch().allocate<cl_int>(n);
+  host::pack_positions(work.runtime, flags, n, kernel::FLAG_UNDECIDED, list, work.list_length);
+  host::add_count(work.runtime, work.list_length, work.undecided);
+  return list;
+}
+
+void check_invariants(Workspace& work) {
+  const cl_int bits = work.runtime.read_one(work.broken, 0);
+  if (bits == 0) return;
+  std::string what;
+  if (bits & kernel::BROKEN_PATH) what += " a point on a cut line is not on its path;";
+  if (bits & kernel::BROKEN_BORDER) what += " a region's border does not enclose it;";
+  if (bits & kernel::BROKEN_CIRCLE) what += " an edge is not Delaunay;";
+  throw Error(ErrorKind::internal, fmt::format("broken invariant:{} please report the input", what));
+}
+
+}  // namespace flaunay::flattened

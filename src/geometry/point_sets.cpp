@@ -1,0 +1,133 @@
+#include "geometry/point_sets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "flaunay/flaunay.hpp"
+#include "geometry/sort.hpp"
+#include "shared/limits.h"
+
+namespace flaunay::geometry {
+namespace {
+
+constexpr int kMantissaBits = 52;
+constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
+constexpr int kExponentMask = 0x7ff;
+constexpr int kExponentBias = 1023;
+
+// A mesh has up to 6 half-edges per point, which are numbered by 32-bit integers.
+constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max() / kernel::EDGES_PER_VERTEX;
+
+void check_size(std::size_t n) {
+  if (n <= kMostPoints) return;
+  throw Error(
+      ErrorKind::input,
+      fmt::format("{} points are too many for 32-bit indices: at most {} are possible", n, kMostPoints));
+}
+
+int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
+
+Magnitudes inspect(const double* coordinates, std::size_t n) {
+  Magnitudes magnitudes;
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &coordinates[i], sizeof bits);
+    const int exponent = static_cast<int>(bits >> kMantissaBits) & kExponentMask;
+    if (exponent == 0) {
+      if (coordinates[i] == 0) continue;
+      magnitudes.largest = std::max(magnitudes.largest, std::ilogb(coordinates[i]));
+      magnitudes.lowest = std::min(magnitudes.lowest, lowest_bit(coordinates[i]));
+    } else if (exponent == kExponentMask) {
+      magnitudes.bad = static_cast<int>(i / 2);
+      return magnitudes;
+    } else {
+      const int lowest = trailing_zeros((bits & kMantissa) | (kMantissa + 1)) - kMantissaBits;
+      magnitudes.largest = std::max(magnitudes.largest, exponent - kExponentBias);
+      magnitudes.lowest = std::min(magnitudes.lowest, exponent - kExponentBias + lowest);
+    }
+  }
+  return magnitudes;
+}
+
+// Adding 0 turns -0 into 0.
+double scaled(double x, double factor) { return x * factor + 0.0; }
+
+// Indices of the input's points begin..end-1 in the order of (x, y, index).
+class Order {
+ public:
+  Order(const double* coordinates, double factor) : coordinates_(coordinates), factor_(factor) {}
+
+  const std::vector<Keyed>& sort(std::size_t begin, std::size_t end) {
+    elements_.resize(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      elements_[i - begin] = {sort_key(x(i)), static_cast<std::int32_t>(i)};
+    }
+    sort_by_key(elements_);
+    for (auto first = elements_.begin(); first != elements_.end();) {
+      auto last = first + 1;
+      while (last != elements_.end() && last->key == first->key) ++last;
+      if (last - first > 1) sort_column(first, last);
+      first = last;
+    }
+    return elements_;
+  }
+
+  Point point(std::int32_t i) const { return {x(i), scaled(coordinates_[2 * std::size_t(i) + 1], factor_)}; }
+
+ private:
+  using Iterator = std::vector<Keyed>::iterator;
+
+  double x(std::size_t i) const { return scaled(coordinates_[2 * i], factor_); }
+
+  // Sorts points of equal x, which are in the order of their indices already, by y.
+  void sort_column(Iterator first, Iterator last) {
+    column_.assign(first, last);
+    for (Keyed& element : column_) element.key = sort_key(point(element.index).y);
+    sort_by_key(column_);
+    std::transform(column_.begin(), column_.end(), first, first, [](const Keyed& from, const Keyed& to) {
+      return Keyed{to.key, from.index};
+    });
+  }
+
+  const double* coordinates_;
+  double factor_;
+  std::vector<Keyed> elements_, column_;
+};
+
+}  // namespace
+
+PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offsets) {
+  check_offsets(offsets);
+  const std::size_t n = offsets.back();
+  check_coordinates(coordinates, n);
+  check_size(n);
+  const Scaling scaling = scaling_for(coordinates, n, inspect(coordinates, n));
+  PointSets sets;
+  sets.predicates.bounds = scaling.bounds;
+  sets.representatives.resize(n);
+  sets.points.reserve(n);
+  sets.source.reserve(n);
+  sets.set_offsets.push_back(0);
+  Order order(coordinates, std::ldexp(1.0, scaling.shift));
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    bool first = true;
+    for (const Keyed& element : order.sort(offsets[s], offsets[s + 1])) {
+      const Point point = order.point(element.index);
+      if (first || !(point == sets.points.back())) {
+        sets.points.push_back(point);
+        sets.source.push_back(element.index);
+      }
+      first = false;
+      sets.representatives[element.index] = sets.source.back();
+    }
+    sets.comparisons += comparisons_to_sort(offsets[s + 1] - offsets[s]);
+    sets.set_offsets.push_back(static_cast<std::int32_t>(sets.points.size()));
+  }
+  return sets;
+}
+
+}  // namespace flaunay::geometry

@@ -1,0 +1,115 @@
+// Types for points and results in device memory, which Triangulator and Locator use without a copy to the
+// host. All OpenCL handles in these structs must be alive when a call is made with them; the behaviour with a
+// released handle is undefined.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay {
+
+/// The type of coordinates in device memory.
+enum class Precision {
+  float64,  ///< double, 16 bytes per point
+  float32,  ///< float, 8 bytes per point; every value is converted to double, which is exact
+};
+
+/// Points in device memory, in one or more sets.
+struct DevicePoints {
+  cl_mem memory = nullptr;                   ///< x0 y0 x1 y1 ..., an array of double2 or float2
+  std::size_t count = 0;                     ///< number of points
+  Precision precision = Precision::float64;  ///< type of the coordinates
+  std::size_t first = 0;                     ///< number of points in the buffer before the first one to use
+  /// Set s has points [offsets[s], offsets[s + 1]), counted from `first`. There are sets + 1 offsets, from 0
+  /// to count. Empty: there is one set, unless device_offsets is given.
+  std::vector<std::size_t> offsets;
+  /// The sets + 1 offsets in device memory, int32. They are copied to the host, 4 bytes per set.
+  cl_mem device_offsets = nullptr;
+  std::size_t sets = 0;  ///< number of sets in device_offsets
+};
+
+/// How a call on device memory is enqueued. The queue and the events must be alive when the call is made; the
+/// behaviour with a released one is undefined.
+struct Enqueue {
+  /// A queue of the triangulator's context and device, in order or not. Null: the triangulator's own queue.
+  /// The triangulator retains it until a call uses another queue, so its owner may release it after the call.
+  cl_command_queue queue = nullptr;
+  std::vector<cl_event> wait_for;  ///< events that must complete before the work begins
+  /// If not null, receives an event that completes when the results are written. The caller releases the
+  /// event.
+  cl_event* event = nullptr;
+  /// Measure the time of every kernel with events (Statistics::kernels), and wait until all work is done. A
+  /// queue given above must have CL_QUEUE_PROFILING_ENABLE.
+  bool profile = false;
+};
+
+/// A buffer for results in device memory. It is the caller's, or one that flaunay makes when it is first
+/// needed, keeps for the next call, and replaces by a larger one if it is too small. Copies of this handle
+/// refer to the same buffer.
+class FLAUNAY_API DeviceBuffer {
+ public:
+  DeviceBuffer() noexcept = default;
+  /// Uses the caller's buffer, which is retained and never replaced. Throws Error(usage) if memory is not a
+  /// buffer.
+  explicit DeviceBuffer(cl_mem memory);
+  /// The OpenCL buffer, or null if there is none yet. It is valid as long as this handle or a copy of it; to
+  /// keep it longer, call clRetainMemObject.
+  cl_mem memory() const noexcept { return memory_.get(); }
+  /// The size of the buffer, which may be larger than the results in it.
+  std::size_t bytes() const noexcept { return bytes_; }
+  /// Whether the buffer is the caller's.
+  bool is_callers() const noexcept { return is_callers_; }
+
+ private:
+  friend struct DeviceBufferAccess;
+  std::shared_ptr<struct _cl_mem> memory_;
+  std::size_t bytes_ = 0;
+  bool is_callers_ = false;
+};
+
+/// Which arrays of a triangulation to compute on the device. Neighbours and halfedges need the triangles.
+struct Parts {
+  bool triangles = true;         ///< Triangulation::triangles
+  bool neighbors = false;        ///< Triangulation::neighbors
+  bool halfedges = false;        ///< Triangulation::halfedges
+  bool hull = false;             ///< Triangulation::hull
+  bool representatives = false;  ///< Triangulation::representatives
+};
+
+/// A Triangulation in device memory. All arrays are int32. For n points the caller's buffers must have, and
+/// flaunay's have, 24 n bytes for triangles, neighbors and halfedges each, and 4 n bytes for hull and
+/// representatives each.
+struct DeviceTriangulation {
+  DeviceBuffer triangles;        ///< 3 per triangle
+  DeviceBuffer neighbors;        ///< 3 per triangle
+  DeviceBuffer halfedges;        ///< 3 per triangle
+  DeviceBuffer hull;             ///< 1 per hull vertex
+  DeviceBuffer representatives;  ///< 1 per point
+  /// The arrays that the last call computed.
+  Parts parts{false, false, false, false, false};
+  std::size_t points = 0;  ///< number of points over all sets
+  /// sets + 1 values in host memory, known when the call returns: set s has points [point_offsets[s],
+  /// point_offsets[s + 1]).
+  std::vector<std::size_t> point_offsets;
+  /// sets + 1 values in host memory, known when the call returns, whatever the parts: set s has triangles
+  /// [triangle_offsets[s], triangle_offsets[s + 1]).
+  std::vector<std::size_t> triangle_offsets;
+  /// sets + 1 values in host memory, known when the call returns, whatever the parts: set s has hull vertices
+  /// [hull_offsets[s], hull_offsets[s + 1]).
+  std::vector<std::size_t> hull_offsets;
+  /// What the call did and how long it took; Statistics::seconds lasts until everything was enqueued.
+  Statistics statistics;
+};
+
+/// The Voronoi diagram of n points in device memory.
+struct DeviceVoronoi {
+  DeviceBuffer circumcentres;  ///< Voronoi::circumcentres, double2, 16 bytes per triangle
+  DeviceBuffer cell_offsets;   ///< Voronoi::cell_offsets, int32, 4 (n + 1) bytes
+  DeviceBuffer cells;          ///< Voronoi::cells, int32, 12 bytes per triangle
+  DeviceBuffer unbounded;      ///< Voronoi::unbounded, uchar, n bytes
+};
+
+}  // namespace flaunay

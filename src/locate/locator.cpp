@@ -1,0 +1,339 @@
+#include "locate/locator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "flaunay/flaunay.hpp"
+#include "host/vector_operations.hpp"
+#include "launchers/locate/locate.cl.hpp"
+#include "points/inspect.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::locate {
+namespace {
+
+// Smaller trees save no time.
+constexpr int kLeastDepth = 4;
+
+// Each leaf holds one sample.
+constexpr std::size_t kSamplesPerLeaf = 1;
+
+std::vector<cl_int> integers(const std::vector<std::size_t>& offsets) {
+  return {offsets.begin(), offsets.end()};
+}
+
+void check_sizes(const DeviceMesh& mesh) {
+  for (std::size_t s = 0; s < mesh.sets(); ++s) {
+    const std::size_t points = mesh.point_offsets[s + 1] - mesh.point_offsets[s];
+    const std::size_t triangles = mesh.triangle_offsets[s + 1] - mesh.triangle_offsets[s];
+    const std::size_t hull = mesh.hull_offsets[s + 1] - mesh.hull_offsets[s];
+    if (triangles > 2 * points || hull > points) {
+      throw Error(ErrorKind::input, fmt::format("{} points cannot have {} triangles and {} hull vertices",
+                                                points, triangles, hull));
+    }
+  }
+}
+
+// The depth of a set's tree, 0 for no tree. The number of vertices, without duplicates, follows from Euler's
+// formula.
+int depth_for(std::size_t triangles, std::size_t hull, std::size_t vertices_per_leaf) {
+  const std::size_t vertices = triangles == 0 ? 0 : (triangles + 2 + hull) / 2;
+  int depth = 0;
+  while (vertices >> (depth + 1) >= vertices_per_leaf) ++depth;
+  return depth < kLeastDepth ? 0 : depth;
+}
+
+// Makes the records of sets, and lists the sets that have trees. A tree has as many nodes as leaves.
+std::vector<kernel::mesh_set> make_records(const DeviceMesh& mesh, std::size_t vertices_per_leaf,
+                                           std::vector<points::SetToCut>& cut) {
+  std::vector<kernel::mesh_set> records;
+  std::size_t leaves = 0;
+  for (std::size_t s = 0; s < mesh.sets(); ++s) {
+    const std::size_t triangle = mesh.triangle_offsets[s],
+                      triangles = mesh.triangle_offsets[s + 1] - triangle;
+    const std::size_t hull = mesh.hull_offsets[s], hull_end = mesh.hull_offsets[s + 1];
+    const int depth = depth_for(triangles, hull_end - hull, vertices_per_leaf);
+    const std::size_t start = depth == 0 ? triangle : leaves;
+    records.push_back({static_cast<cl_int>(leaves), depth, static_cast<cl_int>(start),
+                       static_cast<cl_int>(triangles), static_cast<cl_int>(hull),
+                       static_cast<cl_int>(hull_end)});
+    if (depth == 0) continue;
+    const std::size_t first = mesh.point_offsets[s];
+    cut.push_back({depth, first, mesh.point_offsets[s + 1] - first});
+    leaves += std::size_t{1} << depth;
+  }
+  return records;
+}
+
+// Makes the trees, and finds per leaf a triangle at its sample.
+void make_trees(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
+                const std::vector<points::SetToCut>& cut, const Buffer<cl_int>& incident, Locator& locator) {
+  Arena::Scope scope(runtime.arena());
+  const points::CutTrees trees(runtime, cut, kSamplesPerLeaf);
+  locator.nodes = own.allocate<kernel::cut_node>(trees.nodes());
+  locator.starts = own.allocate<cl_int>(trees.samples());
+  if (cut.empty()) return;
+  const points::CutTrees::Samples samples = trees.draw(mesh.coordinates);
+  const auto by_leaf = trees.cut(samples.points, locator.nodes);
+  runtime.map(trees.samples(), kernels::start_triangles{.points = mesh.points(),
+                                                        .last = mesh.triangle_count() - 1,
+                                                        .by_leaf = by_leaf,
+                                                        .drawn = samples.indices,
+                                                        .representatives = mesh.representatives,
+                                                        .incident = incident,
+                                                        .starts = locator.starts});
+}
+
+// The first wrong index of each kind, or kNone. Kernels set these.
+struct Faults {
+  static constexpr cl_int kNone = std::numeric_limits<cl_int>::max();
+  cl_int triangle = kNone, hull = kNone, representative = kNone;
+};
+
+void throw_faults(const Faults& faults) {
+  const auto check = [](cl_int place, const char* what) {
+    if (place == Faults::kNone) return;
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{} {} is not that of a triangulation of these points with its neighbours", what, place));
+  };
+  check(faults.triangle, "triangle");
+  check(faults.hull, "hull vertex");
+  check(faults.representative, "representative");
+}
+
+// The offsets of sets on the device.
+struct Offsets {
+  Buffer<cl_int> points, triangles, hull;
+};
+
+// Computes the faces, and the vertices in the order of their first triangles. incident: a triangle per point,
+// for `starts`.
+void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::scaling& scale,
+                const Offsets& offsets, const Buffer<cl_int>& faults, const Buffer<cl_int>& incident,
+                Locator& locator) {
+  const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
+  Arena::Scope scope(runtime.arena());
+  const auto counts = runtime.arena().allocate<cl_uint>(triangles + 1);
+  const auto numbers = runtime.arena().allocate<cl_int>(n);
+  runtime.fill(incident, n, std::numeric_limits<cl_int>::max());
+  runtime.fill(numbers, n, cl_int{0});
+  runtime.map(triangles, kernels::make_faces{.sets = mesh.sets(),
+                                             .triangle_offsets = offsets.triangles,
+                                             .point_offsets = offsets.points,
+                                             .triangles = mesh.triangles,
+                                             .neighbors = mesh.neighbors,
+                                             .faces = locator.faces,
+                                             .incident = incident,
+                                             .bad = faults});
+  runtime.map(triangles,
+              kernels::count_vertices{.faces = locator.faces, .incident = incident, .counts = counts});
+  host::exclusive_scan(runtime, counts, triangles, counts);
+  runtime.map(triangles, kernels::number_vertices{.faces = locator.faces,
+                                                  .incident = incident,
+                                                  .firsts = counts,
+                                                  .input = mesh.coordinates,
+                                                  .scale = scale,
+                                                  .numbers = numbers,
+                                                  .points = locator.points,
+                                                  .source = locator.source,
+                                                  .first_triangle = locator.first_triangle});
+  runtime.map(triangles, kernels::renumber_faces{.numbers = numbers, .faces = locator.faces});
+  runtime.fill(locator.clearances, n, std::numeric_limits<cl_int>::max());
+  runtime.map(triangles,
+              kernels::measure_clearances{
+                  .faces = locator.faces, .points = locator.points, .clearances = locator.clearances});
+}
+
+void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::scaling& scale,
+               const Offsets& offsets, const Buffer<cl_int>& faults, Locator& locator) {
+  runtime.map(mesh.hull_offsets.back(), kernels::place_hull{.sets = mesh.sets(),
+                                                            .offsets = offsets.hull,
+                                                            .point_offsets = offsets.points,
+                                                            .hull = mesh.hull,
+                                                            .input = mesh.coordinates,
+                                                            .scale = scale,
+                                                            .points = locator.hull_points,
+                                                            .source = locator.hull,
+                                                            .bad = faults});
+}
+
+// The arguments that all kernels on one call's queries share.
+struct Pass {
+  QueryScaling scaling;
+  kernel::scaling scale;
+  cl_int sets;
+  Buffer<cl_int> query_offsets;  // not read if there is one set
+  bool are_placed;               // whether `placed` is filled; otherwise the first kernel does it
+  Buffer<cl_ulong> keys;         // the leaves of placed queries
+  Buffer<cl_int> order;          // per place, the number of its query
+  Buffer<cl_double2> placed;     // the scaled queries
+};
+
+// Sorts queries by leaves, so that queries near each other in the plane are near each other in memory.
+void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries,
+                  std::size_t m, Pass& pass) {
+  pass.keys = runtime.arena().allocate<cl_ulong>(m);
+  pass.order = runtime.arena().allocate<cl_int>(m);
+  runtime.chunks(m, runtime.sizes().chunk(m),
+                 kernels::find_query_leaves{.sets = pass.sets,
+                                            .query_offsets = pass.query_offsets,
+                                            .records = locator.records,
+                                            .nodes = locator.nodes,
+                                            .queries = queries,
+                                            .keys = pass.keys,
+                                            .order = pass.order});
+  host::sort_by_key(runtime, pass.keys, pass.order, m);
+  pass.placed = runtime.arena().allocate<cl_double2>(m);
+  runtime.map(m, kernels::place_queries{
+                     .order = pass.order, .queries = queries, .scale = pass.scale, .placed = pass.placed});
+}
+
+Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets) {
+  check_offsets(query_offsets);
+  if (query_offsets.size() != locator.sets + 1 || query_offsets.back() != m) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("offsets of queries are of {} sets and end with {}; there are {} queries of {} sets",
+                    query_offsets.size() - 1, query_offsets.back(), m, locator.sets));
+  }
+  Pass pass{};
+  pass.scaling = query_scaling(runtime, locator.magnitudes, locator.shift, queries, m);
+  pass.scale = pass.scaling.powers();
+  pass.sets = static_cast<cl_int>(locator.sets);
+  pass.query_offsets = runtime.arena().allocate<cl_int>(locator.sets + 1);
+  if (locator.sets > 1) {
+    runtime.write_kept(pass.query_offsets, integers(query_offsets));
+  }
+  const bool has_trees = locator.starts.size() > 0;
+  pass.are_placed = has_trees && m >= tuning_of(runtime).sorted_queries_least;
+  if (pass.are_placed) {
+    sort_queries(runtime, locator, queries, m, pass);
+  } else {
+    pass.keys = runtime.arena().allocate<cl_ulong>(0);
+    pass.order = runtime.arena().allocate<cl_int>(m);
+    pass.placed = runtime.arena().allocate<cl_double2>(m);
+  }
+  return pass;
+}
+
+// Finds the triangle of each query. is_answer: see the kernel find_triangles.
+void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& pass, bool is_answer,
+                    const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found) {
+  runtime.chunks(m, runtime.sizes().chunk(m),
+                 kernels::find_triangles{.sets = pass.sets,
+                                         .are_placed = pass.are_placed,
+                                         .is_answer = is_answer,
+                                         .query_offsets = pass.query_offsets,
+                                         .records = locator.records,
+                                         .nodes = locator.nodes,
+                                         .starts = locator.starts,
+                                         .queries = queries,
+                                         .scale = pass.scale,
+                                         .keys = pass.keys,
+                                         .order = pass.order,
+                                         .placed = pass.placed,
+                                         .bound = pass.scaling.orient_bound,
+                                         .unit = pass.scaling.unit,
+                                         .points = locator.points,
+                                         .faces = locator.faces,
+                                         .first_triangle = locator.first_triangle,
+                                         .found = found});
+}
+
+}  // namespace
+
+Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
+  Arena& scratch = runtime.arena();
+  Arena::Scope scope(scratch);
+  const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
+  check_sizes(mesh);
+  Locator locator;
+  locator.sets = mesh.sets();
+  locator.magnitudes = inspect(runtime, mesh.coordinates, n);
+  const Scaling scaling = scaling_for(runtime, mesh.coordinates, n, locator.magnitudes);
+  locator.shift = scaling.shift;
+  locator.points = own.allocate<cl_double2>(n);
+  locator.source = own.allocate<cl_int>(n);
+  locator.first_triangle = own.allocate<cl_int>(n);
+  locator.clearances = own.allocate<cl_int>(n);
+  locator.faces = own.allocate<kernel::face>(triangles);
+  locator.hull_points = own.allocate<cl_double2>(mesh.hull_offsets.back());
+  locator.hull = own.allocate<cl_int>(mesh.hull_offsets.back());
+
+  Faults faults;
+  const host::Runtime::Settled settled(runtime);
+  const auto device_faults = scratch.allocate<cl_int>(3);
+  runtime.write_later(device_faults, 0, 3, &faults.triangle);
+  const auto incident = scratch.allocate<cl_int>(n);
+  const Offsets offsets{runtime.upload(scratch, integers(mesh.point_offsets)),
+                        runtime.upload(scratch, integers(mesh.triangle_offsets)),
+                        runtime.upload(scratch, integers(mesh.hull_offsets))};
+  fill_faces(runtime, mesh, scaling.powers(), offsets, device_faults, incident, locator);
+  fill_hull(runtime, mesh, scaling.powers(), offsets, device_faults, locator);
+  runtime.map(n, kernels::check_representatives{.sets = mesh.sets(),
+                                                .point_offsets = offsets.points,
+                                                .representatives = mesh.representatives,
+                                                .bad = device_faults});
+  std::vector<points::SetToCut> cut;
+  locator.records = runtime.upload(own, make_records(mesh, tuning_of(runtime).vertices_per_leaf, cut));
+  make_trees(runtime, own, mesh, cut, incident, locator);
+  runtime.read(device_faults, 0, 3, &faults.triangle);
+  throw_faults(faults);
+  return locator;
+}
+
+void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
+  Arena::Scope scope(runtime.arena());
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  find_triangles(runtime, locator, pass, true, queries, m, triangles);
+}
+
+void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points) {
+  Arena::Scope scope(runtime.arena());
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  const auto found = runtime.arena().allocate<cl_int>(m);
+  find_triangles(runtime, locator, pass, false, queries, m, found);
+  runtime.map(m, kernels::nearest_points{.sets = pass.sets,
+                                         .query_offsets = pass.query_offsets,
+                                         .records = locator.records,
+                                         .order = pass.order,
+                                         .placed = pass.placed,
+                                         .bound = pass.scaling.nearness_bound,
+                                         .unit = pass.scaling.unit,
+                                         .points = locator.points,
+                                         .source = locator.source,
+                                         .clearances = locator.clearances,
+                                         .faces = locator.faces,
+                                         .hull_points = locator.hull_points,
+                                         .hull = locator.hull,
+                                         .found = found,
+                                         .nearest = points});
+}
+
+void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
+                 const Buffer<cl_double>& queries, std::size_t m,
+                 const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results) {
+  Arena::Scope scope(runtime.arena());
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  const auto found = runtime.arena().allocate<cl_int>(m);
+  find_triangles(runtime, locator, pass, false, queries, m, found);
+  runtime.map(m, kernels::interpolate_queries{.order = pass.order,
+                                              .placed = pass.placed,
+                                              .bound = pass.scaling.orient_bound,
+                                              .unit = pass.scaling.unit,
+                                              .points = locator.points,
+                                              .source = locator.source,
+                                              .faces = locator.faces,
+                                              .found = found,
+                                              .values = values,
+                                              .results = results});
+}
+
+}  // namespace flaunay::locate

@@ -1,0 +1,57 @@
+// Answers queries on a triangulation: the containing triangle, the nearest point, an interpolated value.
+#pragma once
+
+#include "locate/query_range.hpp"
+#include "points/cut_tree.hpp"
+#include "points/device_mesh.hpp"
+#include "shared/records.h"
+
+namespace flaunay::locate {
+
+/// The search structure of a triangulation in device memory, about 80 bytes per point.
+struct Locator {
+  std::size_t sets = 0;
+  Magnitudes magnitudes{};  ///< the magnitudes of the points before scaling
+  int shift = 0;            ///< points are scaled by 2^shift
+  /// The vertices of triangles, in the order of their first triangles: coordinates, indices of points, first
+  /// triangles, and the squared distances to their nearest neighbours (the upper half of a double).
+  Buffer<cl_double2> points{};
+  Buffer<cl_int> source{}, first_triangle{}, clearances{};
+  Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
+  Buffer<cl_double2> hull_points{};
+  Buffer<cl_int> hull{};
+  Buffer<kernel::mesh_set> records{};  ///< one per set
+  Buffer<kernel::cut_node> nodes{};    ///< the nodes of all trees
+  Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
+};
+
+/// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
+/// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
+/// for triangulation. Waits about 6 times. O(n log n).
+Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+
+// Queries are m points, x0 y0 x1 y1 ..., with the alignment of doubles; set s has queries [query_offsets[s],
+// query_offsets[s + 1]). Each call waits 2 times to check that all queries are finite, and neither too fine
+// nor too far away for exact arithmetic with the points; otherwise it throws Error(input), which names a
+// query. Then it enqueues the rest. Many queries are sorted by the leaves of the trees first, which takes one
+// more wait. Temporary memory: 24 m bytes, or 32 m if queries are sorted.
+
+/// Finds for each query the triangle that contains it, the smallest one if there are several; -1 outside of
+/// the hull.
+void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles);
+
+/// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
+/// of its representative; -1 if the set is empty. A query takes some steps per neighbour of its nearest
+/// point, unless its distance to that point is less than half the distance of the point to its nearest
+/// neighbour.
+void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
+
+/// Computes for each query the linear interpolation of the three values of its triangle; NaN outside of the
+/// hull. values: one per point.
+void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
+                 const Buffer<cl_double>& queries, std::size_t m,
+                 const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results);
+
+}  // namespace flaunay::locate

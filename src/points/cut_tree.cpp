@@ -1,0 +1,137 @@
+#include "points/cut_tree.hpp"
+
+#include <algorithm>
+
+#include "host/vector_operations.hpp"
+#include "launchers/points/cut_tree.cl.hpp"
+
+namespace flaunay::points {
+
+using host::Arena;
+using host::Buffer;
+
+CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, std::size_t samples_per_leaf)
+    : runtime_(runtime) {
+  std::size_t leaves = 0;
+  for (const SetToCut& set : sets) leaves += std::size_t{1} << set.depth;
+  int chunk_depth = 0;
+  while (samples_per_leaf << (chunk_depth + 1) <= runtime.sizes().chunk(leaves * samples_per_leaf)) {
+    ++chunk_depth;
+  }
+  std::vector<kernel::sampled_tree> trees;
+  std::vector<cl_int> first_chunks;
+  for (const SetToCut& set : sets) {
+    const std::size_t samples = samples_per_leaf << set.depth;
+    const int above = std::max(0, set.depth - chunk_depth);
+    trees.push_back({static_cast<cl_int>(samples_), static_cast<cl_int>(samples),
+                     static_cast<cl_int>(samples_per_leaf), static_cast<cl_int>(samples >> above),
+                     static_cast<cl_int>(nodes_), static_cast<cl_int>(set.first_point),
+                     static_cast<cl_int>(set.points)});
+    first_chunks.push_back(static_cast<cl_int>(chunks_));
+    samples_ += samples;
+    nodes_ += std::size_t{1} << set.depth;
+    chunks_ += std::size_t{1} << above;
+    levels_above_chunks_ = std::max(levels_above_chunks_, above);
+  }
+  trees_ = runtime.arena().allocate<kernel::sampled_tree>(trees.size());
+  first_chunks_ = runtime.arena().allocate<cl_int>(first_chunks.size());
+  runtime.write_kept(trees_, std::move(trees));
+  runtime.write_kept(first_chunks_, std::move(first_chunks));
+}
+
+std::size_t CutTrees::bytes(std::size_t trees, std::size_t leaves, std::size_t samples_per_leaf) {
+  // A sample, its index, its places in the orders of both axes, and the memory for sorting these, which is
+  // more than the later steps need.
+  constexpr std::size_t kBySample = sizeof(cl_double2) + 3 * sizeof(cl_int) + 4 * sizeof(cl_uint2);
+  // The counts of chunks, each of which has at least one leaf, and the sums of their scan.
+  constexpr std::size_t kByLeaf = 2 * sizeof(cl_uint);
+  return trees * (sizeof(kernel::sampled_tree) + sizeof(cl_int)) +
+         leaves * (samples_per_leaf * kBySample + kByLeaf);
+}
+
+// Launches a kernel with this many work-items per chunk.
+template <typename Kernel>
+void CutTrees::launch(std::size_t items_per_chunk, const Kernel& kernel) const {
+  const std::size_t items = items_per_chunk * chunks_;
+  runtime_.launch(items, runtime_.sizes().chunk_group, items, kernel);
+}
+
+CutTrees::Samples CutTrees::draw(const Buffer<cl_double>& input) const {
+  const Samples samples{runtime_.arena().allocate<cl_double2>(samples_),
+                        runtime_.arena().allocate<cl_int>(samples_)};
+  launch(1, kernels::draw_samples{.tree_count = trees_.size(),
+                                  .first_chunks = first_chunks_,
+                                  .trees = trees_,
+                                  .input = input,
+                                  .samples = samples.points,
+                                  .indices = samples.indices});
+  return samples;
+}
+
+// Sorts the samples of each chunk along both axes, into `order`.
+void CutTrees::sort_chunks(const Buffer<cl_double2>& samples, const Buffer<cl_int>& order) const {
+  Arena::Scope scope(runtime_.arena());
+  const auto elements = runtime_.arena().allocate<cl_uint2>(2 * samples_);
+  const auto spare = runtime_.arena().allocate<cl_uint2>(2 * samples_);
+  launch(2, kernels::sort_chunks{.tree_count = trees_.size(),
+                                 .first_chunks = first_chunks_,
+                                 .trees = trees_,
+                                 .all_samples = samples_,
+                                 .samples = samples,
+                                 .elements = elements,
+                                 .spare = spare,
+                                 .order = order});
+}
+
+Buffer<cl_int> CutTrees::cut(const Buffer<cl_double2>& samples, const Buffer<kernel::cut_node>& nodes) const {
+  auto order = runtime_.arena().allocate<cl_int>(2 * samples_);
+  Arena::Scope scope(runtime_.arena());
+  sort_chunks(samples, order);
+  auto other = runtime_.arena().allocate<cl_int>(2 * samples_);
+  for (int doublings = 0; doublings < levels_above_chunks_; ++doublings) {
+    launch(2, kernels::merge_runs{.tree_count = trees_.size(),
+                                  .first_chunks = first_chunks_,
+                                  .trees = trees_,
+                                  .all_samples = samples_,
+                                  .doublings = doublings,
+                                  .samples = samples,
+                                  .from = order,
+                                  .to = other});
+    std::swap(order, other);
+  }
+  const auto counts = runtime_.arena().allocate<cl_uint>(chunks_ + 1);
+  for (int level = 0; level < levels_above_chunks_; ++level) {
+    launch(1, kernels::count_low{.tree_count = trees_.size(),
+                                 .first_chunks = first_chunks_,
+                                 .trees = trees_,
+                                 .all_samples = samples_,
+                                 .level = level,
+                                 .samples = samples,
+                                 .order = order,
+                                 .nodes = nodes,
+                                 .counts = counts});
+    host::exclusive_scan(runtime_, counts, chunks_, counts);
+    launch(1, kernels::split_chunks{.tree_count = trees_.size(),
+                                    .first_chunks = first_chunks_,
+                                    .trees = trees_,
+                                    .all_samples = samples_,
+                                    .level = level,
+                                    .samples = samples,
+                                    .scanned = counts,
+                                    .from = order,
+                                    .to = other});
+    std::swap(order, other);
+  }
+  // There were as many merges as splits, so `order` is the array that was allocated outside of the scope.
+  launch(1, kernels::cut_chunks{.tree_count = trees_.size(),
+                                .first_chunks = first_chunks_,
+                                .trees = trees_,
+                                .all_samples = samples_,
+                                .samples = samples,
+                                .order = order,
+                                .spare = other,
+                                .nodes = nodes});
+  return order;
+}
+
+}  // namespace flaunay::points

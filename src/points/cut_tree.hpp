@@ -1,0 +1,61 @@
+// Trees of cuts, which divide sets of points into blocks.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host/runtime.hpp"
+#include "shared/records.h"
+
+namespace flaunay::points {
+
+/// A set, which has points [first_point, first_point + points), and the depth that its tree shall have.
+struct SetToCut {
+  int depth;
+  std::size_t first_point, points;
+};
+
+/// Trees with 2^depth leaves, stored like a heap: node k has the children 2k and 2k + 1, and node 0 is not
+/// used. Cuts go across the longer interquartile range of the samples. The trees of all sets are made at
+/// once, on the device, from the same number of samples per leaf. No function waits. Memory comes from the
+/// runtime's arena, in the caller's scope.
+class CutTrees {
+ public:
+  CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, std::size_t samples_per_leaf);
+
+  /// The number of samples of all trees; they are stored tree by tree.
+  std::size_t samples() const { return samples_; }
+  /// The number of nodes of all trees; they are stored tree by tree.
+  std::size_t nodes() const { return nodes_; }
+
+  struct Samples {
+    host::Buffer<cl_double2> points;
+    host::Buffer<cl_int> indices;
+  };
+  /// Divides each set into as many equal parts as it has samples, and draws one point from each part by a
+  /// fixed rule. input: x0 y0 x1 y1 ...
+  Samples draw(const host::Buffer<cl_double>& input) const;
+  /// Computes the nodes from m samples. Returns the numbers of the samples in the order of the leaves; behind
+  /// them, the array has m further entries in another such order. O(m log m).
+  host::Buffer<cl_int> cut(const host::Buffer<cl_double2>& samples,
+                           const host::Buffer<kernel::cut_node>& nodes) const;
+
+  /// An upper bound of the memory for this many trees with this many leaves in total, without alignment.
+  static std::size_t bytes(std::size_t trees, std::size_t leaves, std::size_t samples_per_leaf);
+
+ private:
+  template <typename Kernel>
+  void launch(std::size_t items_per_chunk, const Kernel& kernel) const;
+  void sort_chunks(const host::Buffer<cl_double2>& samples, const host::Buffer<cl_int>& order) const;
+
+  host::Runtime& runtime_;
+  std::size_t samples_ = 0, nodes_ = 0, chunks_ = 0;
+  int levels_above_chunks_ = 0;
+  host::Buffer<kernel::sampled_tree> trees_{};
+  host::Buffer<cl_int> first_chunks_{};
+};
+
+}  // namespace flaunay::points

@@ -1,0 +1,53 @@
+// Distributes points to blocks: the leaves of cut trees, each small enough for one work-item.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/magnitudes.hpp"
+#include "host/runtime.hpp"
+#include "points/cut_tree.hpp"
+#include "shared/records.h"
+
+namespace flaunay::points {
+
+using namespace geometry;
+using host::Arena;
+using host::Buffer;
+
+/// What every stage works with.
+struct Workspace {
+  host::Runtime& runtime;
+  Arena& persistent;  ///< arrays that live as long as the call
+  Bounds bounds{};
+
+  Arena& scratch() { return runtime.arena(); }
+};
+
+/// The leaves of all sets' cut trees.
+struct Blocks {
+  std::size_t sets = 0;
+  std::size_t points = 0;
+  std::size_t count = 0;
+  std::vector<cl_int> set_blocks;           ///< sets + 1: the first block of each set
+  std::vector<cl_int> offsets;              ///< count + 1: the first point of each block
+  std::vector<kernel::block_merge> merges;  ///< from the leaves to the root
+  /// Merges [level_ends[l - 1], level_ends[l]) are independent of each other.
+  std::vector<std::size_t> level_ends;
+  Buffer<cl_int> device_set_blocks{}, device_offsets{};
+  Buffer<kernel::block_merge> device_merges{};
+  Buffer<kernel::cut_node> device_nodes{};  ///< the nodes of all trees
+  /// The scaled points, block by block, and their indices in the input. After blocks are triangulated, the
+  /// distinct points of each block come first; these are its vertices.
+  Buffer<cl_double2> vertices{};
+  Buffer<cl_int> source{};
+};
+
+/// Checks and scales the points, x0 y0 x1 y1 ..., and distributes them to blocks. representatives: set to its
+/// own index for every point. Throws Error(input) for points that are not finite or whose magnitudes differ
+/// too much. O(n log n).
+Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
+                   const Buffer<cl_int>& representatives);
+
+}  // namespace flaunay::points

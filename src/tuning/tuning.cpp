@@ -1,0 +1,285 @@
+#include "tuning/tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "host/error.hpp"
+#include "shared/limits.h"
+
+namespace flaunay {
+namespace {
+
+using host::DeviceError;
+
+constexpr std::size_t kSmallRegion = kernel::DEFAULT_SMALL_REGION;
+constexpr std::size_t kLargestGroup = 1024;
+constexpr std::size_t kLargestValue = std::size_t{1} << 30;
+
+// A value of the table: a number, or a number per compute unit of the device.
+struct Amount {
+  std::size_t number;
+  bool is_per_unit = false;
+};
+constexpr Amount per_unit(std::size_t number) { return {number, true}; }
+
+struct Row {
+  const char* name;
+  std::size_t Tuning::*member;
+  Amount cpu, gpu;
+  Amount small;  ///< odd sizes that make every boundary occur on small input, for tests
+  const char* reason;
+};
+
+constexpr Row kTable[] = {
+    {"map_group",
+     &Tuning::map_group,
+     {256},
+     {256},
+     {3},
+     "A CPU runs a group in one loop, which it enters once; 8 warps hide a GPU's latency."},
+    {"chunk_group",
+     &Tuning::chunk_group,
+     {1},
+     {64},
+     {2},
+     "On a CPU a work-item with its chunk is a task for a core; on a GPU two warps share a multiprocessor."},
+    {"chunk_least",
+     &Tuning::chunk_least,
+     {1024},
+     {32},
+     {5},
+     "A CPU's chunk must outweigh its launch; a GPU needs many work-items more than long ones."},
+    {"chunks_most",
+     &Tuning::chunks_most,
+     per_unit(8),
+     {0},
+     {0},
+     "A few chunks per core balance the load; more would only make the scan of their sums longer."},
+    {"sort_bits",
+     &Tuning::sort_bits,
+     {8},
+     {4},
+     {3},
+     "256 counters fit a core's first-level cache; a GPU has them in local memory for each work-item."},
+    {"sort_group",
+     &Tuning::sort_group,
+     {1},
+     {128},
+     {4},
+     "As chunks on a CPU; on a GPU what local memory has room for."},
+    {"sort_items",
+     &Tuning::sort_items,
+     {0},
+     {16},
+     {3},
+     "As chunks on a CPU; on a GPU enough to make use of the counters."},
+    {"list_workers",
+     &Tuning::list_workers,
+     per_unit(16),
+     {16384},
+     {7},
+     "Lists of undecided predicates are short as a rule, and of uneven cost."},
+    {"block_workers",
+     &Tuning::block_workers,
+     per_unit(2),
+     {16384},
+     {3},
+     "Blocks are handed out one by one; a CPU's work-items keep their scratch in a core's cache."},
+    {"block_group",
+     &Tuning::block_group,
+     {1},
+     {32},
+     {2},
+     "Work-items that solve blocks diverge: a warp is enough."},
+    {"large_blocks",
+     &Tuning::large_blocks,
+     {4},
+     {4},
+     {4},
+     "Equal points cannot be cut; one large block must not make the scratch of all work-items as large."},
+    {"scratch_per_point",
+     &Tuning::scratch_per_point,
+     {2},
+     {2},
+     {2},
+     "Memory stays proportional to the points."},
+    {"fetch_ahead",
+     &Tuning::fetch_ahead,
+     {6144},
+     {0},
+     {0},
+     "3 pairs per point of a block: an edge rarely leads farther. GPUs hide waiting otherwise."},
+    {"sorted_queries_least",
+     &Tuning::sorted_queries_least,
+     {16384},
+     {16384},
+     {4},
+     "From here on sorting queries saves more than it costs (PoCL, 2 cores: 0.56 to 0.17 s per million)."},
+    {"vertices_per_leaf",
+     &Tuning::vertices_per_leaf,
+     {16},
+     {16},
+     {16},
+     "A walk from the sample in a leaf takes a few steps."},
+    {"in_host_memory",
+     &Tuning::in_host_memory,
+     {1},
+     {0},
+     {0},
+     "A CPU's kernels need no copies of the caller's memory."},
+    {"separate_buffers",
+     &Tuning::separate_buffers,
+     {0},
+     {0},
+     {1},
+     "Shows a simulator every access beyond an array."},
+    {"small_region",
+     &Tuning::small_region,
+     {kSmallRegion},
+     {kSmallRegion},
+     {kSmallRegion},
+     "What a work-item keeps in private memory; larger regions are rare."},
+    {"block_points",
+     &Tuning::block_points,
+     {2048},
+     {2048},
+     {2048},
+     "With what its solution needs, a block stays in a core's second-level cache."},
+    {"samples_per_block",
+     &Tuning::samples_per_block,
+     {16},
+     {16},
+     {16},
+     "The largest of so many blocks holds less than twice its share of the points, as a rule."},
+};
+
+// Devices that their kind's column does not suit, by a part of their name; tuning: as FLAUNAY_TUNING has it.
+struct NamedDevice {
+  const char* name;
+  const char* tuning;
+  const char* reason;
+};
+constexpr NamedDevice kNamedDevices[] = {
+    {"Oclgrind", "cpu,fetch_ahead=0", "A simulator has no cache to fetch into."},
+};
+
+constexpr std::size_t kPointsOfASmallBlock = 6;
+
+[[noreturn]] void throw_unknown(const std::string& given) {
+  throw DeviceError(
+      fmt::format("FLAUNAY_TUNING is '{}'; it can be cpu, gpu, gpu:N with groups of N work-items (1 to {}), "
+                  "small, or small-blocks, and values by name such as block_group=64, separated by commas",
+                  given, kLargestGroup));
+}
+
+Tuning column(Amount Row::*kind, const boost::compute::device& device) {
+  const std::size_t units = std::max<std::size_t>(1, device.compute_units());
+  Tuning tuning;
+  for (const Row& row : kTable) {
+    const Amount& amount = row.*kind;
+    tuning.*row.member = amount.is_per_unit ? amount.number * units : amount.number;
+  }
+  return tuning;
+}
+
+// Reads a positive number, which is at most `most`.
+std::optional<std::size_t> number_of(const std::string& digits, std::size_t most) {
+  constexpr std::size_t kMostDigits = 10;
+  if (digits.empty() || digits.size() > kMostDigits ||
+      digits.find_first_not_of("0123456789") != std::string::npos) {
+    return {};
+  }
+  const std::size_t number = std::stoul(digits);
+  return number <= most ? std::optional(number) : std::nullopt;
+}
+
+std::optional<Tuning> kind_named(const std::string& name, const boost::compute::device& device) {
+  if (name == "cpu") return column(&Row::cpu, device);
+  if (name == "gpu") return column(&Row::gpu, device);
+  if (name == "small") return column(&Row::small, device);
+  if (name == "small-blocks") {
+    Tuning tuning = column(&Row::small, device);
+    tuning.block_points = kPointsOfASmallBlock;
+    return tuning;
+  }
+  const std::string prefix = "gpu:";
+  if (name.compare(0, prefix.size(), prefix) != 0) return {};
+  const auto group = number_of(name.substr(prefix.size()), kLargestGroup);
+  if (!group || *group == 0) return {};
+  Tuning tuning = column(&Row::gpu, device);
+  tuning.map_group = tuning.chunk_group = tuning.sort_group = tuning.block_group = *group;
+  return tuning;
+}
+
+// Reads "name=value" with a name of the table; returns false if it is something else.
+bool override_value(Tuning& tuning, const std::string& part) {
+  const std::size_t equals = part.find('=');
+  if (equals == std::string::npos) return false;
+  const auto row = std::find_if(std::begin(kTable), std::end(kTable),
+                                [&](const Row& r) { return part.compare(0, equals, r.name) == 0; });
+  const auto number = number_of(part.substr(equals + 1), kLargestValue);
+  if (row == std::end(kTable) || !number) return false;
+  tuning.*row->member = *number;
+  return true;
+}
+
+std::vector<std::string> parts_of(const std::string& list) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    parts.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+// given: as FLAUNAY_TUNING has it; what it leaves open is as the device's kind has it.
+Tuning tuning_named(const std::string& given, const boost::compute::device& device) {
+  const bool is_cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
+  Tuning tuning = column(is_cpu ? &Row::cpu : &Row::gpu, device);
+  if (given.empty()) return tuning;
+  bool is_first = true;
+  for (const std::string& part : parts_of(given)) {
+    const auto kind = is_first ? kind_named(part, device) : std::nullopt;
+    if (kind) {
+      tuning = *kind;
+    } else if (!override_value(tuning, part)) {
+      throw_unknown(given);
+    }
+    is_first = false;
+  }
+  return tuning;
+}
+
+// What is said of the device by its name; empty if nothing is.
+std::string tuning_by_name(const boost::compute::device& device) {
+  for (const NamedDevice& named : kNamedDevices) {
+    if (device.name().find(named.name) != std::string::npos) return named.tuning;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string Tuning::build_options() const {
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}", Sizes::build_options(), small_region,
+                     fetch_ahead);
+}
+
+std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
+  const char* const given = std::getenv("FLAUNAY_TUNING");
+  const bool is_given = given != nullptr && *given != '\0';
+  auto tuning = std::make_shared<Tuning>(tuning_named(is_given ? given : tuning_by_name(device), device));
+  const host::DeviceLimits limits = host::limits_of(device);
+  host::fit(*tuning, limits);
+  tuning->block_group = std::min(tuning->block_group, std::max<std::size_t>(1, limits.work_group));
+  return tuning;
+}
+
+const Tuning& tuning_of(const host::Runtime& runtime) { return dynamic_cast<const Tuning&>(runtime.sizes()); }
+
+}  // namespace flaunay

@@ -1,0 +1,55 @@
+// The tuning table: every size that affects the speed, per kind of device, with its reason.
+#pragma once
+
+#include <boost/compute/device.hpp>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "host/runtime.hpp"
+
+namespace flaunay {
+
+/// The sizes for one device. tuning.cpp has the values and the reasons.
+struct Tuning : host::Sizes {
+  /// Number of work-items that share a list whose length only the device knows.
+  std::size_t list_workers = 1;
+  /// Number of work-items that share the blocks, and the size of their work-groups.
+  std::size_t block_workers = 1;
+  std::size_t block_group = 1;
+  /// Blocks with more than this many times block_points points are triangulated by a single work-item, which
+  /// has its own scratch memory.
+  std::size_t large_blocks = 1;
+  /// The scratch memory of all work-items that solve blocks is limited to this many times the points.
+  std::size_t scratch_per_point = 1;
+  /// Pairs of edges that are fetched into the cache before they are needed; 0: none.
+  std::size_t fetch_ahead = 0;
+  /// If a locator gets at least this many queries, it sorts them by their place in the plane.
+  std::size_t sorted_queries_least = 1;
+  /// The smallest number of vertices per leaf of a locator's tree.
+  std::size_t vertices_per_leaf = 1;
+
+  // The order of triangles depends on the following sizes. So they are the same for every device, and only
+  // tests change them.
+
+  /// The largest number of corners of a region that one work-item triangulates in private memory.
+  std::size_t small_region = 1;
+  /// The largest number of points of a block.
+  std::size_t block_points = 1;
+  /// Samples per block, for the tree of cuts.
+  std::size_t samples_per_block = 1;
+
+  std::shared_ptr<host::Sizes> copy() const override { return std::make_shared<Tuning>(*this); }
+  std::string build_options() const override;
+};
+
+/// The sizes for a device, reduced to its limits. For tests and experiments, the environment variable
+/// FLAUNAY_TUNING overrides them: a kind ("cpu", "gpu", "gpu:N" with all work-groups of N work-items, 1 to
+/// 1024, "small", "small-blocks"), or values by name ("block_group=64"), or both, separated by commas. Throws
+/// DeviceError, which says what is allowed, if FLAUNAY_TUNING is not valid.
+std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device);
+
+/// The sizes of a runtime, which must be a Tuning.
+const Tuning& tuning_of(const host::Runtime& runtime);
+
+}  // namespace flaunay

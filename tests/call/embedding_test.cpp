@@ -1,0 +1,1041 @@
+// The device interface as programs use it that have a context, queues and buffers of their own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "flaunay/device_memory.hpp"
+#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/embedder.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/opencl_calls.hpp"
+#include "tests/support/reference.hpp"
+#include "tests/support/same.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+constexpr Parts kAll{true, true, true, true, true};
+constexpr Parts kTriangles{true, false, false, false, false};
+
+using Offsets = std::vector<std::size_t>;
+
+/// One context, and a triangulator in it, for all tests.
+struct World {
+  World() : embedder(triangulator().device_id()), in_context(embedder.context(), embedder.device()) {}
+  Embedder embedder;
+  Triangulator in_context;
+};
+
+class Worlds : public ::testing::Environment {
+ public:
+  static World& get() {
+    if (!instance()) instance() = std::make_unique<World>();
+    return *instance();
+  }
+  void TearDown() override { instance().reset(); }
+
+ private:
+  static std::unique_ptr<World>& instance() {
+    static std::unique_ptr<World> world;
+    return world;
+  }
+};
+[[maybe_unused]] ::testing::Environment* const kWorlds = ::testing::AddGlobalTestEnvironment(new Worlds);
+
+Embedder& embedder() { return Worlds::get().embedder; }
+Triangulator& embedded() { return Worlds::get().in_context; }
+
+DevicePoints points_in(const Memory& memory, std::size_t count) {
+  DevicePoints points;
+  points.memory = memory.get();
+  points.count = count;
+  return points;
+}
+
+Enqueue on(const Queue& queue) {
+  Enqueue enqueue;
+  enqueue.queue = queue.get();
+  return enqueue;
+}
+
+Enqueue on_own() {
+  Enqueue enqueue;
+  enqueue.queue = embedder().queue();
+  return enqueue;
+}
+
+Triangulation expected_of(const Coordinates& coordinates, const Offsets& offsets) {
+  Options options;
+  options.halfedges = true;
+  return triangulator().triangulate(coordinates.data(), offsets, options);
+}
+
+void expect_same(const DeviceTriangulation& result, const Triangulation& expected,
+                 cl_command_queue queue = nullptr) {
+  EXPECT_TRUE(same(result.triangle_offsets, expected.triangle_offsets));
+  EXPECT_TRUE(same(result.hull_offsets, expected.hull_offsets));
+  EXPECT_EQ(result.points, expected.representatives.size());
+  const auto read = [&](const DeviceBuffer& buffer, std::size_t count) {
+    return embedder().download<std::int32_t>(buffer.memory(), count, queue);
+  };
+  const std::size_t rows = expected.triangles.size();
+  if (result.parts.triangles) {
+    EXPECT_TRUE(same(read(result.triangles, rows), expected.triangles));
+  }
+  if (result.parts.neighbors) {
+    EXPECT_TRUE(same(read(result.neighbors, rows), expected.neighbors));
+  }
+  if (result.parts.halfedges) {
+    EXPECT_TRUE(same(read(result.halfedges, rows), expected.halfedges));
+  }
+  if (result.parts.hull) {
+    EXPECT_TRUE(same(read(result.hull, expected.hull.size()), expected.hull));
+  }
+  if (result.parts.representatives) {
+    EXPECT_TRUE(same(read(result.representatives, result.points), expected.representatives));
+  }
+}
+
+void expect_error(ErrorKind kind, const std::vector<std::string>& parts, const std::function<void()>& work) {
+  try {
+    work();
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    for (const std::string& part : parts) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+}
+
+void expect_usage_error(const std::vector<std::string>& parts, const std::function<void()>& work) {
+  expect_error(ErrorKind::usage, parts, work);
+}
+
+std::vector<float> narrowed(const Coordinates& coordinates) {
+  std::vector<float> narrow(coordinates.begin(), coordinates.end());
+  // What underflows or overflows would make other input than is meant.
+  for (float& x : narrow) x = std::isfinite(x) ? x : 0.0f;
+  return narrow;
+}
+
+// Sets of sizes 0 to 40, and one larger than a block.
+std::pair<Coordinates, Offsets> nested_sets() {
+  Coordinates all;
+  Offsets offsets{0};
+  const char* const names[] = {"uniform", "grid", "collinear", "circle", "random-integers"};
+  for (std::size_t s = 0; s < 30; ++s) {
+    const std::size_t n = s == 17 ? 2500 : s * 7 % 41;
+    const Coordinates one = make_fixture(names[s % 5], n, s);
+    all.insert(all.end(), one.begin(), one.end());
+    offsets.push_back(all.size() / 2);
+  }
+  return {all, offsets};
+}
+
+TEST(SmallEmbedding, ResultsAreThoseOfTheHostsInterface) {
+  for (const char* const name : {"uniform", "grid", "collinear", "circle", "random-integers"}) {
+    for (const std::size_t n : {1u, 2u, 3u, 40u}) {
+      SCOPED_TRACE(name + std::to_string(n));
+      const Coordinates coordinates = make_fixture(name, n, 3);
+      const Memory memory = embedder().upload(coordinates);
+      DeviceTriangulation result;
+      embedded().triangulate(points_in(memory, n), result, kAll, on_own());
+      expect_same(result, expected_of(coordinates, {0, n}));
+    }
+  }
+}
+
+TEST(Embedding, LargerResultsAreThoseOfTheHostsInterface) {
+  for (const Fixture& fixture : all_fixtures()) {
+    SCOPED_TRACE(fixture.name);
+    const Coordinates coordinates = fixture.make(5000, 8);
+    const Memory memory = embedder().upload(coordinates);
+    DeviceTriangulation result;
+    embedded().triangulate(points_in(memory, coordinates.size() / 2), result, kAll, on_own());
+    expect_same(result, expected_of(coordinates, {0, coordinates.size() / 2}));
+  }
+}
+
+TEST(SmallEmbedding, PointsMayBeFloatsAndBeginAnywhere) {
+  for (const std::size_t first : {0u, 1u, 13u}) {
+    for (const std::size_t n : {0u, 5u, 60u}) {
+      SCOPED_TRACE(std::to_string(first) + " " + std::to_string(n));
+      // What precedes the points is not finite and must not matter.
+      Coordinates coordinates(2 * first, std::nan(""));
+      const Coordinates points = make_fixture("grid", n, 2);
+      coordinates.insert(coordinates.end(), points.begin(), points.end());
+      std::vector<float> narrow(coordinates.begin(), coordinates.end());
+      const Memory wide_memory = embedder().upload(coordinates), narrow_memory = embedder().upload(narrow);
+      const Triangulation expected = expected_of(points, {0, n});
+      for (const Precision precision : {Precision::float64, Precision::float32}) {
+        DevicePoints given = points_in(precision == Precision::float64 ? wide_memory : narrow_memory, n);
+        given.precision = precision;
+        given.first = first;
+        DeviceTriangulation result;
+        embedded().triangulate(given, result, kAll, on_own());
+        expect_same(result, expected);
+      }
+    }
+  }
+}
+
+TEST(SmallEmbedding, FloatsOfTheHostAreTheSameNumbers) {
+  for (const research::Mode mode :
+       {research::Mode::blocks, research::Mode::flattened, research::Mode::dwyer}) {
+    const std::vector<float> narrow = narrowed(make_fixture("uniform", 60, 9));
+    const Coordinates wide(narrow.begin(), narrow.end());
+    research::Options options;
+    options.mode = mode;
+    const Triangulation a = research::triangulate(triangulator(), narrow.data(), 60, options);
+    const Triangulation b = research::triangulate(triangulator(), wide.data(), 60, options);
+    EXPECT_TRUE(same(a.triangles, b.triangles));
+    EXPECT_TRUE(same(a.neighbors, b.neighbors));
+    const Triangulation c = research::triangulate(triangulator(), narrow.data(), Offsets{0, 20, 60}, options);
+    EXPECT_EQ(c.triangle_offsets.size(), 3u);
+  }
+}
+
+TEST(SmallEmbedding, HalfedgesOfEveryMode) {
+  const Coordinates coordinates = make_fixture("uniform", 50, 4);
+  for (const research::Mode mode :
+       {research::Mode::blocks, research::Mode::flattened, research::Mode::recursive, research::Mode::dwyer,
+        research::Mode::partition}) {
+    SCOPED_TRACE(to_string(mode));
+    research::Options options;
+    options.mode = mode;
+    options.halfedges = true;
+    for (const bool neighbors : {false, true}) {
+      options.neighbors = neighbors;
+      const Triangulation result =
+          research::triangulate(triangulator(), coordinates.data(), Offsets{0, 30, 50}, options);
+      EXPECT_TRUE(same(result.halfedges, reference_halfedges(result.triangles)));
+      EXPECT_EQ(result.neighbors.empty(), !neighbors);
+    }
+  }
+}
+
+TEST(SmallEmbedding, NestedSetsWithOffsetsFromEitherSide) {
+  const auto [coordinates, offsets] = nested_sets();
+  const Memory memory = embedder().upload(coordinates);
+  const Triangulation expected = expected_of(coordinates, offsets);
+  DevicePoints points = points_in(memory, offsets.back());
+  points.offsets = offsets;
+  DeviceTriangulation result;
+  embedded().triangulate(points, result, kAll, on_own());
+  expect_same(result, expected);
+  EXPECT_EQ(result.point_offsets, offsets);
+
+  points.offsets.clear();
+  const Memory device_offsets = embedder().upload(std::vector<std::int32_t>(offsets.begin(), offsets.end()));
+  points.device_offsets = device_offsets.get();
+  points.sets = offsets.size() - 1;
+  embedded().triangulate(points, result, kAll, on_own());
+  expect_same(result, expected);
+  EXPECT_EQ(result.point_offsets, offsets);
+}
+
+TEST(SmallEmbedding, OnlyWhatIsAskedForIsMade) {
+  const Coordinates coordinates = make_fixture("uniform", 50, 5);
+  const Memory memory = embedder().upload(coordinates);
+  const Triangulation expected = expected_of(coordinates, {0, 50});
+  std::size_t launches = std::numeric_limits<std::size_t>::max();
+  for (const Parts& parts :
+       {kAll, Parts{true, true, false, false, false}, Parts{true, false, true, false, false}, kTriangles,
+        Parts{false, false, false, true, false}, Parts{false, false, false, false, true}}) {
+    DeviceTriangulation result;
+    embedded().triangulate(points_in(memory, 50), result, parts, on_own());
+    EXPECT_EQ(result.triangles.memory() != nullptr, parts.triangles);
+    EXPECT_EQ(result.neighbors.memory() != nullptr, parts.neighbors);
+    EXPECT_EQ(result.halfedges.memory() != nullptr, parts.halfedges);
+    EXPECT_EQ(result.hull.memory() != nullptr, parts.hull);
+    EXPECT_EQ(result.representatives.memory() != nullptr, parts.representatives);
+    expect_same(result, expected);
+    EXPECT_LE(result.statistics.kernel_launches, launches);
+    if (parts.triangles) launches = result.statistics.kernel_launches + 1;
+  }
+  DeviceTriangulation result;
+  for (const Parts& parts :
+       {Parts{false, true, false, false, false}, Parts{false, false, true, false, false}}) {
+    cl_event done = reinterpret_cast<cl_event>(8);
+    Enqueue enqueue;
+    enqueue.event = &done;
+    expect_usage_error({"triangles"},
+                       [&] { embedded().triangulate(points_in(memory, 50), result, parts, enqueue); });
+    EXPECT_EQ(done, nullptr);
+  }
+}
+
+TEST(SmallEmbedding, ResultsInTheCallersBuffers) {
+  const std::size_t n = 40;
+  const Coordinates coordinates = make_fixture("uniform", n, 6);
+  const Memory memory = embedder().upload(coordinates);
+  const Triangulation expected = expected_of(coordinates, {0, n});
+  const std::vector<std::int32_t> blank(6 * n + 8, -99);
+  std::vector<Memory> buffers;
+  for (int k = 0; k < 5; ++k) buffers.push_back(embedder().upload(blank));
+  DeviceTriangulation result;
+  DeviceBuffer* const all[] = {&result.triangles, &result.neighbors, &result.halfedges, &result.hull,
+                               &result.representatives};
+  for (int k = 0; k < 5; ++k) *all[k] = DeviceBuffer(buffers[k].get());
+  embedded().triangulate(points_in(memory, n), result, kAll, on_own());
+  expect_same(result, expected);
+  const std::size_t written[] = {expected.triangles.size(), expected.triangles.size(),
+                                 expected.triangles.size(), expected.hull.size(), n};
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(all[k]->memory(), buffers[k].get());
+    EXPECT_TRUE(all[k]->is_callers());
+    const auto values = embedder().download<std::int32_t>(buffers[k].get(), blank.size());
+    for (std::size_t i = written[k]; i < values.size(); ++i) ASSERT_EQ(values[i], -99) << k << " " << i;
+  }
+  // A buffer of the caller is never replaced.
+  const char* const names[] = {"triangles", "neighbors", "halfedges", "hull", "representatives"};
+  for (int k = 0; k < 5; ++k) {
+    const std::size_t bytes = (k < 3 ? 24 : 4) * n;
+    const Memory small = embedder().make_buffer(bytes - 1), enough = embedder().make_buffer(bytes);
+    *all[k] = DeviceBuffer(small.get());
+    expect_usage_error({names[k], "too small", std::to_string(bytes - 1), std::to_string(bytes)},
+                       [&] { embedded().triangulate(points_in(memory, n), result, kAll, on_own()); });
+    *all[k] = DeviceBuffer(enough.get());
+    embedded().triangulate(points_in(memory, n), result, kAll, on_own());
+    expect_same(result, expected);
+  }
+}
+
+TEST(SmallEmbedding, QueuesInOrderAndNot) {
+  const Coordinates coordinates = nested_sets().first;
+  const Offsets offsets{0, coordinates.size() / 4, coordinates.size() / 2};
+  const Memory memory = embedder().upload(coordinates);
+  const Triangulation expected = expected_of(coordinates, offsets);
+  DevicePoints points = points_in(memory, offsets.back());
+  points.offsets = offsets;
+  const Queue unordered = embedder().make_queue(CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
+  const Queue ordered = embedder().make_queue();
+  DeviceTriangulation result;
+  // The same memory on one queue after the other, without waiting in between.
+  for (int k = 0; k < 6; ++k) {
+    const Queue& queue = k % 2 == 0 ? unordered : ordered;
+    cl_event done = nullptr;
+    Enqueue enqueue = on(queue);
+    enqueue.event = &done;
+    embedded().triangulate(points, result, kAll, enqueue);
+    if (k < 3) continue;
+    ASSERT_NE(done, nullptr);
+    check(clWaitForEvents(1, &done), "clWaitForEvents");
+    expect_same(result, expected);
+    clReleaseEvent(done);
+  }
+  embedded().triangulate(points, result, kAll);  // its own queue
+  expect_same(result, expected, embedded().queue());
+}
+
+TEST(Embedding, WaitsForEventsAndEndsWithOne) {
+  const std::size_t n = 3000;
+  const Coordinates coordinates = make_fixture("uniform", n, 7);
+  const Memory memory = embedder().make_buffer(16 * n);
+  cl_int code = CL_SUCCESS;
+  const cl_event ready = clCreateUserEvent(embedder().context(), &code);
+  check(code, "clCreateUserEvent");
+  const Queue other = embedder().make_queue();
+  std::thread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    clEnqueueWriteBuffer(other.get(), memory.get(), CL_TRUE, 0, 16 * n, coordinates.data(), 0, nullptr,
+                         nullptr);
+    clSetUserEventStatus(ready, CL_COMPLETE);
+  });
+  cl_event done = nullptr;
+  Enqueue enqueue = on_own();
+  enqueue.wait_for = {ready};
+  enqueue.event = &done;
+  DeviceTriangulation result;
+  embedded().triangulate(points_in(memory, n), result, kAll, enqueue);
+  writer.join();
+  clReleaseEvent(ready);
+  ASSERT_NE(done, nullptr);
+  check(clWaitForEvents(1, &done), "clWaitForEvents");
+  cl_int status = -1;
+  clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+  EXPECT_EQ(status, CL_COMPLETE);
+  clReleaseEvent(done);
+  expect_same(result, expected_of(coordinates, {0, n}));
+}
+
+TEST(SmallEmbedding, NoPointsAreNoError) {
+  DeviceTriangulation result;
+  cl_event done = nullptr;
+  Enqueue enqueue = on_own();
+  enqueue.event = &done;
+  embedded().triangulate(DevicePoints(), result, kAll, enqueue);
+  ASSERT_NE(done, nullptr);
+  check(clWaitForEvents(1, &done), "clWaitForEvents");
+  clReleaseEvent(done);
+  EXPECT_EQ(result.triangle_offsets, (Offsets{0, 0}));
+  EXPECT_EQ(result.hull_offsets, (Offsets{0, 0}));
+  EXPECT_EQ(result.points, 0u);
+  DevicePoints no_sets;
+  no_sets.offsets = {0};
+  embedded().triangulate(no_sets, result, kAll, on_own());
+  EXPECT_EQ(result.triangle_offsets, (Offsets{0}));
+}
+
+TEST(Embedding, AGpusSizesNeedNoMoreMemoryTheSecondTimeEither) {
+  const ScopedEnvironment gpu("FLAUNAY_TUNING", "gpu");
+  const std::size_t n = 30000;
+  Triangulator fresh(embedder().context(), embedder().device());
+  DeviceTriangulation result;
+  fresh.triangulate(points_in(embedder().upload(make_fixture("uniform", n, 10)), n), result, kAll, on_own());
+  for (const Coordinates& other :
+       {make_fixture("uniform", n, 12), make_fixture("grid", n, 13), Coordinates(2 * n, 0.5)}) {
+    const Memory memory = embedder().upload(other);
+    opencl_calls().reset();
+    fresh.triangulate(points_in(memory, n), result, kAll, on_own());
+    EXPECT_EQ(opencl_calls().buffers, 0u);
+    check(clFinish(embedder().queue()), "clFinish");
+  }
+}
+
+TEST(SmallEmbedding, AProfiledCallKeepsTheOrderOfTheOwnQueue) {
+  const std::size_t n = 500;
+  const Coordinates old_points = make_fixture("uniform", n, 1), new_points = make_fixture("uniform", n, 2);
+  Triangulator own(embedder().context(), embedder().device());
+  const Memory memory = embedder().upload(old_points);
+  Enqueue profiled;
+  profiled.profile = true;
+  DeviceTriangulation result;
+  own.triangulate(points_in(memory, n), result, kAll, profiled);
+  // What the owner of the queue enqueues there comes first.
+  check(clEnqueueWriteBuffer(own.queue(), memory.get(), CL_FALSE, 0, 16 * n, new_points.data(), 0, nullptr,
+                             nullptr),
+        "clEnqueueWriteBuffer");
+  own.triangulate(points_in(memory, n), result, kAll, profiled);
+  expect_same(result, expected_of(new_points, {0, n}), own.queue());
+  DeviceVoronoi dual;
+  own.voronoi(points_in(memory, n), result, dual, profiled);
+  const Voronoi expected = own.voronoi(new_points.data(), n, expected_of(new_points, {0, n}));
+  EXPECT_TRUE(same(embedder().download<std::int32_t>(dual.cells.memory(), expected.cells.size(), own.queue()),
+                   expected.cells));
+}
+
+TEST(SmallEmbedding, DestroyingWaitsForWhatWasEnqueued) {
+  const Coordinates coordinates = make_fixture("uniform", 500, 1);
+  const Memory memory = embedder().upload(coordinates);
+  const Queue queue = embedder().make_queue();
+  cl_event done = nullptr;
+  Enqueue enqueue = on(queue);
+  enqueue.event = &done;
+  DeviceTriangulation result;
+  std::unique_ptr<Locator> locator;
+  {
+    Triangulator passing(embedder().context(), embedder().device());
+    passing.triangulate(points_in(memory, 500), result, kAll, on(queue));
+    locator = std::make_unique<Locator>(passing, points_in(memory, 500), result, on(queue));
+    passing.triangulate(points_in(memory, 500), result, kAll, enqueue);
+  }
+  cl_int status = -1;
+  clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+  EXPECT_EQ(status, CL_COMPLETE);
+  clReleaseEvent(done);
+  EXPECT_EQ(locator->locate(coordinates.data(), 500).size(), 500u);
+}
+
+// Counted where the calls are made, and by flaunay itself.
+TEST(Embedding, ASecondCallAllocatesNothingAndOnlySizesCross) {
+  const std::size_t n = 100000;
+  const Memory first = embedder().upload(make_fixture("uniform", n, 10));
+  const Memory second = embedder().upload(make_fixture("grid", n, 11));
+  Triangulator fresh(embedder().context(), embedder().device());
+  DeviceTriangulation result;
+  OpenclCalls& calls = opencl_calls();
+  calls.reset();
+  fresh.triangulate(points_in(first, n), result, kAll, on_own());
+  EXPECT_GT(calls.buffers, 0u);
+  EXPECT_EQ(calls.buffers, result.statistics.device_allocations);
+  for (const Memory& memory : {first, second, first}) {
+    calls.reset();
+    fresh.triangulate(points_in(memory, n), result, kAll, on_own());
+    EXPECT_EQ(calls.buffers, 0u);
+    EXPECT_EQ(result.statistics.device_allocations, 0u);
+    EXPECT_EQ(calls.bytes_to_host, result.statistics.bytes_to_host);
+    EXPECT_EQ(calls.bytes_to_device, result.statistics.bytes_to_device);
+    EXPECT_EQ(calls.waits, result.statistics.host_waits);
+    // Some numbers for each of the 64 blocks: the points alone are 1,600,000 bytes.
+    EXPECT_LE(calls.bytes_to_host + calls.bytes_to_device, 64u * 200);
+    EXPECT_EQ(calls.waits, 6u);
+  }
+  fresh.triangulate(points_in(first, 1000), result, kAll, on_own());
+  EXPECT_EQ(result.statistics.host_waits, 5u);
+  // Nor do points that need more of it: others at random, or all in one block; nor fewer.
+  for (const Coordinates& other :
+       {make_fixture("uniform", n, 12), make_fixture("line", n, 13), Coordinates(2 * n, 0.5)}) {
+    const Memory memory = embedder().upload(other);
+    calls.reset();
+    fresh.triangulate(points_in(memory, n), result, kAll, on_own());
+    EXPECT_EQ(calls.buffers, 0u);
+  }
+  calls.reset();
+  fresh.triangulate(points_in(first, n / 3), result, kTriangles, on_own());
+  EXPECT_EQ(calls.buffers, 0u);
+}
+
+TEST(Embedding, WorksInTheCallersWorkspace) {
+  Triangulator fresh(embedder().context(), embedder().device());
+  const Queue queue = embedder().make_queue();
+  // The worst that a size can need: all points in one block; a tree for each set; no duplicates at all.
+  const std::vector<std::pair<Coordinates, Offsets>> inputs = {
+      {make_fixture("uniform", 20000, 1), {0, 20000}},
+      {Coordinates(40000, 0.25), {0, 20000}},
+      {make_fixture("grid", 20000, 2), {0, 3000, 6000, 6000, 9000, 20000}},
+      {make_fixture("collinear", 3000, 2), {0, 1, 1, 1, 2, 3000}},
+      nested_sets(),
+      {make_fixture("uniform", 1, 2), {0, 1}}};
+  for (const auto& [coordinates, offsets] : inputs) {
+    const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+    SCOPED_TRACE(std::to_string(n) + " points in " + std::to_string(sets));
+    const std::size_t bytes = fresh.workspace_bytes(n, sets);
+    const Memory workspace = embedder().make_buffer(bytes), too_small = embedder().make_buffer(bytes - 1);
+    const std::vector<float> narrow = narrowed(coordinates);
+    const Memory memory = embedder().upload(narrow);  // which needs a copy as well
+    DevicePoints points = points_in(memory, n);
+    points.precision = Precision::float32;
+    points.offsets = offsets;
+    DeviceTriangulation result;
+    fresh.use_workspace(too_small.get());
+    expect_usage_error({"workspace", "too small", std::to_string(bytes)},
+                       [&] { fresh.triangulate(points, result, kTriangles, on(queue)); });
+    fresh.use_workspace(workspace.get());
+    fresh.triangulate(points, result, kAll, on(queue));
+    opencl_calls().reset();
+    fresh.triangulate(points, result, kAll, on(queue));
+    EXPECT_EQ(opencl_calls().buffers, 0u);
+    check(clFinish(queue.get()), "clFinish");
+    expect_same(result, expected_of(Coordinates(narrow.begin(), narrow.end()), offsets));
+  }
+  fresh.use_workspace(nullptr);
+  const Coordinates coordinates = make_fixture("uniform", 100, 1);
+  EXPECT_EQ(fresh.triangulate(coordinates.data(), 100).triangles,
+            expected_of(coordinates, {0, 100}).triangles);
+}
+
+TEST(SmallEmbedding, TheWorkspaceIsABufferOfTheContext) {
+  Triangulator& t = embedded();
+  Embedder stranger(embedder().device());
+  const Memory foreign = stranger.make_buffer(1 << 20);
+  expect_usage_error({"workspace", "context"}, [&] { t.use_workspace(foreign.get()); });
+  const Memory read_only = embedder().make_buffer(1 << 20, CL_MEM_READ_ONLY);
+  expect_usage_error({"workspace", "CL_MEM_READ_ONLY"}, [&] { t.use_workspace(read_only.get()); });
+  for (const cl_mem_flags flags : {CL_MEM_HOST_NO_ACCESS, CL_MEM_HOST_READ_ONLY, CL_MEM_WRITE_ONLY}) {
+    const Memory closed = embedder().make_buffer(1 << 20, flags);
+    expect_usage_error({"workspace", "CL_MEM_HOST_"}, [&] { t.use_workspace(closed.get()); });
+  }
+  const Memory whole = embedder().make_buffer(1 << 20);
+  const cl_buffer_region region{0, 1 << 19};
+  cl_int code = CL_SUCCESS;
+  const Memory part(
+      clCreateSubBuffer(whole.get(), CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code),
+      clReleaseMemObject);
+  check(code, "clCreateSubBuffer");
+  expect_usage_error({"workspace", "sub-buffer"}, [&] { t.use_workspace(part.get()); });
+}
+
+TEST(Embedding, TwoThreadsInOneContext) {
+  const std::size_t n = 4000;
+  const auto work = [&](std::uint64_t seed) {
+    Triangulator own(embedder().context(), embedder().device());
+    const Queue queue = embedder().make_queue();
+    const Coordinates coordinates = make_fixture("uniform", n, seed);
+    const Memory memory = embedder().make_buffer(16 * n);
+    DeviceTriangulation result;
+    std::vector<std::vector<std::int32_t>> seen;
+    for (int k = 0; k < 10; ++k) {
+      clEnqueueWriteBuffer(queue.get(), memory.get(), CL_FALSE, 0, 16 * n, coordinates.data(), 0, nullptr,
+                           nullptr);
+      own.triangulate(points_in(memory, n), result, kAll, on(queue));
+      seen.push_back(embedder().download<std::int32_t>(result.neighbors.memory(),
+                                                       3 * result.statistics.triangles, queue.get()));
+    }
+    return seen;
+  };
+  std::vector<std::vector<std::int32_t>> other;
+  std::thread thread([&] { other = work(21); });
+  const auto mine = work(22);
+  thread.join();
+  for (const auto& [all, seed] : {std::pair(mine, 22), std::pair(other, 21)}) {
+    const Triangulation expected = expected_of(make_fixture("uniform", n, seed), {0, n});
+    ASSERT_EQ(all.size(), 10u);
+    for (const auto& neighbors : all) EXPECT_TRUE(same(neighbors, expected.neighbors));
+  }
+}
+
+TEST(SmallEmbedding, MovesWithItsContext) {
+  const Coordinates coordinates = make_fixture("uniform", 30, 5);
+  const Memory memory = embedder().upload(coordinates);
+  DeviceTriangulation result;
+  Triangulator first(embedder().context(), embedder().device());
+  Triangulator second(std::move(first));
+  EXPECT_EQ(second.context(), embedder().context());
+  EXPECT_EQ(second.device_id(), embedder().device());
+  second.triangulate(points_in(memory, 30), result, kAll, on_own());
+  expect_same(result, expected_of(coordinates, {0, 30}));
+  first = std::move(second);
+  first.triangulate(points_in(memory, 30), result, kAll, on_own());
+  expect_same(result, expected_of(coordinates, {0, 30}));
+}
+
+TEST(SmallEmbedding, ResultsOutliveTheTriangulator) {
+  const Coordinates coordinates = make_fixture("uniform", 30, 5);
+  const Memory memory = embedder().upload(coordinates);
+  DeviceTriangulation result;
+  {
+    Triangulator passing(embedder().context(), embedder().device());
+    passing.triangulate(points_in(memory, 30), result, kAll, on_own());
+  }
+  expect_same(result, expected_of(coordinates, {0, 30}));
+}
+
+/// Whether q lies in the triangle, on its border or in it.
+bool contains(const Coordinates& points, const std::int32_t* corners, const double* q) {
+  for (int k = 0; k < 3; ++k) {
+    if (reference_orient2d(&points[2 * corners[k]], &points[2 * corners[(k + 1) % 3]], q) < 0) return false;
+  }
+  return true;
+}
+
+std::int32_t located(const Coordinates& points, const Triangulation& mesh, std::size_t set, const double* q) {
+  for (std::size_t t = mesh.triangle_offsets[set]; t < mesh.triangle_offsets[set + 1]; ++t) {
+    if (contains(points, &mesh.triangles[3 * t], q)) return static_cast<std::int32_t>(t);
+  }
+  return -1;
+}
+
+/// Of small integers, whose squares are exact.
+std::int32_t nearest(const Coordinates& points, const Triangulation& mesh, std::size_t first,
+                     std::size_t last, const double* q) {
+  const auto key = [&](std::size_t i) {
+    const double x = points[2 * i], y = points[2 * i + 1];
+    return std::array<double, 3>{(x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]), x, y};
+  };
+  std::int32_t best = -1;
+  for (std::size_t i = first; i < last; ++i) {
+    if (best < 0 || key(i) < key(best)) best = mesh.representatives[i];
+  }
+  return best;
+}
+
+// Sets of small integers, one of them empty and one on a line, and as many queries on and beside them.
+struct Queried {
+  Coordinates points, queries, values;
+  Offsets offsets{0}, query_offsets{0};
+
+  Queried() {
+    const char* const names[] = {"random-integers", "grid", "uniform", "grid"};
+    const std::size_t sizes[] = {40, 49, 0, 30}, query_sizes[] = {30, 0, 5, 60};
+    FixtureRandom random(5);
+    for (int s = 0; s < 4; ++s) {
+      Coordinates one = make_fixture(names[s], sizes[s], 3);
+      points.insert(points.end(), one.begin(), one.end());
+      offsets.push_back(points.size() / 2);
+      for (std::size_t k = 0; k < 2 * query_sizes[s]; ++k) {
+        queries.push_back(static_cast<double>(random.integer(-2, 12)) / 2);
+      }
+      query_offsets.push_back(queries.size() / 2);
+    }
+    for (std::size_t i = 0; i < points.size() / 2; ++i)
+      values.push_back(3 * points[2 * i] - 2 * points[2 * i + 1]);
+  }
+
+  std::size_t set_of(std::size_t query) const {
+    return std::upper_bound(query_offsets.begin(), query_offsets.end(), query) - query_offsets.begin() - 1;
+  }
+};
+
+void expect_answers(const Queried& q, const Triangulation& mesh, const std::vector<std::int32_t>& triangles,
+                    const std::vector<std::int32_t>& points, const std::vector<double>& values) {
+  const std::size_t m = q.queries.size() / 2;
+  ASSERT_EQ(triangles.size(), m);
+  ASSERT_EQ(points.size(), m);
+  ASSERT_EQ(values.size(), m);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < m; ++i) {
+    const std::size_t s = q.set_of(i);
+    const double* const query = &q.queries[2 * i];
+    ASSERT_EQ(triangles[i], located(q.points, mesh, s, query)) << i;
+    ASSERT_EQ(points[i], nearest(q.points, mesh, q.offsets[s], q.offsets[s + 1], query)) << i;
+    if (triangles[i] < 0) {
+      ASSERT_TRUE(std::isnan(values[i])) << i;
+    } else {
+      ASSERT_NEAR(values[i], 3 * query[0] - 2 * query[1], 1e-9) << i;
+      ++inside;
+    }
+  }
+  EXPECT_GT(inside, 0u);
+  EXPECT_LT(inside, m);
+}
+
+TEST(SmallLocator, AnswersOfTheHostsInterface) {
+  const Queried q;
+  const Triangulation mesh = expected_of(q.points, q.offsets);
+  Locator made(triangulator(), q.points.data(), q.offsets, mesh);
+  Locator locator(std::move(made));
+  expect_answers(q, mesh, locator.locate(q.queries.data(), q.query_offsets),
+                 locator.nearest(q.queries.data(), q.query_offsets),
+                 locator.interpolate(q.values.data(), q.queries.data(), q.query_offsets));
+}
+
+TEST(SmallLocator, AnswersInDeviceMemory) {
+  const Queried q;
+  const Triangulation expected = expected_of(q.points, q.offsets);
+  const Memory points_memory = embedder().upload(q.points), values = embedder().upload(q.values);
+  DevicePoints points = points_in(points_memory, q.offsets.back());
+  points.offsets = q.offsets;
+  const Queue unordered = embedder().make_queue(CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
+  DeviceTriangulation mesh;
+  embedded().triangulate(points, mesh, kAll, on(unordered));
+  Locator locator(embedded(), points, mesh, on(unordered));
+  const std::size_t m = q.query_offsets.back();
+  for (const Precision precision : {Precision::float64, Precision::float32}) {
+    const Memory memory = precision == Precision::float64
+                              ? embedder().upload(q.queries)
+                              : embedder().upload(std::vector<float>(q.queries.begin(), q.queries.end()));
+    DevicePoints queries = points_in(memory, m);
+    queries.precision = precision;
+    queries.offsets = q.query_offsets;
+    DeviceBuffer triangles, nearest_points, results;
+    locator.locate(queries, triangles, on(unordered));
+    locator.nearest(queries, nearest_points, on(unordered));
+    locator.interpolate(values.get(), queries, results, on(unordered));
+    check(clFinish(unordered.get()), "clFinish");
+    expect_answers(q, expected, embedder().download<std::int32_t>(triangles.memory(), m),
+                   embedder().download<std::int32_t>(nearest_points.memory(), m),
+                   embedder().download<double>(results.memory(), m));
+  }
+}
+
+TEST(SmallLocator, OutlivesItsTriangulator) {
+  const Coordinates points{0, 0, 4, 0, 0, 4};
+  const Triangulation mesh = expected_of(points, {0, 3});
+  const Locator locator = [&] {
+    Triangulator passing;
+    return Locator(passing, points.data(), 3, mesh);
+  }();
+  const Coordinates queries{1, 1, 4, 4};
+  EXPECT_EQ(const_cast<Locator&>(locator).locate(queries.data(), 2), (std::vector<std::int32_t>{0, -1}));
+}
+
+TEST(SmallLocator, BadUseIsAnError) {
+  const Coordinates points = make_fixture("uniform", 30, 5);
+  Triangulation mesh = expected_of(points, {0, 30});
+  Locator locator(triangulator(), points.data(), 30, mesh);
+  const double* const nothing = nullptr;
+  expect_usage_error({"pointer is null"}, [&] { locator.locate(nothing, 3); });
+  EXPECT_TRUE(locator.locate(nothing, 0).empty());
+  expect_usage_error({"sets"}, [&] { locator.locate(points.data(), {0, 1, 2}); });
+  expect_usage_error({"values", "null"}, [&] { locator.interpolate(nothing, points.data(), 3); });
+  expect_error(ErrorKind::input, {"query 1", "not finite"}, [&] {
+    const Coordinates wrong{0, 0, std::nan(""), 0};
+    locator.nearest(wrong.data(), 2);
+  });
+  expect_usage_error({"another number of points"}, [&] { Locator(triangulator(), points.data(), 29, mesh); });
+  expect_usage_error({"sets"}, [&] { Locator(triangulator(), points.data(), Offsets{0, 5, 30}, mesh); });
+  mesh.neighbors.clear();
+  expect_usage_error({"no neighbours"}, [&] { Locator(triangulator(), points.data(), 30, mesh); });
+
+  const Memory memory = embedder().upload(points);
+  DeviceTriangulation on_device;
+  embedded().triangulate(points_in(memory, 30), on_device, kTriangles, on_own());
+  expect_usage_error({"parts"}, [&] { Locator(embedded(), points_in(memory, 30), on_device, on_own()); });
+  DeviceVoronoi dual;
+  expect_usage_error({"parts"},
+                     [&] { embedded().voronoi(points_in(memory, 30), on_device, dual, on_own()); });
+  embedded().triangulate(points_in(memory, 30), on_device, kAll, on_own());
+  expect_usage_error({"number of points"},
+                     [&] { Locator(embedded(), points_in(memory, 29), on_device, on_own()); });
+  Locator device_locator(embedded(), points_in(memory, 30), on_device, on_own());
+  const Memory small = embedder().make_buffer(4);
+  DeviceBuffer result(small.get());
+  expect_usage_error({"too small"}, [&] { device_locator.locate(points_in(memory, 30), result, on_own()); });
+  expect_usage_error({"values"}, [&] {
+    DeviceBuffer results;
+    device_locator.interpolate(small.get(), points_in(memory, 30), results, on_own());
+  });
+  // One buffer for queries and answers.
+  DeviceBuffer shared(memory.get());
+  expect_usage_error({"two things"}, [&] { device_locator.locate(points_in(memory, 30), shared, on_own()); });
+  dual.cells = dual.circumcentres = DeviceBuffer(embedder().make_buffer(1 << 14).get());
+  expect_usage_error({"two things"},
+                     [&] { embedded().voronoi(points_in(memory, 30), on_device, dual, on_own()); });
+  const DeviceTriangulation moved = std::move(on_device);
+  DeviceVoronoi other;
+  expect_usage_error({"offsets", "moved"},
+                     [&] { embedded().voronoi(points_in(memory, 30), on_device, other, on_own()); });
+  EXPECT_EQ(moved.points, 30u);
+  Embedder stranger(embedder().device());
+  Enqueue foreign;
+  foreign.queue = stranger.queue();
+  expect_usage_error({"queue"}, [&] { device_locator.locate(points_in(memory, 30), result, foreign); });
+}
+
+// Of a set with a tree, whose starts are found by representatives.
+TEST(SmallLocator, WrongArraysAreAnError) {
+  const std::size_t n = 2000;
+  const Coordinates points = make_fixture("uniform", n, 5);
+  const Triangulation right = expected_of(points, {0, n});
+  for (const std::int32_t wrong : {-5, 2000, 2000000000}) {
+    Triangulation mesh = right;
+    std::fill(mesh.representatives.begin(), mesh.representatives.end(), wrong);
+    expect_error(ErrorKind::input, {"representative 0"},
+                 [&] { Locator(triangulator(), points.data(), n, mesh); });
+    mesh = right;
+    std::fill(mesh.neighbors.begin(), mesh.neighbors.end(), wrong);
+    expect_error(ErrorKind::input, {"triangle 0"}, [&] { Locator(triangulator(), points.data(), n, mesh); });
+    mesh = right;
+    mesh.triangles[4] = wrong;
+    expect_error(ErrorKind::input, {"triangle "}, [&] { Locator(triangulator(), points.data(), n, mesh); });
+  }
+}
+
+TEST(SmallVoronoi, OfTheHostAndOfTheDevice) {
+  const Queried q;
+  const Triangulation mesh = expected_of(q.points, q.offsets);
+  const Voronoi dual = triangulator().voronoi(q.points.data(), q.offsets.back(), mesh);
+  const std::size_t n = q.offsets.back();
+  ASSERT_EQ(dual.cell_offsets.size(), n + 1);
+  ASSERT_EQ(dual.cells.size(), mesh.triangles.size());
+  ASSERT_EQ(dual.circumcentres.size(), 2 * mesh.triangles.size() / 3);
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+    const double x = dual.circumcentres[2 * t], y = dual.circumcentres[2 * t + 1];
+    const auto radius = [&](int k) {
+      const std::int32_t i = mesh.triangles[3 * t + k];
+      return std::hypot(q.points[2 * i] - x, q.points[2 * i + 1] - y);
+    };
+    EXPECT_NEAR(radius(1), radius(0), 1e-9 * radius(0));
+    EXPECT_NEAR(radius(2), radius(0), 1e-9 * radius(0));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool is_on_hull =
+        std::find(mesh.hull.begin(), mesh.hull.end(), static_cast<std::int32_t>(i)) != mesh.hull.end();
+    EXPECT_EQ(dual.unbounded[i], is_on_hull) << i;
+    const std::int32_t begin = dual.cell_offsets[i], end = dual.cell_offsets[i + 1];
+    for (std::int32_t k = begin; k < end; ++k) {
+      const std::int32_t* const corners = &mesh.triangles[3 * dual.cells[k]];
+      const auto at = std::find(corners, corners + 3, static_cast<std::int32_t>(i)) - corners;
+      ASSERT_LT(at, 3) << i;
+      // Counter-clockwise: the next triangle lies beyond the edge that arrives at the point.
+      if (k + 1 == end && is_on_hull) continue;
+      const std::int32_t next = k + 1 == end ? dual.cells[begin] : dual.cells[k + 1];
+      EXPECT_EQ(mesh.neighbors[3 * dual.cells[k] + (at + 1) % 3], next) << i;
+    }
+  }
+
+  const Memory memory = embedder().upload(q.points);
+  DevicePoints points = points_in(memory, n);
+  points.offsets = q.offsets;
+  DeviceTriangulation on_device;
+  DeviceVoronoi result;
+  embedded().triangulate(points, on_device, kAll, on_own());
+  embedded().voronoi(points, on_device, result, on_own());
+  EXPECT_TRUE(same(embedder().download<double>(result.circumcentres.memory(), dual.circumcentres.size()),
+                   dual.circumcentres));
+  EXPECT_TRUE(
+      same(embedder().download<std::int32_t>(result.cell_offsets.memory(), n + 1), dual.cell_offsets));
+  EXPECT_TRUE(same(embedder().download<std::int32_t>(result.cells.memory(), dual.cells.size()), dual.cells));
+  EXPECT_TRUE(same(embedder().download<std::uint8_t>(result.unbounded.memory(), n), dual.unbounded));
+  EXPECT_TRUE(
+      triangulator().voronoi(nullptr, 0, triangulator().triangulate(q.points.data(), 0)).cells.empty());
+}
+
+TEST(SmallEmbeddingMisuse, Buffers) {
+  const Coordinates coordinates = make_fixture("uniform", 20, 5);
+  const Memory memory = embedder().upload(coordinates);
+  Embedder stranger(embedder().device());
+  const Memory foreign = stranger.make_buffer(1 << 12);
+  const auto refused = [&](const std::vector<std::string>& parts, const DevicePoints& points,
+                           DeviceTriangulation result = {}) {
+    expect_usage_error(parts, [&] { embedded().triangulate(points, result, kAll, on_own()); });
+  };
+  DevicePoints none;
+  none.count = 20;
+  refused({"no buffer of points"}, none);
+  refused({"points", "another context"}, points_in(foreign, 20));
+  refused({"points", "too small"}, points_in(memory, 21));
+  DevicePoints late = points_in(memory, 20);
+  late.first = 1;
+  refused({"points", "too small"}, late);
+  late.first = std::numeric_limits<std::size_t>::max();
+  refused({"points"}, late);
+  const Memory write_only = embedder().make_buffer(320, CL_MEM_WRITE_ONLY);
+  refused({"points", "CL_MEM_WRITE_ONLY"}, points_in(write_only, 20));
+  const Memory image_like = embedder().make_buffer(480, CL_MEM_READ_ONLY);
+  DeviceTriangulation result;
+  result.triangles = DeviceBuffer(image_like.get());
+  refused({"triangles", "CL_MEM_READ_ONLY"}, points_in(memory, 20), result);
+  result.triangles = DeviceBuffer(foreign.get());
+  refused({"triangles", "another context"}, points_in(memory, 20), result);
+  const Memory shared = embedder().make_buffer(1 << 12);
+  result.triangles = result.neighbors = DeviceBuffer(shared.get());
+  refused({"one buffer", "two things"}, points_in(memory, 20), result);
+  expect_usage_error({"no buffer"}, [] { DeviceBuffer nothing(nullptr); });
+}
+
+TEST(SmallEmbeddingMisuse, Offsets) {
+  const Memory memory = embedder().upload(make_fixture("uniform", 20, 5));
+  DeviceTriangulation result;
+  const auto refused = [&](const std::vector<std::string>& parts, const DevicePoints& points) {
+    expect_usage_error(parts, [&] { embedded().triangulate(points, result, kAll, on_own()); });
+  };
+  DevicePoints points = points_in(memory, 20);
+  for (const Offsets& wrong : {Offsets{1, 20}, Offsets{0, 12, 11, 20}}) {
+    points.offsets = wrong;
+    refused({"offsets", "not decrease"}, points);
+    points.offsets.clear();
+    const Memory on_device = embedder().upload(std::vector<std::int32_t>(wrong.begin(), wrong.end()));
+    points.device_offsets = on_device.get();
+    points.sets = wrong.size() - 1;
+    refused({"offsets", "not decrease"}, points);
+    points.sets += 5;
+    refused({"offsets", "too small"}, points);
+    points.device_offsets = nullptr;
+  }
+  const Memory negative = embedder().upload(std::vector<std::int32_t>{0, -3, 20});
+  points.device_offsets = negative.get();
+  points.sets = 2;
+  refused({"offsets"}, points);
+  points.offsets = {0, 20};
+  refused({"twice"}, points);
+  points.device_offsets = nullptr;
+  points.offsets = {0, 19};
+  refused({"end with 19", "20 points"}, points);
+}
+
+TEST(SmallEmbeddingMisuse, Queues) {
+  const Memory memory = embedder().upload(make_fixture("uniform", 20, 5));
+  DeviceTriangulation result;
+  Embedder stranger(embedder().device());
+  Enqueue enqueue;
+  enqueue.queue = stranger.queue();
+  const auto refused = [&](const std::vector<std::string>& parts) {
+    expect_usage_error(parts, [&] { embedded().triangulate(points_in(memory, 20), result, kAll, enqueue); });
+  };
+  refused({"queue", "another context"});
+  enqueue = on_own();
+  enqueue.profile = true;
+  refused({"CL_QUEUE_PROFILING_ENABLE"});
+  // Events to wait for.
+  enqueue = on_own();
+  enqueue.wait_for = {nullptr};
+  refused({"event", "CL_INVALID_EVENT"});
+  cl_int code = CL_SUCCESS;
+  const cl_event foreign = clCreateUserEvent(stranger.context(), &code);
+  check(code, "clCreateUserEvent");
+  enqueue.wait_for = {foreign};
+  refused({"event", "another context"});
+  clReleaseEvent(foreign);
+  const cl_event failed = clCreateUserEvent(embedder().context(), &code);
+  check(code, "clCreateUserEvent");
+  clSetUserEventStatus(failed, -5);
+  enqueue.wait_for = {failed};
+  refused({"event", "has failed", "CL_OUT_OF_RESOURCES"});
+  clReleaseEvent(failed);
+  // A queue may be released when the call has returned.
+  Queue queue = embedder().make_queue();
+  embedded().triangulate(points_in(memory, 20), result, kAll, on(queue));
+  queue.reset();
+  embedded().triangulate(points_in(memory, 20), result, kAll, on_own());
+
+  const Queue timed = embedder().make_queue(CL_QUEUE_PROFILING_ENABLE);
+  enqueue = on(timed);
+  enqueue.profile = true;
+  embedded().triangulate(points_in(memory, 20), result, kAll, enqueue);
+  EXPECT_FALSE(result.statistics.kernels.empty());
+  enqueue.queue = nullptr;
+  embedded().triangulate(points_in(memory, 20), result, kAll, enqueue);
+  EXPECT_FALSE(result.statistics.kernels.empty());
+  embedded().triangulate(points_in(memory, 20), result, kAll, on(timed));
+  EXPECT_TRUE(result.statistics.kernels.empty());
+}
+
+TEST(SmallEmbeddingMisuse, ContextAndDevice) {
+  expect_usage_error({"context and a device"}, [] { Triangulator t(nullptr, embedder().device()); });
+  expect_usage_error({"context and a device"}, [] { Triangulator t(embedder().context(), nullptr); });
+  const double* const nothing = nullptr;
+  expect_usage_error({"pointer is null"}, [&] { triangulator().triangulate(nothing, 3); });
+  EXPECT_TRUE(triangulator().triangulate(nothing, 0).triangles.empty());
+}
+
+TEST(SmallEmbeddingMisuse, PointsThatAreNotFiniteAreNamed) {
+  Coordinates coordinates = make_fixture("uniform", 20, 5);
+  coordinates[2 * 13 + 1] = std::numeric_limits<double>::infinity();
+  const Memory memory = embedder().upload(coordinates);
+  DeviceTriangulation result;
+  cl_event done = reinterpret_cast<cl_event>(8);
+  Enqueue enqueue = on_own();
+  enqueue.event = &done;
+  DevicePoints points = points_in(memory, 17);
+  points.first = 3;
+  expect_error(ErrorKind::input, {"point 10 is not finite"},
+               [&] { embedded().triangulate(points, result, kAll, enqueue); });
+  EXPECT_EQ(done, nullptr);
+  const Memory closed = embedder().make_buffer(320, CL_MEM_HOST_NO_ACCESS);
+  check(clEnqueueCopyBuffer(embedder().queue(), memory.get(), closed.get(), 0, 0, 320, 0, nullptr, nullptr),
+        "copy");
+  expect_error(ErrorKind::input, {"point 13 is not finite"},
+               [&] { embedded().triangulate(points_in(closed, 20), result, kAll, on_own()); });
+  points.count = 10;
+  embedded().triangulate(points, result, kAll, on_own());
+}
+
+TEST(SmallEmbeddingMisuse, DevicesWithoutFp64AreRefused) {
+  const std::string name = triangulator().device().name;
+  embedder();  // which is to be made before
+  opencl_calls().without_fp64 = true;
+  const auto refused = [](const std::vector<std::string>& parts, const std::function<void()>& work) {
+    expect_error(ErrorKind::device, parts, work);
+  };
+  refused({name, "fp64"}, [] { Triangulator t(embedder().context(), embedder().device()); });
+  refused({name, "fp64"}, [&] { Triangulator t(name); });
+  refused({"no OpenCL device has double precision"}, [] {
+    const ScopedEnvironment unset("FLAUNAY_DEVICE", nullptr);
+    Triangulator t;
+  });
+  opencl_calls().without_fp64 = false;
+}
+
+TEST(SmallEmbeddingMisuse, FailuresOfOpenclAreNamed) {
+  const Coordinates coordinates = make_fixture("uniform", 20, 5);
+  const Memory memory = embedder().upload(coordinates);
+  Triangulator fresh(embedder().context(), embedder().device());
+  DeviceTriangulation result;
+  opencl_calls().buffer_failure = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+  try {
+    fresh.triangulate(points_in(memory, 20), result, kAll, on_own());
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::device);
+    EXPECT_EQ(error.code(), CL_MEM_OBJECT_ALLOCATION_FAILURE);
+    EXPECT_EQ(error.call(), "clCreateBuffer");
+    EXPECT_NE(std::string(error.what()).find("CL_MEM_OBJECT_ALLOCATION_FAILURE"), std::string::npos);
+    Error first(error);
+    const Error second(std::move(first));
+    EXPECT_EQ(first.call(), "clCreateBuffer");
+    EXPECT_EQ(second.call(), "clCreateBuffer");
+  }
+  opencl_calls().buffer_failure = CL_SUCCESS;
+  fresh.triangulate(points_in(memory, 20), result, kAll, on_own());
+  expect_same(result, expected_of(coordinates, {0, 20}));
+}
+
+}  // namespace
+}  // namespace flaunay::testing

@@ -1,0 +1,314 @@
+// Every mode, hull variant and cut gives the same result as the flattened triangulator, degenerate input
+// included.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
+#include "io/points.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+using research::Cut;
+using research::Hull;
+using research::Mode;
+using research::Options;
+using research::Triangulation;
+
+using Row = std::array<std::int32_t, 3>;
+/// A triangle with those across from its vertices; {-1, -1, -1} beyond the hull.
+using LinkedRow = std::array<Row, 4>;
+
+Row row_at(const flaunay::Triangulation& mesh, std::int32_t t) {
+  if (t < 0) return {-1, -1, -1};
+  return {mesh.triangles[3 * t], mesh.triangles[3 * t + 1], mesh.triangles[3 * t + 2]};
+}
+
+std::vector<LinkedRow> linked_rows(const flaunay::Triangulation& mesh) {
+  std::vector<LinkedRow> rows;
+  for (std::size_t t = 0; 3 * t < mesh.triangles.size(); ++t) {
+    rows.push_back({row_at(mesh, static_cast<std::int32_t>(t)), row_at(mesh, mesh.neighbors[3 * t]),
+                    row_at(mesh, mesh.neighbors[3 * t + 1]), row_at(mesh, mesh.neighbors[3 * t + 2])});
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+/// The order of rows is the mode's own; everything else must agree.
+void expect_same(const flaunay::Triangulation& found, const flaunay::Triangulation& expected) {
+  EXPECT_TRUE(linked_rows(found) == linked_rows(expected)) << "triangles or neighbours differ";
+  EXPECT_EQ(found.hull, expected.hull);
+  EXPECT_EQ(found.representatives, expected.representatives);
+  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+  EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
+  EXPECT_EQ(found.statistics.points, expected.statistics.points);
+  EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
+  EXPECT_EQ(found.statistics.triangles, expected.statistics.triangles);
+  EXPECT_EQ(found.statistics.hull_vertices, expected.statistics.hull_vertices);
+}
+
+Triangulation triangulate(const Coordinates& points, const Options& options) {
+  return research::triangulate(triangulator(), points.data(), points.size() / 2, options);
+}
+
+struct Execution {
+  std::string name;
+  Options options;
+};
+
+/// All executions but blocks, the default. one_by_one: also those that take a second for a thousand points.
+std::vector<Execution> executions(bool one_by_one) {
+  std::vector<Execution> all;
+  const auto add = [&all](Mode mode, Hull hull, Cut cut, int levels) {
+    Options options;
+    options.mode = mode;
+    options.hull = hull;
+    options.cut = cut;
+    options.partition_levels = levels;
+    options.threads = levels % 3 + 1;
+    std::string name = std::string(to_string(mode)) + " " + to_string(hull);
+    if (cut == Cut::alternate) name += " alternate";
+    if (levels > 0) name += " levels " + std::to_string(levels);
+    all.push_back({name, options});
+  };
+  for (const Cut cut : {Cut::interquartile, Cut::alternate}) {
+    for (const Hull hull : {Hull::prune, Hull::quickhull, Hull::balanced}) {
+      add(Mode::flattened, hull, cut, 0);
+      add(Mode::recursive, hull, cut, 0);
+      if (one_by_one) add(Mode::recursive_device, hull, cut, 0);
+    }
+    add(Mode::recursive, Hull::monotone_chain, cut, 0);
+    for (const int levels : {0, 1, 2, 5, 30}) add(Mode::partition, Hull::prune, cut, levels);
+  }
+  add(Mode::partition, Hull::balanced, Cut::interquartile, 3);
+  add(Mode::dwyer, Hull::prune, Cut::interquartile, 0);
+  return all;
+}
+
+void expect_all_same(const Coordinates& points, bool one_by_one) {
+  const Triangulation expected = triangulate(points, {});
+  for (const Execution& execution : executions(one_by_one)) {
+    SCOPED_TRACE(execution.name);
+    expect_same(triangulate(points, execution.options), expected);
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+class OnFixture : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(OnFixture, EveryModeIsTheSame) {
+  for (const std::size_t n : {1, 2, 3, 4, 5, 7, 12, 60}) {
+    SCOPED_TRACE(n);
+    expect_all_same(make_fixture(GetParam(), n, n), true);
+  }
+  SCOPED_TRACE("perturbed");
+  expect_all_same(perturbed(make_fixture(GetParam(), 50, 2), 3), true);
+}
+
+TEST_P(OnFixture, EveryModeIsTheSameAtThousands) {
+  expect_all_same(make_fixture(GetParam(), 3000, 4), false);
+}
+
+std::string instance_name(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+std::vector<std::string> fixture_names() {
+  std::vector<std::string> names;
+  for (const Fixture& fixture : all_fixtures()) names.push_back(fixture.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Fixtures, OnFixture, ::testing::ValuesIn(fixture_names()), instance_name);
+
+TEST(Modes, OnFiles) {
+  for (const std::string& file : data_files()) {
+    SCOPED_TRACE(file);
+    const Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
+    expect_all_same(points, points.size() < 300);
+    expect_all_same(scaled(points, 1e-150), false);
+  }
+}
+
+TEST(Modes, ManySets) {
+  Coordinates points;
+  std::vector<std::size_t> offsets{0, 0};
+  for (const Fixture& fixture : all_fixtures()) {
+    for (const std::size_t n : {0, 1, 3, 40}) {
+      const Coordinates set = fixture.make(n, n + 1);
+      points.insert(points.end(), set.begin(), set.end());
+      offsets.push_back(points.size() / 2);
+    }
+  }
+  const auto run = [&](const Options& options) {
+    return research::triangulate(triangulator(), points.data(), offsets, options);
+  };
+  const Triangulation expected = run({});
+  for (const Execution& execution : executions(false)) {
+    SCOPED_TRACE(execution.name);
+    expect_same(run(execution.options), expected);
+  }
+  Options one_by_one;
+  one_by_one.mode = Mode::recursive_device;
+  expect_same(run(one_by_one), expected);
+}
+
+TEST(Modes, NoPoints) {
+  for (const Execution& execution : executions(true)) {
+    SCOPED_TRACE(execution.name);
+    const Triangulation none = triangulate({}, execution.options);
+    EXPECT_TRUE(none.triangles.empty());
+    EXPECT_EQ(none.triangle_offsets, (std::vector<std::size_t>{0, 0}));
+  }
+}
+
+/// The same bytes again, after other work and with any number of threads.
+TEST(Modes, AreDeterministic) {
+  const Coordinates points = make_fixture("kuzmin", 5000, 8);
+  for (const Execution& execution : executions(false)) {
+    SCOPED_TRACE(execution.name);
+    const Triangulation once = triangulate(points, execution.options);
+    Options again = execution.options;
+    again.threads = 5;
+    triangulate(make_fixture("grid", 700, 1), again);
+    const Triangulation twice = triangulate(points, again);
+    EXPECT_EQ(once.triangles, twice.triangles);
+    EXPECT_EQ(once.neighbors, twice.neighbors);
+  }
+}
+
+TEST(Modes, BadInputIsTheSameErrorInAll) {
+  Coordinates not_finite = make_fixture("uniform", 50, 1);
+  not_finite[31] = std::nan("");
+  const Coordinates too_far_apart{0, 0, 1e200, 1, 1e-200, 2, 3, 4};
+  for (const Coordinates& points : {not_finite, too_far_apart}) {
+    std::string expected;
+    try {
+      triangulate(points, {});
+    } catch (const Error& error) {
+      expected = error.what();
+    }
+    ASSERT_FALSE(expected.empty());
+    for (const Execution& execution : executions(true)) {
+      SCOPED_TRACE(execution.name);
+      try {
+        triangulate(points, execution.options);
+        ADD_FAILURE() << "no error";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_EQ(error.what(), expected);
+      }
+    }
+  }
+}
+
+TEST(Modes, RequestsWithoutSense) {
+  const Coordinates points = make_fixture("uniform", 50, 1);
+  for (const Mode mode : {Mode::flattened, Mode::recursive_device, Mode::partition}) {
+    Options options;
+    options.mode = mode;
+    options.hull = Hull::monotone_chain;
+    EXPECT_THROW(triangulate(points, options), Error) << to_string(mode);
+  }
+  EXPECT_THROW(research::triangulate_on_host(points.data(), {0, 50}, {}), Error);
+  EXPECT_THROW(research::partition(triangulator(), points.data(), 50, -1), Error);
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// Partitions
+
+/// Each region's points triangulated on their own, put together again.
+flaunay::Triangulation solved(const Coordinates& points, int levels) {
+  const research::Partition partition =
+      research::partition(triangulator(), points.data(), points.size() / 2, levels);
+  std::vector<std::vector<std::int32_t>> solutions;
+  for (const research::Region& region : partition.regions) {
+    Coordinates own;
+    for (const std::int32_t i : region.points) {
+      own.push_back(points[2 * i]);
+      own.push_back(points[2 * i + 1]);
+    }
+    Options dwyer;
+    dwyer.mode = Mode::dwyer;
+    solutions.push_back(
+        research::triangulate_on_host(own.data(), {0, region.points.size()}, dwyer).triangles);
+  }
+  return research::assemble(points.data(), points.size() / 2, partition, solutions);
+}
+
+TEST(Partition, PutTogetherAgainIsTheSame) {
+  for (const Fixture& fixture : all_fixtures()) {
+    SCOPED_TRACE(fixture.name);
+    const Coordinates points = fixture.make(1200, 6);
+    const Triangulation expected = triangulate(points, {});
+    for (const int levels : {0, 1, 3, 6, 30}) {
+      SCOPED_TRACE(levels);
+      expect_same(solved(points, levels), expected);
+    }
+  }
+}
+
+TEST(Partition, HasAsManyRegionsAsLevelsAllow) {
+  const Coordinates points = make_fixture("uniform", 5000, 1);
+  for (const int levels : {0, 1, 2, 4}) {
+    const research::Partition partition = research::partition(triangulator(), points.data(), 5000, levels);
+    EXPECT_EQ(partition.regions.size(), std::size_t{1} << levels);
+    EXPECT_TRUE(partition.triangles.empty());
+    std::size_t total = 0;
+    for (const research::Region& region : partition.regions) {
+      total += region.points.size();
+      EXPECT_GT(region.border.size(), 4u);
+    }
+    EXPECT_GE(total, 5000u);
+    EXPECT_LT(total, 5000u + 400u * partition.regions.size());
+  }
+  // All the way down nothing is left but triangles.
+  const research::Partition whole = research::partition(triangulator(), points.data(), 5000, 30);
+  EXPECT_TRUE(whole.regions.empty());
+  EXPECT_EQ(whole.triangles.size(), 3 * whole.statistics.triangles);
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// What flattening saves
+
+TEST(RecursiveDevice, LaunchesAndWaitsForEveryRegion) {
+  const Coordinates points = make_fixture("uniform", 2000, 1);
+  Options one_by_one;
+  one_by_one.mode = Mode::recursive_device;
+  Options all_at_once;
+  all_at_once.mode = Mode::flattened;
+  const Triangulation flattened = triangulate(points, all_at_once);
+  const Triangulation recursive = triangulate(points, one_by_one);
+  ASSERT_EQ(recursive.levels.size(), flattened.levels.size());
+  std::size_t regions = 0;
+  for (std::size_t l = 0; l < recursive.levels.size(); ++l) {
+    const research::LevelStatistics& one = recursive.levels[l];
+    const research::LevelStatistics& all = flattened.levels[l];
+    EXPECT_EQ(one.regions, all.regions);
+    EXPECT_EQ(one.internal_points, all.internal_points);
+    EXPECT_EQ(one.corners, all.corners);
+    EXPECT_EQ(one.largest_region, all.largest_region);
+    EXPECT_EQ(one.path_vertices, all.path_vertices);
+    regions += one.regions;
+  }
+  EXPECT_GT(recursive.statistics.kernel_launches, 20 * regions);
+  EXPECT_GT(recursive.statistics.host_waits, regions);
+  EXPECT_GT(recursive.statistics.kernel_launches, 10 * flattened.statistics.kernel_launches);
+}
+
+}  // namespace
+}  // namespace flaunay::testing

@@ -1,0 +1,111 @@
+// Tuning: by device, by the environment, and as a device allows.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "host/vector_operations.hpp"
+#include "tests/host/support.hpp"
+
+namespace flaunay::host {
+namespace {
+
+TEST(SmallTuning, IsNamedByTheEnvironment) {
+  const auto device = find_device("");
+  EXPECT_NE(tuning_named("small").map_group, tuning_named("gpu").map_group);
+  EXPECT_NE(tuning_named("cpu").chunk_group, tuning_named("gpu").chunk_group);
+  {
+    const ScopedEnvironment unset("FLAUNAY_TUNING", nullptr);
+    const bool cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
+    EXPECT_EQ(tuning_for(device)->map_group, tuning_named(cpu ? "cpu" : "gpu").map_group);
+  }
+  for (const char* const name : {"fast", "gpu:", "gpu:0", "gpu:1025", "gpu:x", "gpu:-1", "gpu:32 ",
+                                 "gpu:032x", "gpu:99999999999999999999", "cpu:32", "GPU"}) {
+    const ScopedEnvironment wrong("FLAUNAY_TUNING", name);
+    const std::string message = message_of([&] { tuning_for(device); }, CL_SUCCESS);
+    EXPECT_TRUE(contains(message, std::string("'") + name + "'")) << message;
+  }
+}
+
+TEST(SmallTuning, EveryValueCanBeOverridden) {
+  const Tuning tuning = tuning_named("gpu,block_group=64,samples_per_block=7,fetch_ahead=0");
+  EXPECT_EQ(tuning.block_group, 64u);
+  EXPECT_EQ(tuning.samples_per_block, 7u);
+  EXPECT_EQ(tuning.block_points, tuning_named("gpu").block_points);
+  EXPECT_EQ(tuning_named("chunk_least=77").chunk_least, 77u);
+  for (const char* const wrong :
+       {"gpu,block_group", "gpu,no_such_value=1", "block_group=x", "block_group=64,gpu", ","}) {
+    const ScopedEnvironment given("FLAUNAY_TUNING", wrong);
+    const std::string message = message_of([&] { tuning_for(find_device("")); }, CL_SUCCESS);
+    EXPECT_TRUE(contains(message, std::string("'") + wrong + "'")) << message;
+  }
+}
+
+TEST(SmallTuning, GroupsOfAGivenSize) {
+  const std::size_t most = limits_of(find_device("")).work_group;
+  for (const std::size_t group : {1, 32, 256}) {
+    if (group > most) continue;
+    const Tuning tuning = tuning_named("gpu:" + std::to_string(group));
+    EXPECT_EQ(tuning.map_group, group);
+    EXPECT_EQ(tuning.chunk_group, group);
+    EXPECT_EQ(tuning.sort_group, group);
+    EXPECT_EQ(tuning.sort_bits, tuning_named("gpu").sort_bits);
+  }
+}
+
+TEST(SmallTuning, FitsTheDevice) {
+  const std::size_t kilobyte = 1024;
+  const auto fitted = [](Tuning tuning, const DeviceLimits& limits) {
+    fit(tuning, limits);
+    return tuning;
+  };
+  const Tuning gpu = fitted(tuning_named("gpu"), {1024, 64 * kilobyte});
+  Tuning small = fitted(gpu, {64, 64 * kilobyte});
+  EXPECT_EQ(small.map_group, 64u);
+  EXPECT_EQ(small.chunk_group, 64u);
+  EXPECT_EQ(small.sort_group, 64u);
+  small = fitted(gpu, {1, 64 * kilobyte});
+  EXPECT_EQ(small.map_group, 1u);
+  EXPECT_EQ(small.sort_group, 1u);
+  // The sort's tables: a counter of 4 bytes for each digit and work-item.
+  for (const std::size_t bytes :
+       {32 * kilobyte, 4 * kilobyte, 1000 * std::size_t{1}, 64 * std::size_t{1}, 8 * std::size_t{1}}) {
+    small = fitted(gpu, {1024, bytes});
+    EXPECT_LE(4 * small.sort_group << small.sort_bits, bytes);
+    EXPECT_GE(small.sort_bits, 1u);
+    EXPECT_GE(small.sort_group, 1u);
+    EXPECT_EQ(small.map_group, gpu.map_group);
+  }
+}
+
+TEST(Tuning, AGroupThatAKernelCannotHaveIsAnErrorWithItsName) {
+  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Tuning tuning = tuning_named("gpu");
+  // Tables that are larger than any device's local memory, even for groups of one.
+  tuning.sort_bits = 26;
+  tuning.sort_group = 2;
+  runtime.set_sizes(std::make_shared<Tuning>(tuning));
+  const auto keys = upload(runtime, std::vector<cl_ulong>{3, 1, 2});
+  const auto payloads = upload(runtime, std::vector<cl_int>{0, 1, 2});
+  const std::string message = message_of([&] { sort_by_key(runtime, keys, payloads, 3); }, CL_SUCCESS);
+  EXPECT_TRUE(contains(message, "kernel sort_count")) << message;
+}
+
+TEST(SmallTuning, ChunksAreNeitherTooSmallNorTooMany) {
+  Tuning tuning = tuning_named("small");
+  tuning.chunk_least = 10;
+  tuning.chunks_most = 0;
+  for (const std::size_t n : {0, 1, 10, 11, 1000}) EXPECT_EQ(tuning.chunk(n), 10u);
+  tuning.chunks_most = 4;
+  for (std::size_t n = 0; n < 200; ++n) {
+    EXPECT_GE(tuning.chunk(n), 10u);
+    EXPECT_LE((n + tuning.chunk(n) - 1) / tuning.chunk(n), 4u);
+    if (n <= 40) {
+      EXPECT_EQ(tuning.chunk(n), 10u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::host

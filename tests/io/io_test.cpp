@@ -1,0 +1,928 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
+#include "io/generate.hpp"
+#include "io/mesh.hpp"
+#include "io/points.hpp"
+#include "io/region.hpp"
+#include "io/svg.hpp"
+#include "tests/support/paths.hpp"
+
+namespace flaunay::io {
+namespace {
+
+using Values = std::vector<double>;
+using Indices = std::vector<std::int32_t>;
+
+/// A fresh folder for each test, removed after it.
+class IoTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "flaunay-io-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
+  }
+  static std::string read(const std::string& file) {
+    std::ostringstream bytes;
+    bytes << std::ifstream(file, std::ios::binary).rdbuf();
+    return bytes.str();
+  }
+  std::set<std::string> names() const {
+    std::set<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      all.insert(entry.path().filename());
+    return all;
+  }
+
+  static void expect_error(ErrorKind kind, const std::string& start, const std::vector<std::string>& parts,
+                           const std::function<void()>& action) {
+    try {
+      action();
+      ADD_FAILURE() << "no error; expected one about " << start;
+    } catch (const Error& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(error.kind(), kind) << message;
+      EXPECT_EQ(message.compare(0, start.size(), start), 0) << message << "\ndoes not begin with " << start;
+      for (const std::string& part : parts) {
+        EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
+      }
+    }
+  }
+  /// Reading points from a file of these bytes must fail with these parts in the message.
+  void expect_bad_points(const std::string& name, const std::string& bytes,
+                         const std::vector<std::string>& parts) {
+    SCOPED_TRACE(name + ": " + bytes.substr(0, 60));
+    const std::string file = write(name, bytes);
+    expect_error(ErrorKind::input, file + ": ", parts, [&] { read_points(file); });
+  }
+  void expect_bad_triangles(const std::string& name, const std::string& bytes,
+                            const std::vector<std::string>& parts) {
+    SCOPED_TRACE(name + ": " + bytes.substr(0, 60));
+    const std::string file = write(name, bytes);
+    expect_error(ErrorKind::input, file + ": ", parts, [&] { read_triangles(file); });
+  }
+  Values points_of(const std::string& name, const std::string& bytes) {
+    return read_points(write(name, bytes)).coordinates;
+  }
+
+  std::string folder_;
+};
+
+template <typename Value>
+std::string raw(const std::vector<Value>& values) {
+  std::string bytes(values.size() * sizeof(Value), '\0');
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+std::string npy(const std::string& dictionary, const std::string& data, int version = 1) {
+  std::string bytes = "\x93NUMPY";
+  bytes += static_cast<char>(version);
+  bytes += '\0';
+  const std::string header = dictionary + "\n";
+  const auto length = static_cast<std::uint32_t>(header.size());
+  bytes.append(reinterpret_cast<const char*>(&length), version == 1 ? 2 : 4);
+  return bytes + header + data;
+}
+std::string npy_header(const std::string& descr, const std::string& shape,
+                       const std::string& fortran = "False") {
+  return "{'descr': '" + descr + "', 'fortran_order': " + fortran + ", 'shape': " + shape + ", }";
+}
+
+const Values kSquare = {0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0.5};
+
+/// The unit square with its centre.
+Triangulation square_mesh() {
+  Triangulation mesh;
+  mesh.triangles = {0, 1, 4, 1, 2, 4, 2, 3, 4, 0, 4, 3};
+  mesh.hull = {0, 1, 2, 3};
+  mesh.representatives = {0, 1, 2, 3, 4};
+  mesh.triangle_offsets = {0, 4};
+  mesh.hull_offsets = {0, 4};
+  return mesh;
+}
+
+/// cells x cells squares, each cut in two.
+std::pair<Points, Triangulation> grid_mesh(std::int32_t cells) {
+  Points points;
+  Triangulation mesh;
+  const std::int32_t width = cells + 1;
+  for (std::int32_t y = 0; y < width; ++y) {
+    for (std::int32_t x = 0; x < width; ++x) {
+      points.coordinates.insert(points.coordinates.end(), {double(x), double(y)});
+      mesh.representatives.push_back(y * width + x);
+      if (x == cells || y == cells) continue;
+      const std::int32_t a = y * width + x, b = a + 1, c = a + width, d = c + 1;
+      mesh.triangles.insert(mesh.triangles.end(), {a, b, d, a, d, c});
+    }
+  }
+  for (std::int32_t i = 0; i < cells; ++i) mesh.hull.push_back(i);
+  for (std::int32_t i = 0; i < cells; ++i) mesh.hull.push_back(i * width + cells);
+  for (std::int32_t i = cells; i > 0; --i) mesh.hull.push_back(cells * width + i);
+  for (std::int32_t i = cells; i > 0; --i) mesh.hull.push_back(i * width);
+  mesh.triangle_offsets = {0, mesh.triangles.size() / 3};
+  mesh.hull_offsets = {0, mesh.hull.size()};
+  return {points, mesh};
+}
+
+// ---- text ----
+
+TEST_F(IoTest, TextTakesCommasBlanksCommentsAndAllLineEnds) {
+  EXPECT_EQ(points_of("a.xy", "1 2\n3\t4\n"), (Values{1, 2, 3, 4}));
+  EXPECT_EQ(points_of("b.csv", "1,2\r\n3 , 4\r\n"), (Values{1, 2, 3, 4}));
+  EXPECT_EQ(points_of("c.TXT", "# first\n\n  1 2 # at the end\n#\n \t\n+3e0,-.5e+1#close\n5. 6"),
+            (Values{1, 2, 3, -5, 5, 6}));
+  EXPECT_EQ(points_of("d.xy",
+                      "\xEF\xBB\xBF"
+                      "1 2\n"),
+            (Values{1, 2}));
+}
+
+TEST_F(IoTest, TextHeaderLineIsOptional) {
+  EXPECT_EQ(points_of("a.csv", "x,y\n1,2\n"), (Values{1, 2}));
+  EXPECT_EQ(points_of("b.csv", "# comment\n\n\"easting\" \"northing\"\n1,2\n"), (Values{1, 2}));
+  EXPECT_EQ(points_of("c.csv", "only, a header\n"), Values{});
+  EXPECT_EQ(points_of("d.csv", "# only a comment\n"), Values{});
+  expect_bad_points("e.csv", "x,y\nx,y\n1,2\n", {"line 2, column 1", "point 0", "'x'"});
+  // A mistyped first line is no header.
+  expect_bad_points("f.csv", "1.0,2.O\n1,2\n", {"line 1, column 5", "'2.O'"});
+  expect_bad_points("g.csv", "nan,nan\n", {"line 1, column 1", "point 0", "'nan'"});
+}
+
+TEST_F(IoTest, TextNamesTheRaggedLine) {
+  expect_bad_points("a.xy", "1 2\n\n# c\n3\n", {"line 4", "two numbers", "found 1"});
+  expect_bad_points("b.xy", "1 2\n3 4 5\n", {"line 2", "two numbers", "found 3"});
+  expect_bad_points("c.csv", "1,2\n3,4,\n", {"line 2", "two numbers", "found 3"});
+  expect_bad_points("d.xy", "1\n", {"line 1", "two numbers", "found 1"});
+}
+
+TEST_F(IoTest, TextNamesTheUnreadableNumber) {
+  expect_bad_points("a.xy", "1 2\r\n3  4x\r\n", {"line 2, column 4", "number", "point 1", "'4x'"});
+  expect_bad_points("b.csv", "1,2\n3,4\n,6\n", {"line 3, column 1", "point 2", "nothing"});
+  expect_bad_points("c.xy", "1 2\n+-3 4\n", {"line 2, column 1", "'+-3'"});
+  expect_bad_points("d.xy", "1 2\n3 0x10\n", {"line 2, column 3", "'0x10'"});
+  expect_bad_points("e.xy", "1 2\n3 " + std::string(100, 'z') + "\x01\n", {"'zzzzzzzz", "zzz...'"});
+  expect_bad_points("f.xy", std::string("1 2\n3 \0\x1b[2J\n", 12), {"line 2, column 3", "'??[2J'"});
+}
+
+TEST_F(IoTest, TextNamesWhatIsNotFinite) {
+  expect_bad_points("a.xy", "# c\n1 2\n3 1e400\n", {"line 3, column 3", "point 1", "'1e400'", "infinity"});
+  expect_bad_points("b.xy", "1 2\n-1e999999999999999999999 3\n", {"line 2, column 1", "infinity"});
+  expect_bad_points("c.xy", "1 2\n3 4\n5 nan\n", {"line 3, column 3", "point 2", "'nan'", "finite"});
+  expect_bad_points("d.xy", "1 2\n-inf 4\n", {"line 2, column 1", "point 1", "'-inf'", "finite"});
+  expect_bad_points("e.xy", "1 2\n3 " + std::string(400, '9') + "\n", {"line 2, column 3", "infinity"});
+}
+
+TEST_F(IoTest, TextRoundsNumbersTooSmallToZero) {
+  const Values values = points_of("a.xy", "1e-400 -1e-400\n0.000" + std::string(400, '0') + "1 3e-324\n" +
+                                              "1e-99999999999999999999 1e-310\n");
+  EXPECT_EQ(values, (Values{0, 0, 0, std::numeric_limits<double>::denorm_min(), 0, 1e-310}));
+  EXPECT_TRUE(std::signbit(values[1]));
+}
+
+TEST_F(IoTest, StandardInputIsText) {
+  const std::string file = write("input", "x y\n1 2\n3 4\n"), bad = write("bad", "1 2\n3 q\n"),
+                    none = write("none", "");
+  const int saved = dup(STDIN_FILENO);
+  ASSERT_GE(saved, 0);
+  const auto from = [](const std::string& name, const std::function<void()>& action) {
+    const int input = open(name.c_str(), O_RDONLY);
+    dup2(input, STDIN_FILENO);
+    close(input);
+    action();
+  };
+  from(file, [] { EXPECT_EQ(read_points("-").coordinates, (Values{1, 2, 3, 4})); });
+  from(bad, [] {
+    expect_error(ErrorKind::input, "- (standard input): ", {"line 2, column 3", "'q'"},
+                 [] { read_points("-"); });
+  });
+  from(none,
+       [] { expect_error(ErrorKind::input, "- (standard input): ", {"empty"}, [] { read_points("-"); }); });
+  dup2(saved, STDIN_FILENO);
+  close(saved);
+}
+
+TEST_F(IoTest, ReadsPipesLongerThanOneBuffer) {
+  const std::string fifo = path("pipe.xy");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const Points points = generate("uniform", 20000, 1);
+  const std::string file = path("file.xy");
+  write_points(file, points);
+  // "cat" as the other end.
+  ASSERT_EQ(std::system(("cat '" + file + "' > '" + fifo + "' &").c_str()), 0);
+  EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
+}
+
+TEST_F(IoTest, ReadsTheFixtures) {
+  const std::string data = flaunay::test_data();
+  for (const auto& [name, count] : std::vector<std::pair<const char*, std::size_t>>{{"issue43.xy", 5},
+                                                                                    {"robustness1.xy", 79},
+                                                                                    {"robustness4.xy", 36},
+                                                                                    {"issue44.xy", 2828},
+                                                                                    {"ukraine.xy", 874}}) {
+    EXPECT_EQ(read_points(data + "/" + name).size(), count) << name;
+  }
+  const Points issue13 = read_points(data + "/issue13.xy");
+  EXPECT_EQ(issue13.coordinates[0], 4.0);
+  EXPECT_EQ(issue13.coordinates[3], 2.0837249985614585);
+}
+
+// ---- .node ----
+
+TEST_F(IoTest, NodeTakesBothIndexBases) {
+  const Points greenland = read_points(flaunay::test_data() + "/greenland.node");
+  ASSERT_EQ(greenland.size(), 33343u);
+  EXPECT_EQ(greenland.coordinates[0], 105);
+  EXPECT_EQ(greenland.coordinates[1], 39.5);
+  EXPECT_EQ(greenland.coordinates[2 * 33342], 242.99308981350001);
+  EXPECT_EQ(greenland.coordinates[2 * 33342 + 1], 405.49308981349998);
+
+  // write_points counts from 0.
+  write_points(path("zero.node"), greenland);
+  EXPECT_EQ(read(path("zero.node")).substr(0, 36), "33343 2 0 0\n0 105 39.5\n1 106.5 40\n2 ");
+  EXPECT_EQ(read_points(path("zero.node")).coordinates, greenland.coordinates);
+}
+
+TEST_F(IoTest, NodeSkipsCommentsAttributesAndMarkers) {
+  EXPECT_EQ(points_of("a.node",
+                      "# made by hand\r\n2 2 2 1 # header\r\n\r\n1 5 6 0.1 0.2 1\r\n2 7 8 0.3 x 0 # end\r\n"),
+            (Values{5, 6, 7, 8}));
+  EXPECT_EQ(points_of("b.node", "1\n0 5 6\n"), (Values{5, 6}));
+  EXPECT_EQ(points_of("c.node", "0 2 0 0\n"), Values{});
+}
+
+TEST_F(IoTest, NodeNamesWhatDoesNotFit) {
+  expect_bad_points("a.node", "# nothing\n", {"no header line", "expected"});
+  expect_bad_points("b.node", "x 2 0 0\n", {"line 1, column 1", "number of vertices", "'x'"});
+  expect_bad_points("c.node", "1 3 0 0\n0 1 2 3\n", {"line 1", "3 dimensions", "expected 2"});
+  expect_bad_points("d.node", "-1 2 0 0\n", {"line 1", "-1 vertices"});
+  expect_bad_points("e.node", "1 2 0 2\n0 1 2 3 4\n", {"line 1", "2 boundary markers", "0 or 1"});
+  expect_bad_points("f.node", "1 2 0 0 0\n0 1 2\n", {"line 1", "5 fields"});
+  expect_bad_points("g.node", "#\n3 2 0 0\n0 1 2\n1 3 4\n", {"line 2", "3 vertices", "after 2"});
+  expect_bad_points("h.node", "1 2 0 0\n0 1 2\n#\n1 3 4\n", {"line 4", "more vertices than the 1", "line 1"});
+  expect_bad_points("i.node", "2 2 0 0\n0 1 2\n2 3 4\n", {"line 3", "expected vertex number 1", "found 2"});
+  expect_bad_points("j.node", "2 2 0 0\n2 1 2\n3 3 4\n", {"line 2", "vertex number 0 or 1", "found 2"});
+  expect_bad_points("k.node", "1 2 0 0\n0.5 1 2\n", {"line 2, column 1", "vertex number", "'0.5'"});
+  expect_bad_points("l.node", "1 2 1 1\n0 1 2 3\n",
+                    {"line 2", "expected 5 fields", "1 attributes", "found 4"});
+  expect_bad_points("m.node", "1 2 0 0\n0 1\n", {"line 2", "expected 3 fields", "found 2"});
+  expect_bad_points("n.node", "2 2 0 0\n1 1 2\n2 3 4y\n", {"line 3, column 5", "point 1", "'4y'"});
+  expect_bad_points("o.node", "2 2 0 0\n1 1 2\n2 1e309 4\n", {"line 3, column 3", "point 1", "infinity"});
+  expect_bad_points("p.node", "1 2 0 0\n1 1 nan\n", {"line 2, column 5", "point 0", "'nan'"});
+  expect_bad_points("q.node", "9000000000000000000 2 0 0\n1 1 2\n", {"line 1", "after 1"});
+}
+
+// ---- .bin ----
+
+TEST_F(IoTest, BinaryPairs) {
+  EXPECT_EQ(points_of("a.bin", raw<double>({1, 2, -3, 1e300})), (Values{1, 2, -3, 1e300}));
+  expect_bad_points("b.bin", raw<double>({1, 2, 3}), {"24 bytes", "multiple of 16"});
+  expect_bad_points("c.bin", raw<double>({1, 2, 3, NAN}), {"point 1", "nan", "finite"});
+  expect_bad_points("d.bin", raw<double>({1, 2, 3, 4, -INFINITY, 6}), {"point 2", "-inf", "finite"});
+}
+
+// ---- .npy ----
+
+TEST_F(IoTest, NpyTakesBothFloatsAndAllVersions) {
+  const std::string data = raw<double>({1, 2, 3, 4.5});
+  for (const int version : {1, 2, 3}) {
+    EXPECT_EQ(points_of("a.npy", npy(npy_header("<f8", "(2, 2)"), data, version)), (Values{1, 2, 3, 4.5}))
+        << version;
+  }
+  EXPECT_EQ(points_of("b.npy", npy(npy_header("<f4", "(2, 2)"), raw<float>({1, 2, 3, 0.1f}))),
+            (Values{1, 2, 3, double(0.1f)}));
+  EXPECT_EQ(points_of("c.npy", npy(npy_header("<f8", "(0, 2)"), "")), Values{});
+  // Another order, other quotes, other spacing, a Python 2 long.
+  EXPECT_EQ(
+      points_of("d.npy", npy("{\"shape\":(2L,2) ,\"fortran_order\":False,  \"descr\":\"<f8\"}   ", data)),
+      (Values{1, 2, 3, 4.5}));
+}
+
+TEST_F(IoTest, NpyNamesWhatDoesNotFit) {
+  const std::string data = raw<double>({1, 2, 3, 4});
+  const std::string good = npy(npy_header("<f8", "(2, 2)"), data);
+  expect_bad_points("a.npy", npy(npy_header("<f8", "(2, 2)", "True"), data),
+                    {"Fortran order", "expected C order"});
+  expect_bad_points("b.npy", npy(npy_header("<i8", "(2, 2)"), data),
+                    {"dtype '<i8'", "expected '<f8' or '<f4'"});
+  expect_bad_points("c.npy", npy(npy_header(">f8", "(2, 2)"), data),
+                    {"big-endian", "'>f8'", "expected '<f8'"});
+  expect_bad_points("d.npy", npy(npy_header("<f8", "(4,)"), data), {"shape (4,)", "expected (n, 2)"});
+  expect_bad_points("e.npy", npy(npy_header("<f8", "(1, 4)"), data), {"shape (1, 4)", "expected (n, 2)"});
+  expect_bad_points("f.npy", npy(npy_header("<f8", "()"), data), {"shape ()", "expected (n, 2)"});
+  expect_bad_points("g.npy", good.substr(0, good.size() - 5), {"truncated", "32 bytes", "found 27"});
+  expect_bad_points("h.npy", good + "abc", {"3 bytes too many", "32 bytes", "found 35"});
+  expect_bad_points("i.npy", good.substr(0, 40), {"truncated in the .npy header"});
+  expect_bad_points("j.npy", good.substr(0, 9), {"truncated in the .npy header"});
+  expect_bad_points("k.npy", good.substr(0, 7), {"truncated in the .npy header"});
+  expect_bad_points("l.npy", "1 2\n3 4\n", {"no .npy file", "NUMPY"});
+  expect_bad_points("m.npy", npy(npy_header("<f8", "(2, 2)"), data, 4), {"version 4", "expected 1, 2 or 3"});
+  expect_bad_points("n.npy", npy("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (2,)}", data),
+                    {"structured dtype"});
+  expect_bad_points("o.npy", npy("{'descr': '<f8', 'shape': (2, 2)}", data), {"malformed", "fortran_order"});
+  expect_bad_points("p.npy", npy("{'descr': '<f8', 'fortran_order': 0, 'shape': (2, 2)}", data),
+                    {"malformed", "True or False"});
+  expect_bad_points("q.npy", npy("{'descr': '<f8", data), {"malformed", "string without end"});
+  expect_bad_points("r.npy", npy(npy_header("<f8", "(99999999999999999999999, 2)"), data),
+                    {"malformed", "too large"});
+  expect_bad_points("s.npy", npy(npy_header("<f8", "(9223372036854775807, 2)"), data), {"shape", "memory"});
+  expect_bad_points("t.npy", npy(npy_header("<f8", "(2, 2)"), raw<double>({1, 2, INFINITY, 4})),
+                    {"point 1", "inf"});
+  expect_bad_points("u.npy", npy(npy_header("<f4", "(1, 2)"), raw<float>({1, NAN})), {"point 0", "nan"});
+}
+
+// ---- any file of points ----
+
+TEST_F(IoTest, UnreadableFilesSayWhy) {
+  for (const char* ending : {".xy", ".node", ".npy", ".bin"}) {
+    const std::string missing = path(std::string("missing") + ending);
+    expect_error(ErrorKind::input, missing + ": ", {"No such file", "expected"},
+                 [&] { read_points(missing); });
+    const std::string folder = path(std::string("folder") + ending);
+    std::filesystem::create_directory(folder);
+    expect_error(ErrorKind::input, folder + ": ", {"Is a directory", "expected"},
+                 [&] { read_points(folder); });
+    expect_bad_points(std::string("empty") + ending, "", {"empty", "expected"});
+  }
+}
+
+TEST_F(IoTest, UnknownEndingsListTheKnown) {
+  for (const char* name : {"points.vtk", "points", "folder.npy/points", "points.npy.gz"}) {
+    for (const auto& action :
+         std::vector<std::function<void()>>{[&] { check_points_ending(name); }, [&] { read_points(name); },
+                                            [&] { write_points(name, {}); }}) {
+      expect_error(ErrorKind::usage, std::string(name) + ": ",
+                   {".npy, .node, .xy, .txt, .csv, .bin", "\"-\""}, action);
+    }
+  }
+  for (const char* name : {"-", "a.npy", "a.NODE", "b.c/a.xy", "a.Txt", "a.csv", ".bin"}) {
+    EXPECT_NO_THROW(check_points_ending(name)) << name;
+  }
+}
+
+TEST_F(IoTest, PointsReadBackAsWritten) {
+  Points points = generate("normal", 3000, 4);
+  for (const double value : {0.1, -0.0, 5e-324, -1.7976931348623157e308, 1.0 / 3, 123456789012345680.0}) {
+    points.coordinates.push_back(value);
+  }
+  for (const char* name : {"a.npy", "a.node", "a.xy", "a.txt", "a.csv", "a.bin"}) {
+    write_points(path(name), points);
+    const Points back = read_points(path(name));
+    EXPECT_EQ(raw(back.coordinates), raw(points.coordinates)) << name;  // to the bit: -0.0 is not 0.0
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"a.npy", "a.node", "a.xy", "a.txt", "a.csv", "a.bin"}));
+  for (const char* name : {"0.npy", "0.node", "0.xy", "0.csv"}) {
+    write_points(path(name), {});
+    EXPECT_EQ(read_points(path(name)).size(), 0u) << name;
+  }
+  expect_error(ErrorKind::input, path("0.bin"), {"no points"}, [&] { write_points(path("0.bin"), {}); });
+  EXPECT_FALSE(std::filesystem::exists(path("0.bin")));
+}
+
+TEST_F(IoTest, TextNumbersAreTheShortest) {
+  write_points(path("a.xy"), {{0.1, 1, -2.5, 1e22}});
+  EXPECT_EQ(read(path("a.xy")), "# x y\n0.1 1\n-2.5 1e+22\n");
+  write_points(path("a.csv"), {{0.1, 1}});
+  EXPECT_EQ(read(path("a.csv")), "x,y\n0.1,1\n");
+}
+
+// ---- outputs ----
+
+TEST_F(IoTest, OutputsThatCannotBeCreatedSayWhy) {
+  const Points points{kSquare};
+  const Triangulation mesh = square_mesh();
+  std::filesystem::create_directory(path("folder.off"));
+  write("file", "");
+  const std::vector<std::tuple<std::string, std::string>> cases = {
+      {path("folder.off"), "Is a directory"},
+      {path("nowhere/a.off"), "No such file or directory"},
+      {path("file/a.off"), "Not a directory"},
+      {path(std::string(300, 'n') + ".off"), "name too long"},
+  };
+  for (const auto& [target, reason] : cases) {
+    expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { check_mesh_output(t); });
+    expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { check_output(t, ".off"); });
+    expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { write_mesh(t, points, mesh); });
+  }
+  // The .node beside an .ele counts too.
+  std::filesystem::create_directory(path("b.node"));
+  expect_error(ErrorKind::input, path("b.node: "), {"Is a directory"},
+               [&] { check_mesh_output(path("b.ele")); });
+  expect_error(ErrorKind::input, path("b.node: "), {"Is a directory"},
+               [&] { write_mesh(path("b.ele"), points, mesh); });
+  EXPECT_EQ(names(), (std::set<std::string>{"folder.off", "file", "b.node"}));
+}
+
+TEST_F(IoTest, UnwritableFolderSaysWhy) {
+  std::filesystem::create_directory(path("closed"));
+  write("kept.off", "kept");
+  ASSERT_EQ(chmod(path("closed").c_str(), 0500), 0);
+  ASSERT_EQ(chmod(path("kept.off").c_str(), 0400), 0);
+  ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);
+  constexpr uid_t kNobody = 65534;
+  const uid_t user = geteuid();
+  if (user == 0) {
+    ASSERT_EQ(seteuid(kNobody), 0);  // root may write anywhere
+  }
+  for (const char* name : {"closed/a.off", "kept.off"}) {
+    expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
+                 [&] { check_mesh_output(path(name)); });
+    expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
+                 [&] { write_mesh(path(name), {kSquare}, square_mesh()); });
+  }
+  ASSERT_EQ(seteuid(user), 0);
+  EXPECT_EQ(read(path("kept.off")), "kept");
+}
+
+TEST_F(IoTest, CheckingLeavesEverythingAsItWas) {
+  const std::string kept = write("kept.off", "kept");
+  for (const char* name :
+       {"a.ele", "a.off", "a.ply", "a.vtu", "a.obj", "a.npy", "a.svg", "A.SVG", "kept.off"}) {
+    EXPECT_NO_THROW(check_mesh_output(path(name))) << name;
+  }
+  EXPECT_NO_THROW(check_output(path("a.json"), ".json"));
+  EXPECT_EQ(names(), std::set<std::string>{"kept.off"});
+  EXPECT_EQ(read(kept), "kept");
+}
+
+TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
+  for (const char* name : {"a.stl", "a", "-", "a.node"}) {
+    expect_error(ErrorKind::usage, std::string(name) + ": ", {".ele, .off, .ply, .vtu, .obj, .npy, .svg"},
+                 [&] { check_mesh_output(name); });
+    expect_error(ErrorKind::usage, std::string(name) + ": ", {".svg"}, [&] { write_mesh(name, {}, {}); });
+  }
+  expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},
+               [] { check_output("a.npy", ".json"); });
+}
+
+TEST_F(IoTest, FullDeviceIsAnError) {
+  std::filesystem::create_symlink("/dev/full", path("full.off"));
+  EXPECT_NO_THROW(check_mesh_output(path("full.off")));
+  expect_error(ErrorKind::input, path("full.off: "), {"No space left"},
+               [&] { write_mesh(path("full.off"), {kSquare}, square_mesh()); });
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(IoTest, FailedWriteKeepsTheOldFile) {
+  const std::vector<const char*> targets = {"a.ele", "a.off", "a.ply", "a.vtu", "a.obj", "a.npy", "a.svg"};
+  std::set<std::string> before = {"a.node"};
+  write("a.node", "old");
+  for (const char* name : targets) {
+    write(name, "old");
+    before.insert(name);
+  }
+  const auto [points, mesh] = grid_mesh(60);
+  // A limit on the size of files fails like a full disk: in the middle of the writing.
+  rlimit saved{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &saved), 0);
+  const auto old_handler = signal(SIGXFSZ, SIG_IGN);
+  for (const char* name : targets) {
+    std::string message;
+    rlimit small = saved;
+    small.rlim_cur = 3000;
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    try {
+      write_mesh(path(name), points, mesh);
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &saved), 0);
+    EXPECT_NE(message.find("File too large"), std::string::npos) << name << ": " << message;
+  }
+  signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(names(), before);
+  for (const std::string& name : before) EXPECT_EQ(read(path(name)), "old") << name;
+}
+
+TEST_F(IoTest, ReplacingKeepsModeAndSymbolicLink) {
+  const std::string real = write("real.off", "old");
+  ASSERT_EQ(chmod(real.c_str(), 0640), 0);
+  std::filesystem::create_symlink("real.off", path("link.off"));
+  write_mesh(path("link.off"), {kSquare}, square_mesh());
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.off")));
+  EXPECT_EQ(read_triangles(real), square_mesh().triangles);
+  struct stat status {};
+  ASSERT_EQ(stat(real.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+  EXPECT_EQ(names(), (std::set<std::string>{"real.off", "link.off"}));
+}
+
+// ---- meshes ----
+
+TEST_F(IoTest, TrianglesReadBackAsWritten) {
+  for (const auto& [points, mesh] :
+       {std::pair{Points{kSquare}, square_mesh()}, grid_mesh(70), {Points{}, {}}}) {
+    for (const char* name : {"a.ele", "a.off", "a.ply", "a.obj", "a.npy"}) {
+      write_mesh(path(name), points, mesh);
+      EXPECT_EQ(read_triangles(path(name)), mesh.triangles) << name;
+    }
+    EXPECT_EQ(read_points(path("a.node")).coordinates, points.coordinates);
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"a.ele", "a.node", "a.off", "a.ply", "a.obj", "a.npy"}));
+}
+
+TEST_F(IoTest, MeshFormatsAreAsTheirReadersExpect) {
+  const Points points{kSquare};
+  const Triangulation mesh = square_mesh();
+  write_mesh(path("a.ele"), points, mesh);
+  EXPECT_EQ(read(path("a.ele")), "4 3 0\n0 0 1 4\n1 1 2 4\n2 2 3 4\n3 0 4 3\n");
+  EXPECT_EQ(read(path("a.node")), "5 2 0 0\n0 0 0\n1 1 0\n2 1 1\n3 0 1\n4 0.5 0.5\n");
+  write_mesh(path("a.off"), points, mesh);
+  EXPECT_EQ(read(path("a.off")),
+            "OFF\n5 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.5 0\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 0 4 3\n");
+  write_mesh(path("a.obj"), points, mesh);
+  EXPECT_EQ(read(path("a.obj")),
+            "# 5 vertices, 4 triangles\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nf 1 2 5\nf 2 3 5\nf "
+            "3 4 5\nf 1 5 4\n");
+
+  write_mesh(path("a.ply"), points, mesh);
+  const std::string ply = read(path("a.ply"));
+  EXPECT_EQ(ply.compare(0, 36, "ply\nformat binary_little_endian 1.0\n"), 0);
+  EXPECT_NE(ply.find("\nelement vertex 5\nproperty double x\nproperty double y\nproperty double z\n"),
+            std::string::npos);
+  const std::string end = "end_header\n";
+  const std::string data = ply.substr(ply.find(end) + end.size());
+  ASSERT_EQ(data.size(), 5 * 24u + 4 * 13u);
+  EXPECT_EQ(data.substr(0, 48), raw<double>({0, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(data.substr(5 * 24, 13), "\x03" + raw<std::int32_t>({0, 1, 4}));
+}
+
+TEST_F(IoTest, VtuArraysAreWhereTheHeaderSays) {
+  const Points points{kSquare};
+  const Triangulation mesh = square_mesh();
+  write_mesh(path("a.vtu"), points, mesh);
+  const std::string vtu = read(path("a.vtu"));
+  EXPECT_EQ(vtu.compare(0, 22, "<?xml version=\"1.0\"?>\n"), 0);
+  for (const char* part :
+       {"byte_order=\"LittleEndian\" header_type=\"UInt64\"", "NumberOfPoints=\"5\" NumberOfCells=\"4\"",
+        "<AppendedData encoding=\"raw\">", "</AppendedData>\n</VTKFile>\n"}) {
+    EXPECT_NE(vtu.find(part), std::string::npos) << part;
+  }
+  const std::size_t base = vtu.find("\n_") + 2;
+  const auto array = [&](const std::string& name) {
+    const std::size_t element = vtu.find("Name=\"" + name + "\""), offset = vtu.find("offset=\"", element);
+    const std::size_t begin = base + std::stoul(vtu.substr(offset + 8));
+    std::uint64_t bytes = 0;
+    std::memcpy(&bytes, vtu.data() + begin, sizeof bytes);
+    return vtu.substr(begin + sizeof bytes, bytes);
+  };
+  EXPECT_EQ(array("Points"), raw<double>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 0}));
+  EXPECT_EQ(array("connectivity"), raw(mesh.triangles));
+  EXPECT_EQ(array("offsets"), raw<std::int64_t>({3, 6, 9, 12}));
+  EXPECT_EQ(array("types"), "\x05\x05\x05\x05");
+}
+
+TEST_F(IoTest, NpyIsAsNumpyWritesIt) {
+  write_npy_int32(path("a.npy"), {1, 2, 3, 4, 5, 6}, 3);
+  std::string expected = std::string("\x93NUMPY\x01\x00\x76\x00", 10) + npy_header("<i4", "(2, 3)");
+  expected.resize(127, ' ');
+  EXPECT_EQ(read(path("a.npy")), expected + "\n" + raw<std::int32_t>({1, 2, 3, 4, 5, 6}));
+  write_npy_int32(path("b.npy"), {7, 8}, 0);
+  EXPECT_NE(read(path("b.npy")).find("'shape': (2,)"), std::string::npos);
+  EXPECT_EQ(read(path("b.npy")).size(), 128u + 8u);
+  expect_error(ErrorKind::internal, path("c.npy"), {"rows of 3"}, [&] {
+    write_npy_int32(path("c.npy"), {1, 2}, 3);
+  });
+}
+
+TEST_F(IoTest, TrianglesOfOtherPrograms) {
+  const auto triangles = [&](const char* name, const std::string& bytes) {
+    return read_triangles(write(name, bytes));
+  };
+  EXPECT_EQ(triangles("a.ele", "# c\n2 3 1\n1 1 2 3 0.5\n2 2 4 3 0.5 # c\n"), (Indices{0, 1, 2, 1, 3, 2}));
+  EXPECT_EQ(triangles("b.off", "# c\nOFF 3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n"), (Indices{0, 1, 2}));
+  EXPECT_EQ(
+      triangles("c.obj", "# c\no thing\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1/1/1 2//1 3\nf -3 -2 -1\n"),
+      (Indices{0, 1, 2, 0, 1, 2}));
+  EXPECT_EQ(triangles("d.npy", npy(npy_header("<i8", "(1, 3)"), raw<std::int64_t>({0, 1, 2}))),
+            (Indices{0, 1, 2}));
+  EXPECT_EQ(triangles("e.ply",
+                      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+                      "property float y\nproperty uchar red\nelement face 1\n"
+                      "property list uint8 uint32 vertex_index\nend_header\n" +
+                          std::string(27, 'v') + "\x03" + raw<std::int32_t>({2, 0, 1})),
+            (Indices{2, 0, 1}));
+}
+
+TEST_F(IoTest, BadTrianglesNameThePlace) {
+  expect_bad_triangles("a.ele", "2 3 0\n0 0 1 2\n", {"line 1", "2 triangles", "after 1"});
+  expect_bad_triangles("b.ele", "1 3 0\n0 0 1 2\n1 0 1 2\n", {"line 3", "more triangles than the 1"});
+  expect_bad_triangles("c.ele", "1 6 0\n0 0 1 2 3 4 5\n", {"line 1", "6 nodes", "expected 3"});
+  expect_bad_triangles("d.ele", "1 3 0\n1 0 1 2\n", {"line 2", "vertex 0", "out of range", "1 to"});
+  expect_bad_triangles("e.ele", "1 3 0\n0 0 1\n", {"line 2", "expected 4 fields", "found 3"});
+  expect_bad_triangles("f.ele", "1 3 0\n0 0 1 b\n", {"line 2, column 7", "vertex number", "'b'"});
+  expect_bad_triangles("g.ele", "2 3 0\n0 0 1 2\n5 0 1 2\n",
+                       {"line 3", "expected triangle number 1", "found 5"});
+  expect_bad_triangles("h.off", "3 1 0\n", {"line 1", "expected OFF", "'3'"});
+  expect_bad_triangles("i.off", "OFF\n2 1 0\n0 0 0\n1 0 0\n3 0 1 2\n", {"line 5", "vertex 2", "0 to 1"});
+  expect_bad_triangles("j.off", "OFF\n1 1 0\n0 0 0\n4 0 0 0 0\n", {"line 4", "4 corners", "expected 3"});
+  expect_bad_triangles("k.off", "OFF\n2 1 0\n0 0 0\n", {"2 vertices", "after 1"});
+  expect_bad_triangles("l.off", "OFF\n1 2 0\n0 0 0\n3 0 0 0\n", {"2 faces", "after 1"});
+  expect_bad_triangles("m.off", "OFF\n1 0 0\n0 0 0\n3 0 0 0\n", {"line 4", "after the 0 faces"});
+  expect_bad_triangles("n.obj", "v 0 0 0\nf 1 1 2\n", {"line 2", "vertex 2", "1 to 1"});
+  expect_bad_triangles("o.obj", "v 0 0 0\nf 1 1 1 1\n", {"line 2", "4 corners"});
+  expect_bad_triangles("p.obj", "v 0 0 0\nf 1 x 1\n", {"line 2, column 5", "'x'"});
+  expect_bad_triangles("q.npy", npy(npy_header("<f8", "(1, 3)"), raw<double>({0, 1, 2})),
+                       {"'<f8'", "expected '<i4' or '<i8'"});
+  expect_bad_triangles("r.npy", npy(npy_header("<i4", "(2, 3)"), raw<std::int32_t>({0, 1, 2, 3, -4, 5})),
+                       {"triangle 1", "vertex -4"});
+  expect_bad_triangles("s.npy", npy(npy_header("<i8", "(1, 3)"), raw<std::int64_t>({0, 1, 1LL << 31})),
+                       {"triangle 0", "vertex 2147483648"});
+  expect_bad_triangles("t.npy", npy(npy_header("<i4", "(3,)"), raw<std::int32_t>({0, 1, 2})),
+                       {"shape (3,)", "(m, 3)"});
+  for (const char* ending : {".npy", ".ele", ".off", ".obj", ".ply"}) {
+    expect_bad_triangles(std::string("empty") + ending, "", {"empty", "expected"});
+  }
+  expect_error(ErrorKind::usage, "a.svg: ", {".npy, .ele, .off, .obj, .ply"},
+               [] { read_triangles("a.svg"); });
+}
+
+TEST_F(IoTest, NeighborsReadBackAsWritten) {
+  const Indices neighbors = {1, 3, -1, 2, 0, -1};
+  write_npy_int32(path("a.npy"), neighbors, 3);
+  EXPECT_EQ(read_neighbors(path("a.npy")), neighbors);
+  const std::string bad =
+      write("b.npy", npy(npy_header("<i8", "(2, 3)"), raw<std::int64_t>({0, 1, -1, 0, -2, 1})));
+  expect_error(ErrorKind::input, bad + ": ", {"triangle 1", "-2", "expected -1 to"},
+               [&] { read_neighbors(bad); });
+  expect_error(ErrorKind::usage, "a.ele: ", {"expected .npy"}, [] { read_neighbors("a.ele"); });
+}
+
+TEST_F(IoTest, BadPlyNamesThePlace) {
+  write_mesh(path("good.ply"), {kSquare}, square_mesh());
+  const std::string good = read(path("good.ply"));
+  const std::size_t data = good.find("end_header\n") + 11;
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string bytes = good;
+    const std::size_t at = bytes.find(from);
+    EXPECT_NE(at, std::string::npos);
+    return bytes.replace(at, from.size(), to);
+  };
+  expect_bad_triangles("a.ply", "plx\n", {"no PLY file"});
+  expect_bad_triangles("b.ply", good.substr(0, 100), {"end_header"});
+  expect_bad_triangles("c.ply", good.substr(0, data + 30), {"truncated", "5 vertices"});
+  expect_bad_triangles("d.ply", good.substr(0, good.size() - 1), {"truncated", "4 faces", "face 3"});
+  expect_bad_triangles("e.ply", good + "x", {"1 bytes after", "4 faces"});
+  expect_bad_triangles("f.ply", replaced("binary_little_endian", "binary_big_endian"),
+                       {"binary_little_endian"});
+  expect_bad_triangles("g.ply", replaced("element vertex 5", "element vertex -5"), {"line 4", "-5 elements"});
+  expect_bad_triangles("h.ply", replaced("list uchar int", "list uchar float"), {"line 9", "list uchar int"});
+  expect_bad_triangles("i.ply", replaced("element vertex 5", "element vertex 9223372036854775807"),
+                       {"truncated"});
+  std::string corners = good, vertex = good;
+  corners[data + 5 * 24 + 13] = 4;
+  expect_bad_triangles("j.ply", corners,
+                       {"face 1", "4 corners", "byte " + std::to_string(data + 5 * 24 + 13)});
+  vertex[data + 5 * 24 + 1] = 5;
+  expect_bad_triangles("k.ply", vertex, {"face 0", "vertex 5", "0 to 4"});
+}
+
+// ---- .svg ----
+
+/// Whether tags are balanced and attributes quoted. Enough of XML for what write_mesh writes.
+testing::AssertionResult is_well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at)) {
+    const std::size_t end = xml.find('>', at);
+    if (end == std::string::npos) return testing::AssertionFailure() << "tag without end at byte " << at;
+    const std::string tag = xml.substr(at + 1, end - at - 1);
+    at = end;
+    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0)
+      return testing::AssertionFailure() << "quotes in " << tag;
+    if (tag[0] == '?') continue;
+    const std::string name = tag.substr(tag[0] == '/', tag.find_first_of(" \n", 1) - (tag[0] == '/'));
+    if (tag[0] == '/') {
+      if (open.empty() || open.back() != name)
+        return testing::AssertionFailure() << "unexpected </" << name << ">";
+      open.pop_back();
+    } else if (tag.back() != '/') {
+      open.push_back(name);
+    }
+  }
+  if (!open.empty()) return testing::AssertionFailure() << "<" << open.back() << "> is not closed";
+  return testing::AssertionSuccess();
+}
+
+using Corner = std::pair<long, long>;
+struct Decoded {
+  std::set<std::pair<Corner, Corner>> segments;  // smaller end first
+  std::size_t steps = 0, closed = 0;
+  std::vector<Corner> moves;
+};
+
+/// Follows the data of all path elements whose start tag contains `mark`.
+Decoded decode_paths(const std::string& svg, const std::string& mark) {
+  Decoded result;
+  for (std::size_t at = svg.find("<path "); at != std::string::npos; at = svg.find("<path ", at + 1)) {
+    const std::size_t begin = svg.find(" d=\"", at) + 4, end = svg.find('"', begin);
+    if (svg.substr(at, begin - at).find(mark) == std::string::npos) continue;
+    const std::string data = svg.substr(begin, end - begin);
+    const char* c = data.c_str();
+    Corner pen{0, 0}, start{0, 0};
+    bool move = false;
+    while (*c) {
+      if (*c == 'm') {
+        move = true;
+        ++c;
+      } else if (*c == 'z') {
+        pen = start;
+        ++result.closed;
+        ++c;
+      } else if (*c == 'h') {
+        c += 2;  // h0, the dot of a point
+      } else {
+        char* next = nullptr;
+        const long dx = std::strtol(c, &next, 10), dy = std::strtol(next, &next, 10);
+        if (next == c) {
+          ADD_FAILURE() << "unexpected path data " << std::string(c).substr(0, 20);
+          return result;
+        }
+        c = next;
+        const Corner to{pen.first + dx, pen.second + dy};
+        if (move) {
+          start = to;
+          result.moves.push_back(to);
+        } else {
+          ++result.steps;
+          result.segments.insert(std::minmax(pen, to));
+        }
+        pen = to;
+        move = false;
+      }
+    }
+  }
+  return result;
+}
+
+std::string svg_of(const std::string& file, const Points& points, const Triangulation& mesh) {
+  write_mesh(file, points, mesh);
+  std::ostringstream bytes;
+  bytes << std::ifstream(file).rdbuf();
+  return bytes.str();
+}
+
+TEST_F(IoTest, SvgDrawsEveryTriangleAndEveryEdgeOnce) {
+  for (const std::int32_t cells : {1, 7, 60}) {
+    const auto [points, mesh] = grid_mesh(cells);
+    const std::string svg = svg_of(path("a.svg"), points, mesh);
+    EXPECT_TRUE(is_well_formed(svg));
+    EXPECT_EQ(decode_paths(svg, "fill=\"#").closed, mesh.triangles.size() / 3);
+    const Decoded edges = decode_paths(svg, "id=\"edges"), hull = decode_paths(svg, "id=\"hull");
+    EXPECT_EQ(hull.steps, mesh.hull.size());
+    EXPECT_EQ(edges.steps, edges.segments.size());
+    std::set<std::pair<Corner, Corner>> all = edges.segments;
+    all.insert(hull.segments.begin(), hull.segments.end());
+    EXPECT_EQ(all.size(), static_cast<std::size_t>(3 * cells * cells + 2 * cells));
+  }
+}
+
+TEST_F(IoTest, SvgHasItsYAxisUpwardsAndACaption) {
+  Triangulation mesh = square_mesh();
+  Points points{kSquare};
+  points.coordinates.insert(points.coordinates.end(), {1, 1});
+  mesh.representatives.push_back(2);
+  const std::string svg = svg_of(path("a.svg"), points, mesh);
+  EXPECT_NE(svg.find(">6 points · 4 triangles · 4 on the hull · 1 duplicate<"), std::string::npos);
+  const std::vector<Corner> dots = decode_paths(svg, "id=\"points").moves;
+  ASSERT_EQ(dots.size(), 6u);
+  EXPECT_EQ(dots[0].first, 0);
+  EXPECT_GT(dots[0].second, 0);
+  EXPECT_EQ(dots[2], Corner(dots[0].second, 0));  // aspect kept
+  EXPECT_EQ(dots[3], Corner(0, 0));
+}
+
+TEST_F(IoTest, SvgOfManyPointsHasThousandsAndNoDots) {
+  const auto [points, mesh] = grid_mesh(120);
+  const std::string svg = svg_of(path("a.svg"), points, mesh);
+  EXPECT_NE(svg.find(">14,641 points · 28,800 triangles · 480 on the hull<"), std::string::npos);
+  EXPECT_EQ(svg.find("id=\"points\""), std::string::npos);
+  EXPECT_EQ(svg.find("centre"), std::string::npos);
+  EXPECT_LT(svg.size(), 40 * 28800u);
+}
+
+TEST_F(IoTest, SvgShowsTheCentreWhenOutliersWouldShrinkIt) {
+  auto [points, mesh] = grid_mesh(20);
+  // One corner far out.
+  points.coordinates[points.coordinates.size() - 2] = 1e6;
+  points.coordinates[points.coordinates.size() - 1] = 1e6;
+  const std::string svg = svg_of(path("a.svg"), points, mesh);
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_NE(svg.find("only the centre is shown, with "), std::string::npos);
+  // Nothing is drawn far outside, and the centre keeps its triangles.
+  const Decoded triangles = decode_paths(svg, "fill=\"#"), edges = decode_paths(svg, "id=\"edges");
+  EXPECT_GT(triangles.closed, 500u);
+  for (const auto& [from, to] : edges.segments) {
+    for (const Corner& corner : {from, to}) {
+      EXPECT_GE(std::min(corner.first, corner.second), 0);
+      EXPECT_LE(std::max(corner.first, corner.second), 40'000);
+    }
+  }
+}
+
+TEST_F(IoTest, SvgOfDegenerateInputs) {
+  Triangulation line;
+  line.hull = {0, 1, 2};
+  line.representatives = {0, 1, 2};
+  line.hull_offsets = {0, 3};
+  line.triangle_offsets = {0, 0};
+  Triangulation one;
+  one.hull = {0};
+  one.representatives = {0, 0};
+  one.hull_offsets = {0, 1};
+  one.triangle_offsets = {0, 0};
+  const std::vector<std::tuple<Points, Triangulation, std::size_t>> cases = {
+      {Points{}, Triangulation{}, 0},
+      {Points{{3, 4, 3, 4}}, one, 0},
+      {Points{{0, 0, 0, 1, 0, 2}}, line, 3},
+      {Points{{-1.7e308, 0, 0, 0, 1.7e308, 0}}, line, 3},
+      {Points{{0, 0, 1e-310, 1e-310, 2e-310, 2e-310}}, line, 3},
+  };
+  for (const auto& [points, mesh, segments] : cases) {
+    const std::string svg = svg_of(path("a.svg"), points, mesh);
+    EXPECT_TRUE(is_well_formed(svg));
+    EXPECT_EQ(decode_paths(svg, "id=\"hull").segments.size(), segments);
+    EXPECT_EQ(decode_paths(svg, "id=\"points").moves.size(), points.size());
+    for (const char* bad : {"nan", "inf"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ regions
+
+/// A pinched region: two triangles that touch in point 2, with a point inside each.
+struct Pinched {
+  Points points{{0, 0, 4, 0, 2, 2, 4, 4, 0, 4, 2, 0.1, 1e-300, 1e300, 2, 3.9}};
+  research::Region region{{0, 1, 2, 3, 4, 5, 7}, {0, 1, 1, 2, 2, 0, 2, 3, 3, 4, 4, 2}};
+};
+
+TEST_F(IoTest, ARegionReadsBackExactly) {
+  const Pinched pinched;
+  write_region(path("r"), pinched.points, pinched.region);
+  EXPECT_EQ(names(), (std::set<std::string>{"r.node", "r.poly"}));
+  const StoredRegion stored = read_region(path("r"), 7, 6);
+  EXPECT_EQ(stored.region.points, pinched.region.points);
+  EXPECT_EQ(stored.region.border, pinched.region.border);
+  EXPECT_EQ(stored.points.coordinates, (Values{0, 0, 4, 0, 2, 2, 4, 4, 0, 4, 2, 0.1, 2, 3.9}));
+  // Any reader of points takes the .node.
+  EXPECT_EQ(read_points(path("r.node")).coordinates, stored.points.coordinates);
+}
+
+TEST_F(IoTest, ARegionMayBeNumberedFromOne) {
+  write("r.node", "# from elsewhere\n3 2 2 1\n1 0 0 7 0.5 1\n2 1 0 5 0.5 1\n3 0 1 6 0.5 1\n");
+  write("r.poly", "0 2 1 1\n3 1\n1 1 2 9\n2 2 3 9\n3 3 1 9\n0\n");
+  const StoredRegion stored = read_region(path("r"), 3, 3);
+  EXPECT_EQ(stored.region.points, (Indices{7, 5, 6}));
+  EXPECT_EQ(stored.region.border, (Indices{0, 1, 1, 2, 2, 0}));
+}
+
+TEST_F(IoTest, APartitionsPictureWindsAroundEachRegionOnce) {
+  const Pinched pinched;
+  Points points = pinched.points;
+  points.coordinates[13] = 1;  // no outlier
+  research::Partition partition;
+  partition.regions = {pinched.region};
+  partition.triangles = {1, 3, 2};
+  write_partition_svg(path("a.svg"), points, partition);
+  const std::string svg = read(path("a.svg"));
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_NE(svg.find("8 points · 1 region · 1 finished triangle (grey)"), std::string::npos) << svg;
+  const Decoded border = decode_paths(svg, "id=\"region-0\"");
+  EXPECT_EQ(border.closed, 2u);
+  EXPECT_EQ(border.segments.size(), 4u) << "the last of each walk closes it";
+
+  for (const Points& degenerate : {Points{}, Points{{1, 2}}, Points{{-1.7e308, 0, 0, 0, 1.7e308, 0}}}) {
+    write_partition_svg(path("b.svg"), degenerate, research::Partition{});
+    EXPECT_TRUE(is_well_formed(read(path("b.svg"))));
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::io

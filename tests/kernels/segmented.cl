@@ -1,0 +1,15 @@
+// Instances of shared/segmented_arg_reduce.h: the least and the greatest value of each segment, of equal ones
+// the first; and the least positive one, so that some elements are no candidates.
+
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#pragma OPENCL FP_CONTRACT OFF
+
+#include "shared/segmented_arg_reduce.h"
+
+#define SELF(i) i
+#define KEPT(i) values[i] > 0 ? i : -1
+#define SMALLER(run, i, j) (values[i] < values[j] || (values[i] == values[j] && i < j))
+#define GREATER(run, i, j) (values[i] > values[j] || (values[i] == values[j] && i < j))
+SEGMENTED_ARG_REDUCE(segmented_arg_min, SELF, SMALLER, global const double* restrict values)
+SEGMENTED_ARG_REDUCE(segmented_arg_max, SELF, GREATER, global const double* restrict values)
+SEGMENTED_ARG_REDUCE(least_positive, KEPT, SMALLER, global const int* restrict values)
