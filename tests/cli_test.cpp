@@ -372,6 +372,17 @@ TEST_F(CommandBadInputTest, UnreadableNumberWithLineAndColumn) {
                "0 0\n1 zero\n");
 }
 
+TEST_F(CommandBadInputTest, TextThatIsNoneAndFirstLinesThatAreNoHeaders) {
+  const std::string zeros = write("zeros.csv", std::string(100'000, '\0'));
+  expect_error(kBadInput, {"zeros.csv", "line 1", "byte 0x00"},
+               {"triangulate", zeros, "-o", path("mesh.off")});
+  const std::string mistyped = write("mistyped.csv", "e5,O\n0,0\n1,0\n0,1\n");
+  expect_error(kBadInput, {"mistyped.csv", "line 1", "'e5'"},
+               {"triangulate", mistyped, "-o", path("mesh.off")});
+  expect_error(kBadInput, {"line 1", "'\xef\xbc\x91'"}, {"triangulate", "-", "-o", path("mesh.off")},
+               kNoPlatform, "\xef\xbc\x91,\xef\xbc\x92\n0,0\n");
+}
+
 TEST_F(CommandBadInputTest, RaggedLine) {
   const std::string short_line = write("short.csv", "0,0\n1,0\n2\n3,3\n");
   expect_error(kBadInput, {"short.csv", "line 3"}, {"triangulate", short_line, "-o", path("mesh.off")});
@@ -408,6 +419,7 @@ TEST_F(CommandBadInputTest, WrongArrays) {
       {"truncated.npy", npy("<f8", "False", "(4, 2)", eight.substr(0, 50))},
       {"huge.npy", npy("<f8", "False", "(4611686018427387904, 2)", eight)},
       {"header.npy", npy("<f8", "False", "(4, 2)", eight).substr(0, 40)},
+      {"after.npy", npy("<f8", "False", std::string("(4, 2), }") + '\0', eight)},
       {"magic.npy", "PK\x03\x04 and so on, as an .npz would be"},
       {"half.bin", eight.substr(0, 50)},
   };

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -56,37 +57,75 @@ inline std::string shown_path(const std::string& path) {
   return path == "-" ? std::string("- (standard input)") : path;
 }
 
+/// A file being read; "-" is standard input. Its beginning can be checked before the rest is read.
+/// Throws Error(input).
+class InputFile {
+ public:
+  /// expected: what should be in the file, for messages.
+  InputFile(const std::string& path, std::string_view expected)
+      : name_(shown_path(path)),
+        expected_(expected),
+        descriptor_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    struct stat status {};
+    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
+      const int reason = errno;
+      close();
+      fail(name_, "cannot be opened: {}; expected {}", system_reason(reason), expected_);
+    }
+    if (S_ISDIR(status.st_mode)) {
+      close();
+      fail(name_, "cannot be read: {}; expected {}", system_reason(EISDIR), expected_);
+    }
+    // The size of a regular file is known; room for one byte more detects the end in the same call. For pipes
+    // the buffer grows.
+    whole_ = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 1 << 16;
+  }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  ~InputFile() { close(); }
+
+  /// The first `count` bytes, or all if there are fewer. The view is valid until the next call.
+  std::string_view first(std::size_t count) {
+    read_until(count);
+    return std::string_view(bytes_.data(), std::min(count, used_));
+  }
+
+  /// All bytes. Nothing can be read afterwards.
+  std::string all() {
+    for (std::size_t room = whole_; !ended_; room *= 2) read_until(room);
+    bytes_.resize(used_);
+    return std::move(bytes_);
+  }
+
+ private:
+  /// Reads until there are `count` bytes or the file ends.
+  void read_until(std::size_t count) {
+    if (bytes_.size() < count) bytes_.resize(count);
+    while (used_ < count && !ended_) {
+      const ssize_t got = ::read(descriptor_, &bytes_[used_], count - used_);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail(name_, "cannot be read: {}", system_reason(errno));
+      ended_ = got == 0;
+      used_ += static_cast<std::size_t>(got);
+    }
+    if (used_ == 0 && ended_) fail(name_, "is empty (zero bytes); expected {}", expected_);
+  }
+  void close() {
+    if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
+  }
+
+  std::string name_;
+  std::string expected_;
+  int descriptor_;
+  std::size_t whole_ = 0;  // room for all bytes of a regular file
+  std::string bytes_;      // the first used_ bytes were read
+  std::size_t used_ = 0;
+  bool ended_ = false;
+};
+
 /// The bytes of the file at path, or of standard input for "-". `expected` says what should have been in it.
 inline std::string read_file(const std::string& path, std::string_view expected) {
-  struct Descriptor {
-    int number;
-    ~Descriptor() {
-      if (number > STDIN_FILENO) ::close(number);
-    }
-  };
-  const std::string name = shown_path(path);
-  const Descriptor file{path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  struct stat status {};
-  if (file.number < 0 || ::fstat(file.number, &status) != 0) {
-    fail(name, "cannot be opened: {}; expected {}", system_reason(errno), expected);
-  }
-  if (S_ISDIR(status.st_mode)) fail(name, "cannot be read: {}; expected {}", system_reason(EISDIR), expected);
-
-  // The size of a regular file is known; reading one byte more detects the end in the same call. For pipes
-  // the buffer grows.
-  std::string bytes(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 1 << 16, '\0');
-  std::size_t used = 0;
-  for (;;) {
-    if (used == bytes.size()) bytes.resize(2 * bytes.size());
-    const ssize_t got = ::read(file.number, &bytes[used], bytes.size() - used);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(name, "cannot be read: {}", system_reason(errno));
-    if (got == 0) break;
-    used += static_cast<std::size_t>(got);
-  }
-  bytes.resize(used);
-  if (bytes.empty()) fail(name, "is empty (zero bytes); expected {}", expected);
-  return bytes;
+  return InputFile(path, expected).all();
 }
 
 /// A file being written. The bytes go to a temporary file in the target's folder. commit renames it to the

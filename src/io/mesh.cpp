@@ -152,10 +152,9 @@ std::vector<std::int32_t> read_ele(const std::string& path) {
   const std::size_t header_fields = lines.count_fields();
   const long long count = lines.integer("the number of triangles");
   const long long corners = header_fields > 1 ? lines.integer("the number of nodes per triangle") : 3;
-  const long long attributes = header_fields > 2 ? lines.integer("the number of attributes") : 0;
+  const long long attributes = header_fields > 2 ? attribute_count(lines) : 0;
   if (count < 0) lines.fail_line("{} triangles; expected 0 or more", count);
   if (corners != 3) lines.fail_line("{} nodes per triangle; expected 3", corners);
-  if (attributes < 0) lines.fail_line("{} attributes; expected 0 or more", attributes);
 
   std::vector<std::int32_t> triangles;
   long long base = 0, read = 0;
@@ -220,12 +219,13 @@ std::vector<std::int32_t> read_obj(const std::string& path) {
   const std::string text = read_file(path, "the OBJ format");
   std::string_view keyword;
   long long vertices = 0;
-  for (Lines lines(path, text, Lines::Separator::blanks); lines.next();) {
+  const Lines from_the_start(path, text, Lines::Separator::blanks);
+  for (Lines lines = from_the_start; lines.next();) {
     if (lines.field(keyword) && keyword == "v") ++vertices;
   }
   std::vector<std::int32_t> triangles;
   long long vertices_so_far = 0;
-  for (Lines lines(path, text, Lines::Separator::blanks); lines.next();) {
+  for (Lines lines = from_the_start; lines.next();) {
     const std::size_t fields = lines.count_fields();
     lines.field(keyword);
     if (keyword == "v") ++vertices_so_far;
@@ -258,10 +258,12 @@ std::size_t ply_type_bytes(std::string_view type) {
 }
 
 std::vector<std::int32_t> read_ply(const std::string& path) {
-  const std::string bytes = read_file(path, "the PLY format");
-  constexpr std::string_view kEnd = "end_header\n";
+  constexpr std::string_view kBegin = "ply\n", kEnd = "\nend_header\n";
+  InputFile file(path, "the PLY format");
+  if (file.first(kBegin.size()) != kBegin)
+    fail(path, "is no PLY file; expected its first line to be \"ply\"");
+  const std::string bytes = file.all();
   const std::size_t header_end = bytes.find(kEnd);
-  if (bytes.compare(0, 4, "ply\n") != 0) fail(path, "is no PLY file; expected its first line to be \"ply\"");
   if (header_end == std::string::npos)
     fail(path, "has no end of its PLY header; expected a line \"end_header\"");
 

@@ -48,7 +48,8 @@ class HeaderParser {
       }
       if (!accept(',') && peek() != '}') malformed("expected ',' or '}'");
     }
-    if (peek() != '\0') malformed("text after '}'");
+    peek();
+    if (at_ != text_.size()) malformed("expected blanks alone after '}'");
     if (!descr_seen) malformed("no key 'descr'");
     if (!order_seen) malformed("no key 'fortran_order'");
     if (!shape_seen) malformed("no key 'shape'");
@@ -113,22 +114,30 @@ class HeaderParser {
   std::size_t at_ = 0;
 };
 
-Header parse_header(const std::string& path, const std::string& bytes) {
-  if (bytes.compare(0, kMagic.size(), kMagic) != 0) {
+/// Reads the file up to the end of its header.
+Header read_header(const std::string& path, InputFile& file) {
+  constexpr std::size_t kPrefix = 8, kMostHeader = 1 << 16;
+  const std::string prefix(file.first(kPrefix));
+  if (prefix.compare(0, kMagic.size(), kMagic) != 0) {
     fail(path, "is no .npy file; expected it to begin with \\x93NUMPY");
   }
-  if (bytes.size() < 8) fail(path, "is truncated in the .npy header: {} bytes", bytes.size());
-  const int version = static_cast<unsigned char>(bytes[6]);
+  if (prefix.size() < kPrefix) fail(path, "is truncated in the .npy header: {} bytes", prefix.size());
+  const int version = static_cast<unsigned char>(prefix[6]);
   if (version < 1 || version > 3) fail(path, "has .npy format version {}; expected 1, 2 or 3", version);
-  const std::size_t length_bytes = version == 1 ? 2 : 4;
-  const std::size_t text_begin = 8 + length_bytes;
+  const std::size_t text_begin = kPrefix + (version == 1 ? 2 : 4);
+  const std::string_view before_text = file.first(text_begin);
   std::uint32_t length = 0;
-  if (bytes.size() >= text_begin) std::memcpy(&length, bytes.data() + 8, length_bytes);
-  if (bytes.size() < text_begin || bytes.size() - text_begin < length) {
+  std::memcpy(&length, before_text.data() + kPrefix, before_text.size() - kPrefix);
+  if (before_text.size() == text_begin && length > kMostHeader) {
+    fail(path, "has an .npy header of {} bytes; expected at most {}, for an array of plain numbers", length,
+         kMostHeader);
+  }
+  const std::string_view bytes = file.first(text_begin + length);
+  if (bytes.size() < text_begin + length) {
     fail(path, "is truncated in the .npy header: expected {} bytes of it, the file has {}",
          text_begin + length, bytes.size());
   }
-  Header header = HeaderParser(path, std::string_view(bytes).substr(text_begin, length)).parse();
+  Header header = HeaderParser(path, bytes.substr(text_begin)).parse();
   header.data_begin = text_begin + length;
   return header;
 }
@@ -139,32 +148,37 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
-/// Checks everything but the values: an array of shape (rows, columns) whose dtype is one of the two. Returns
-/// the number of rows.
-std::size_t check_layout(const std::string& path, const std::string& bytes, const Header& header,
-                         std::size_t columns, const char* rows_name, const std::string& first_dtype,
-                         const std::string& second_dtype) {
-  const std::string expected = fmt::format("expected '{}' or '{}'", first_dtype, second_dtype);
+/// What a reader accepts: an array of shape (rows, columns) whose dtype is one of the two.
+struct Layout {
+  const char* rows_name;
+  std::size_t columns;
+  std::string first_dtype, second_dtype;
+};
+
+/// Checks the header. Returns the number of bytes of all values.
+std::size_t check_header(const std::string& path, const Header& header, const Layout& layout) {
+  const std::string expected = fmt::format("expected '{}' or '{}'", layout.first_dtype, layout.second_dtype);
   if (!header.descr.empty() && header.descr[0] == '>') {
     fail(path, "has big-endian dtype '{}'; {} (numpy converts: array.astype('{}'))", header.descr, expected,
-         first_dtype);
+         layout.first_dtype);
   }
-  if (header.descr != first_dtype && header.descr != second_dtype) {
+  if (header.descr != layout.first_dtype && header.descr != layout.second_dtype) {
     fail(path, "has dtype '{}'; {}", header.descr, expected);
   }
-  if (header.shape.size() != 2 || header.shape[1] != columns) {
-    fail(path, "has shape {}; expected ({}, {})", shape_text(header.shape), rows_name, columns);
+  if (header.shape.size() != 2 || header.shape[1] != layout.columns) {
+    fail(path, "has shape {}; expected ({}, {})", shape_text(header.shape), layout.rows_name, layout.columns);
   }
   if (header.fortran_order) {
     fail(path, "is in Fortran order; expected C order (numpy converts: numpy.ascontiguousarray(array))");
   }
-  const std::size_t row_bytes = columns * static_cast<std::size_t>(header.descr[2] - '0');
-  const std::size_t rows = header.shape[0];
-  if (rows > std::numeric_limits<std::size_t>::max() / row_bytes) {
+  const std::size_t row_bytes = layout.columns * static_cast<std::size_t>(header.descr[2] - '0');
+  if (header.shape[0] > std::numeric_limits<std::size_t>::max() / row_bytes) {
     fail(path, "has shape {}, more than any memory holds", shape_text(header.shape));
   }
-  const std::size_t promised = rows * row_bytes;
-  const std::size_t found = bytes.size() - header.data_begin;
+  return header.shape[0] * row_bytes;
+}
+
+void check_size(const std::string& path, const Header& header, std::size_t promised, std::size_t found) {
   if (found < promised) {
     fail(path, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
          shape_text(header.shape), header.descr, promised, found);
@@ -173,14 +187,30 @@ std::size_t check_layout(const std::string& path, const std::string& bytes, cons
     fail(path, "has {} bytes too many: shape {} of '{}' needs {} bytes after the header, found {}",
          found - promised, shape_text(header.shape), header.descr, promised, found);
   }
-  return rows;
 }
 
-template <typename Value>
-std::vector<Value> values_of(const std::string& bytes, std::size_t begin, std::size_t count) {
-  std::vector<Value> values(count);
-  if (count > 0) std::memcpy(values.data(), bytes.data() + begin, count * sizeof(Value));
-  return values;
+/// An array whose header and size were checked.
+struct Array {
+  std::string dtype;
+  std::size_t data_begin = 0;
+  std::string bytes;
+
+  template <typename Value>
+  std::vector<Value> values() const {
+    std::vector<Value> all((bytes.size() - data_begin) / sizeof(Value));
+    if (!all.empty()) std::memcpy(all.data(), bytes.data() + data_begin, all.size() * sizeof(Value));
+    return all;
+  }
+};
+
+/// Checks the header before it reads the rest.
+Array read_array(const std::string& path, std::string_view expected, const Layout& layout) {
+  InputFile file(path, expected);
+  const Header header = read_header(path, file);
+  const std::size_t promised = check_header(path, header, layout);
+  Array array{header.descr, header.data_begin, file.all()};
+  check_size(path, header, promised, array.bytes.size() - header.data_begin);
+  return array;
 }
 
 void write_npy(const std::string& path, const char* descr, const std::string& shape, const void* data,
@@ -201,14 +231,12 @@ void write_npy(const std::string& path, const char* descr, const std::string& sh
 }  // namespace
 
 Points read_npy_points(const std::string& path) {
-  const std::string bytes = read_file(path, "a NumPy array of shape (n, 2)");
-  const Header header = parse_header(path, bytes);
-  const std::size_t n = check_layout(path, bytes, header, 2, "n", "<f8", "<f4");
+  const Array array = read_array(path, "a NumPy array of shape (n, 2)", {"n", 2, "<f8", "<f4"});
   Points points;
-  if (header.descr == "<f8") {
-    points.coordinates = values_of<double>(bytes, header.data_begin, 2 * n);
+  if (array.dtype == "<f8") {
+    points.coordinates = array.values<double>();
   } else {
-    const std::vector<float> values = values_of<float>(bytes, header.data_begin, 2 * n);
+    const std::vector<float> values = array.values<float>();
     points.coordinates.assign(values.begin(), values.end());
   }
   return points;
@@ -223,9 +251,7 @@ namespace {
 
 /// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
 std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
-  const std::string bytes = read_file(path, "a NumPy array of shape (m, 3)");
-  const Header header = parse_header(path, bytes);
-  const std::size_t count = 3 * check_layout(path, bytes, header, 3, "m", "<i4", "<i8");
+  const Array array = read_array(path, "a NumPy array of shape (m, 3)", {"m", 3, "<i4", "<i8"});
   std::vector<std::int32_t> triangles;
   const auto check = [&](auto value, std::size_t i) {
     if (value < lowest || value > std::numeric_limits<std::int32_t>::max()) {
@@ -233,12 +259,12 @@ std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t
            std::numeric_limits<std::int32_t>::max());
     }
   };
-  if (header.descr == "<i4") {
-    triangles = values_of<std::int32_t>(bytes, header.data_begin, count);
-    for (std::size_t i = 0; i < count; ++i) check(triangles[i], i);
+  if (array.dtype == "<i4") {
+    triangles = array.values<std::int32_t>();
+    for (std::size_t i = 0; i < triangles.size(); ++i) check(triangles[i], i);
   } else {
-    const std::vector<std::int64_t> wide = values_of<std::int64_t>(bytes, header.data_begin, count);
-    for (std::size_t i = 0; i < count; ++i) check(wide[i], i);
+    const std::vector<std::int64_t> wide = array.values<std::int64_t>();
+    for (std::size_t i = 0; i < wide.size(); ++i) check(wide[i], i);
     triangles.assign(wide.begin(), wide.end());
   }
   return triangles;

@@ -37,30 +37,25 @@ void check_finite(const std::string& path, const Points& points) {
   }
 }
 
-/// Whether a line is a header, which names columns. A line that contains anything like a number is data,
-/// perhaps mistyped, and must not be skipped as a header.
-bool is_header(Lines& lines) {
-  bool numbers = false;
-  std::string_view field;
-  while (lines.field(field)) numbers = numbers || looks_like_number(field);
-  lines.rewind();
-  return !numbers;
-}
-
 Points read_text(const std::string& path) {
   const std::string text = read_file(path, "two numbers a line");
   Lines lines(shown_path(path), text, Lines::Separator::blanks_or_comma);
   Points points;
   bool more = lines.next();
-  if (more && is_header(lines)) more = lines.next();
+  std::string_view hint = "; if this line is a header, begin it with '#'";
+  if (more && is_header(lines)) {
+    more = lines.next();
+    hint = "";
+  }
   if (more) points.coordinates.reserve(2 * lines.lines_left());
   for (std::size_t point = 0; more; more = lines.next(), ++point) {
     std::string_view x, y, extra;
     if (!lines.field(x) || !lines.field(y) || lines.field(extra)) {
       lines.fail_line("expected two numbers (x and y), found {}", lines.count_fields());
     }
-    points.coordinates.push_back(lines.coordinate(x, point));
-    points.coordinates.push_back(lines.coordinate(y, point));
+    points.coordinates.push_back(lines.coordinate(x, point, hint));
+    points.coordinates.push_back(lines.coordinate(y, point, hint));
+    hint = "";
   }
   return points;
 }
@@ -86,11 +81,10 @@ NodeFile read_node(const std::string& path, bool with_indices) {
   // As in Triangle, the defaults of a short header are two dimensions, no attributes and no markers.
   const long long vertices = lines.integer("the number of vertices");
   const long long dimensions = header_fields > 1 ? lines.integer("the number of dimensions") : 2;
-  const long long attributes = header_fields > 2 ? lines.integer("the number of attributes") : 0;
+  const long long attributes = header_fields > 2 ? attribute_count(lines) : 0;
   const long long markers = header_fields > 3 ? lines.integer("the number of boundary markers") : 0;
   if (vertices < 0) lines.fail_line("{} vertices; expected 0 or more", vertices);
   if (dimensions != 2) lines.fail_line("{} dimensions; expected 2", dimensions);
-  if (attributes < 0) lines.fail_line("{} attributes; expected 0 or more", attributes);
   if (markers != 0 && markers != 1) lines.fail_line("{} boundary markers; expected 0 or 1", markers);
   if (with_indices && attributes == 0) lines.fail_line("no attributes; expected one, an index");
 

@@ -16,9 +16,9 @@ struct Points {
 /// Reads points from path, by its ending (any case):
 ///   .npy             NumPy array, n x 2, C order, little-endian float64 or float32 (format versions 1 to 3)
 ///   .node            Triangle's format: comments, attributes, boundary markers, first index 0 or 1
-///   .xy .txt .csv    two numbers per line, separated by comma or white space; '#' comments, blank lines, and
-///   one
-///                    optional header line
+///   .xy .txt .csv    UTF-8: two numbers per line, which may be quoted, separated by comma or white space;
+///   '#'
+///                    comments, blank lines, and one optional header line
 ///   .bin             raw little-endian float64 pairs
 ///   "-"              text from standard input
 /// Zero points are valid only where the format says so (an .npy of shape (0, 2), a .node of 0 points, or a

@@ -1,11 +1,13 @@
 // Reads text by lines and fields, and knows the place for error messages.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -67,27 +69,30 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
   return ParsedNumber::fine;
 }
 
-/// Whether the field is meant as a number, even if it is not a valid one.
-inline bool looks_like_number(std::string_view field) {
-  double ignored;
-  if (parse_number(field, ignored) != ParsedNumber::unreadable) return true;
-  std::size_t i = 0;
-  if (i < field.size() && (field[i] == '+' || field[i] == '-')) ++i;
-  if (i < field.size() && field[i] == '.') ++i;
-  return i < field.size() && field[i] >= '0' && field[i] <= '9';
-}
+/// A character, and how many bytes of UTF-8 it takes; 0 if they are not valid.
+struct CodePoint {
+  char32_t value = 0;
+  std::size_t bytes = 0;
+};
+/// The first character of a text, which must not be empty. Defined in text.cpp, like the next function.
+CodePoint first_code_point(std::string_view text);
+
+/// Throws Error(input) that names the place if the text is not UTF-8 or has control characters besides blanks
+/// and line ends.
+void check_text(const std::string& name, std::string_view text);
 
 /// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
-/// fields.
+/// fields. With Separator::blanks_or_comma, fields may be in double quotes.
 class Lines {
  public:
   enum class Separator { blanks, blanks_or_comma };
 
-  /// name: the beginning of messages. The text must outlive this object.
+  /// name: the beginning of messages. The text must outlive this object. Throws what check_text throws.
   Lines(std::string name, std::string_view text, Separator separator)
       : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+    check_text(name_, text);
     next_line_ = text.data();
     text_end_ = text.data() + text.size();
   }
@@ -124,10 +129,11 @@ class Lines {
       skip_blanks();
     }
     if (cursor_ == line_end_ && !comma) return false;
-    const char* begin = cursor_;
-    while (cursor_ != line_end_ && !is_blank(*cursor_) && !(commas_ && *cursor_ == ',')) ++cursor_;
-    result = std::string_view(begin, static_cast<std::size_t>(cursor_ - begin));
     ++fields_taken_;
+    if (quoted_field(result)) return true;
+    const char* begin = cursor_;
+    while (cursor_ != line_end_ && !is_separator(*cursor_)) ++cursor_;
+    result = std::string_view(begin, static_cast<std::size_t>(cursor_ - begin));
     return true;
   }
   std::size_t fields_taken() const { return fields_taken_; }
@@ -156,13 +162,13 @@ class Lines {
   }
 
   /// Converts `text`, a field of this line, to a coordinate of the point with this index, which must be
-  /// finite.
-  double coordinate(std::string_view text, std::size_t point) const {
+  /// finite. hint: the end of the message if the field is no number.
+  double coordinate(std::string_view text, std::size_t point, std::string_view hint = "") const {
     double value = 0;
     const ParsedNumber parsed = parse_number(text, value);
     if (parsed == ParsedNumber::unreadable) {
-      fail_field(text, "expected a number (a coordinate of point {}), found {}", point,
-                 text.empty() ? "nothing" : quoted(text));
+      fail_field(text, "expected a number (a coordinate of point {}), found {}{}", point,
+                 text.empty() ? "nothing" : quoted(text), hint);
     }
     if (parsed == ParsedNumber::infinite) {
       fail_field(text,
@@ -202,6 +208,21 @@ class Lines {
         begin == end ? nullptr : std::memchr(begin, wanted, static_cast<std::size_t>(end - begin));
     return found ? static_cast<const char*>(found) : end;
   }
+  bool is_separator(char c) const { return is_blank(c) || (commas_ && c == ','); }
+  /// Takes a field in double quotes, in which "" stands for a quote, as in CSV. False if there is none here;
+  /// a quote without its end is an ordinary character.
+  bool quoted_field(std::string_view& result) {
+    if (!commas_ || cursor_ == line_end_ || *cursor_ != '"') return false;
+    const char* begin = cursor_ + 1;
+    const char* end = find(begin, line_end_, '"');
+    while (line_end_ - end > 1 && end[1] == '"') end = find(end + 2, line_end_, '"');
+    if (end == line_end_ || (end + 1 != line_end_ && !is_separator(end[1]))) return false;
+    cursor_ = end + 1;
+    while (begin != end && is_blank(*begin)) ++begin;
+    while (begin != end && is_blank(end[-1])) --end;
+    result = std::string_view(begin, static_cast<std::size_t>(end - begin));
+    return true;
+  }
   void skip_blanks() {
     while (cursor_ != line_end_ && is_blank(*cursor_)) ++cursor_;
   }
@@ -217,9 +238,27 @@ class Lines {
   std::size_t fields_taken_ = 0;
 };
 
+/// Whether the line at hand is a header, which names columns: it has letters, and no field that is a number
+/// or a mistyped one. A line with such a field is data, and must not be skipped. Goes back to the first
+/// field. Defined in text.cpp.
+bool is_header(Lines& lines);
+
+/// The largest number of attributes of a vertex or a triangle, far more than a line holds.
+constexpr long long kMostAttributes = std::numeric_limits<std::int32_t>::max();
+
+/// The number of attributes in a header of Triangle's formats.
+inline long long attribute_count(Lines& lines) {
+  const long long attributes = lines.integer("the number of attributes");
+  if (attributes < 0 || attributes > kMostAttributes) {
+    lines.fail_line("{} attributes; expected 0 to {}", attributes, kMostAttributes);
+  }
+  return attributes;
+}
+
 /// A vertex or triangle number as an index from 0: `number` - `base`, checked to be below `count`.
 inline std::int32_t checked_index(const Lines& lines, std::string_view what, long long number, long long base,
                                   long long count) {
+  count = std::min<long long>(count, std::numeric_limits<std::int32_t>::max());
   if (number < base || number - base >= count) {
     lines.fail_line("{} {} is out of range; expected {} to {}", what, number, base, base + count - 1);
   }
