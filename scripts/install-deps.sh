@@ -11,6 +11,8 @@ packages=(
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   # tests
   libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
+  # libFuzzer, for the readers of files
+  clang-14 libclang-rt-14-dev
   # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
   libqhull-dev libgts-dev python3-matplotlib
   # the Python module and its tests

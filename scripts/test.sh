@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds and runs all tests. Needs only Debian 12: installs everything else first.
-#   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers
+#   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers, and a minute of fuzzing
+#                             the readers of files
 #   scripts/test.sh --quick   without the sanitizers
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -30,6 +31,7 @@ if ! $quick; then
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
   # detection on again.
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
+  scripts/fuzz.sh 1m readers
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
 ctest --preset release --no-tests=error -j "$jobs"

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Looks for bytes that a reader of files mishandles (tests/fuzz/readers.cpp), and for points that are triangulated
+# wrongly (tests/fuzz/triangulations.cpp), by trying random ones for some time.
+#   scripts/fuzz.sh 8h                         both, side by side; or 30m, or 90s
+#   scripts/fuzz.sh 8h readers                 the readers alone
+#   scripts/fuzz.sh 8h triangulations [SEED]   the triangulation alone; the seed is random if it is not given
+# Fails if it found something. A file that a reader mishandles is then in build/fuzz/failures; points that are
+# triangulated wrongly are printed. What the readers were tried with is kept in build/fuzz/found, for the next time.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+usage() {
+  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations [SEED]]' >&2
+  exit 2
+}
+
+[[ ${1-} =~ ^([1-9][0-9]*)([smh])$ ]] || usage
+case "${BASH_REMATCH[2]}" in
+  s) seconds="${BASH_REMATCH[1]}" ;;
+  m) seconds="$((BASH_REMATCH[1] * 60))" ;;
+  h) seconds="$((BASH_REMATCH[1] * 3600))" ;;
+esac
+what="${2-both}"
+seed="${3-$((RANDOM << 15 | RANDOM))}"
+
+build="$PWD/build/fuzz"
+
+# One format for some seconds.
+fuzz_format() {
+  local format="$1" seconds="$2"
+  local log="$build/logs/$format"
+  if "$build/tests/fuzz/fuzz_readers" "--format=$format" -max_total_time="$seconds" -max_len=4096 -timeout=10 \
+    -rss_limit_mb=1024 -dict=tests/fuzz/tokens.txt -artifact_prefix="$build/failures/$format-" \
+    "$build/found/$format" "tests/fuzz/seeds/$format" >"$log" 2>&1; then
+    echo "$format: $(grep -o 'Done .*' "$log")"
+  else
+    tail -n 40 "$log"
+    echo "$format: failed; the file is in $build/failures"
+    return 1
+  fi
+}
+
+# All formats, on so many cores.
+fuzz_readers() {
+  local workers="$1" formats=(tests/fuzz/seeds/*)
+  formats=("${formats[@]##*/}")
+  local each="$((seconds * workers / ${#formats[@]}))"
+  cmake --preset fuzz && cmake --build --preset fuzz || return
+  mkdir -p "$build/failures" "$build/logs" "${formats[@]/#/$build/found/}"
+  # The readers read files, which are best in memory.
+  local memory=/dev/shm
+  [[ -w $memory ]] || memory="${TMPDIR:-/tmp}"
+  TMPDIR="$(mktemp -d -p "$memory" flaunay-fuzz-XXXXXX)"
+  trap 'rm -rf "$TMPDIR"' EXIT
+  export TMPDIR build
+  export -f fuzz_format
+  local status=0
+  printf '%s\0' "${formats[@]}" |
+    xargs -0 -P "$workers" -I '{}' bash -c 'fuzz_format "$1" "$2"' fuzz '{}' "$((each > 0 ? each : 1))" || status=1
+  return "$status"
+}
+
+fuzz_triangulations() {
+  cmake --preset release && cmake --build --preset release --target fuzz_triangulations || return
+  build/release/tests/fuzz_triangulations --seconds "$seconds" --seed "$seed"
+}
+
+cores="$(nproc)"
+case "$what" in
+  readers) fuzz_readers "$cores" ;;
+  triangulations) fuzz_triangulations ;;
+  both)
+    # The triangulation takes one core or more.
+    fuzz_triangulations &
+    triangulations="$!"
+    status=0
+    fuzz_readers "$((cores > 1 ? cores - 1 : 1))" || status=1
+    wait "$triangulations" || status=1
+    exit "$status"
+    ;;
+  *) usage ;;
+esac
