@@ -1,5 +1,4 @@
-// What tests that run kernels share: arrays to and from the device with guards, environment variables and
-// folders that are put back.
+// What tests that run kernels share: arrays to and from the device with guards, and folders that are removed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,37 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/device.hpp"
 #include "host/runtime.hpp"
+#include "tests/support/environment.hpp"
 
 namespace flaunay::testing {
-
-/// An environment variable with another value (nullptr: unset) for as long as this lives.
-class ScopedEnvironment {
- public:
-  ScopedEnvironment(const char* name, const char* value) : name_(name) {
-    if (const char* before = getenv(name)) before_ = before;
-    set(value);
-  }
-  ~ScopedEnvironment() { set(before_ ? before_->c_str() : nullptr); }
-  ScopedEnvironment(const ScopedEnvironment&) = delete;
-  ScopedEnvironment& operator=(const ScopedEnvironment&) = delete;
-
- private:
-  void set(const char* value) {
-    if (value != nullptr) {
-      setenv(name_, value, 1);
-    } else {
-      unsetenv(name_);
-    }
-  }
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 /// A fresh folder, removed at the end.
 class TemporaryFolder {

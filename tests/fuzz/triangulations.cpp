@@ -1,0 +1,290 @@
+// Triangulates degenerate point sets in all modes, and compares the results with each other, with the exact
+// check and, for small sets, with the reference in GMP. Stops at the first wrong result, shrinks its points
+// and prints them.
+//
+//   fuzz_triangulations [--seconds N] [--seed S] [--first CASE]
+//
+// Each case depends on the seed and its number alone, so --first repeats one.
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
+#include "tests/fuzz/degenerate.hpp"
+#include "tests/fuzz/minimise.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/support/reference.hpp"
+#include "verify/verify.hpp"
+
+namespace flaunay::fuzz {
+namespace {
+
+using research::Mode;
+
+// -----------------------------------------------------------------------------------------------------------
+// When the process ends within a case
+
+constexpr unsigned kLongestCheck = 120;  // seconds
+
+char case_name[80];
+
+/// Names the case if the library ends the process or does not return.
+void report_signal(int number) {
+  const char* const what = number == SIGALRM ? "\nfuzz_triangulations: does not end: "
+                                             : "\nfuzz_triangulations: ends the process: ";
+  for (const char* text : {what, static_cast<const char*>(case_name), "\n"}) {
+    if (::write(STDERR_FILENO, text, std::char_traits<char>::length(text)) < 0) break;
+  }
+  ::signal(number, SIG_DFL);
+  ::raise(number);
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// One mode's result
+
+/// What must be the same in every mode.
+struct Outcome {
+  std::string error;
+  testing::TriangleSet triangles;
+  std::vector<std::int32_t> hull, representatives;
+  std::vector<std::size_t> triangle_offsets, hull_offsets;
+};
+
+/// In what they differ; empty if they do not.
+std::string difference(const Outcome& a, const Outcome& b) {
+  if (a.error != b.error) return fmt::format("their errors, '{}' and '{}'", a.error, b.error);
+  if (a.triangles != b.triangles || a.triangle_offsets != b.triangle_offsets) return "their triangles";
+  if (a.hull != b.hull || a.hull_offsets != b.hull_offsets) return "their hulls";
+  if (a.representatives != b.representatives) return "their representatives";
+  return "";
+}
+
+struct Execution {
+  std::string name;
+  Triangulator* triangulator = nullptr;  // null: on the host
+  research::Options options;
+};
+
+struct Flat {
+  Coordinates points;
+  std::vector<std::size_t> offsets{0};
+};
+
+Flat flat(const Batch& batch) {
+  Flat all;
+  for (const Coordinates& set : batch) {
+    all.points.insert(all.points.end(), set.begin(), set.end());
+    all.offsets.push_back(all.points.size() / 2);
+  }
+  return all;
+}
+
+research::Triangulation triangulate(const Execution& execution, const Flat& points) {
+  if (execution.triangulator == nullptr) {
+    return research::triangulate_on_host(points.points.data(), points.offsets, execution.options);
+  }
+  return research::triangulate(*execution.triangulator, points.points.data(), points.offsets,
+                               execution.options);
+}
+
+/// Set s of the result as if it had been triangulated alone.
+VerifyReport verify_set(const Coordinates& set, const research::Triangulation& mesh, std::size_t s,
+                        std::size_t first_point) {
+  const std::size_t begin = mesh.triangle_offsets[s], end = mesh.triangle_offsets[s + 1];
+  std::vector<std::int32_t> triangles, neighbors;
+  for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
+    triangles.push_back(mesh.triangles[i] - static_cast<std::int32_t>(first_point));
+    neighbors.push_back(mesh.neighbors[i] < 0 ? -1 : mesh.neighbors[i] - static_cast<std::int32_t>(begin));
+  }
+  return verify(set.data(), set.size() / 2, triangles, neighbors);
+}
+
+/// What is wrong with a result beside the points alone; empty if nothing is.
+std::string problem_of(const Batch& batch, const Flat& points, const research::Triangulation& mesh) {
+  constexpr std::size_t kMostForReference = 40;
+  if (mesh.triangle_offsets.size() != batch.size() + 1) return "wrong number of sets";
+  for (std::size_t s = 0; s < batch.size(); ++s) {
+    const VerifyReport report = verify_set(batch[s], mesh, s, points.offsets[s]);
+    if (!report.ok) return fmt::format("set {}: {}", s, report.problem);
+    const std::size_t hull = mesh.hull_offsets[s + 1] - mesh.hull_offsets[s];
+    if (hull != report.hull_vertices) {
+      return fmt::format("set {}: {} hull vertices instead of {}", s, hull, report.hull_vertices);
+    }
+  }
+  if (mesh.halfedges != testing::reference_halfedges(mesh.triangles)) return "the halfedges are wrong";
+  if (batch.size() == 1 && batch[0].size() / 2 <= kMostForReference &&
+      testing::sorted_triangles(mesh.triangles) != testing::reference_delaunay(batch[0])) {
+    return "not the canonical triangulation";
+  }
+  return "";
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// All modes
+
+/// The triangulators that all cases share: as users have them, and with sizes by which few points are many
+/// blocks, chunks and groups.
+class Triangulators {
+ public:
+  Triangulators() {
+    for (const char* const tuning : {"", "cpu,block_points=6", "gpu:32", "small-blocks"}) {
+      const testing::ScopedEnvironment environment("FLAUNAY_TUNING", tuning);
+      all_.push_back(
+          {*tuning == '\0' ? "" : fmt::format(" tuned {}", tuning), std::make_unique<Triangulator>()});
+    }
+  }
+
+  /// What to run for so many points. Variants are drawn, since all of them would take too long.
+  std::vector<Execution> executions(testing::FixtureRandom& random, std::size_t points) {
+    // The kernels of recursive-device take milliseconds per region, and small chunks are slow in any mode.
+    constexpr std::size_t kMostOneByOne = 30, kMostInSmallChunks = 300;
+    const bool in_small_chunks = points <= kMostInSmallChunks;
+    constexpr research::Hull kHulls[] = {research::Hull::prune, research::Hull::quickhull,
+                                         research::Hull::balanced};
+    research::Options options;
+    options.halfedges = true;
+    options.cut = random.integer(0, 1) == 0 ? research::Cut::interquartile : research::Cut::alternate;
+    options.hull = kHulls[random.integer(0, std::ssize(kHulls) - 1)];
+    options.partition_levels = static_cast<int>(random.integer(1, 6));
+    options.threads = 2;
+    const Tuned &own = all_.front(), &small = all_.back();
+    const Tuned& any = in_small_chunks && random.integer(0, 1) == 0 ? small : own;
+
+    std::vector<Execution> chosen{
+        execution(Mode::dwyer, options, nullptr), execution(Mode::recursive, options, nullptr),
+        execution(Mode::flattened, options, &any), execution(Mode::partition, options, &own)};
+    for (const Tuned& tuned : all_) {
+      if (&tuned != &small || in_small_chunks) chosen.push_back(execution(Mode::blocks, options, &tuned));
+    }
+    if (points <= kMostOneByOne) chosen.push_back(execution(Mode::recursive_device, options, &own));
+    return chosen;
+  }
+
+ private:
+  struct Tuned {
+    std::string name;
+    std::unique_ptr<Triangulator> triangulator;
+  };
+
+  /// Without `tuned`, on the host.
+  static Execution execution(Mode mode, research::Options options, const Tuned* tuned) {
+    options.mode = mode;
+    const std::string name = fmt::format("{}{} (cut {}, hull {})", to_string(mode), tuned ? tuned->name : "",
+                                         to_string(options.cut), to_string(options.hull));
+    return {name, tuned ? tuned->triangulator.get() : nullptr, options};
+  }
+
+  std::vector<Tuned> all_;
+};
+
+struct Verdict {
+  std::string problem;   // empty if nothing is wrong
+  bool refused = false;  // all modes say that the batch is out of the range of magnitudes
+};
+
+Verdict judge(const Batch& batch, const std::vector<Execution>& executions) {
+  ::alarm(kLongestCheck);
+  const Flat points = flat(batch);
+  std::optional<Outcome> expected;
+  for (const Execution& execution : executions) {
+    Outcome outcome;
+    try {
+      research::Triangulation mesh = triangulate(execution, points);
+      const std::string problem = problem_of(batch, points, mesh);
+      if (!problem.empty()) return {execution.name + ": " + problem};
+      outcome = {"",
+                 testing::sorted_triangles(mesh.triangles),
+                 std::move(mesh.hull),
+                 std::move(mesh.representatives),
+                 std::move(mesh.triangle_offsets),
+                 std::move(mesh.hull_offsets)};
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::input) return {fmt::format("{}: {}", execution.name, error.what())};
+      outcome.error = error.what();
+    }
+    if (!expected) expected = outcome;
+    const std::string differ = difference(*expected, outcome);
+    if (!differ.empty()) {
+      return {fmt::format("{} and {} differ in {}", executions[0].name, execution.name, differ)};
+    }
+  }
+  return {"", !expected->error.empty()};
+}
+
+struct Request {
+  double seconds = 60;
+  std::uint64_t seed = 1;
+  std::uint64_t first = 0;
+};
+
+int report(const Batch& batch, const std::vector<Execution>& executions) {
+  const auto fails = [&](const Batch& smaller) { return !judge(smaller, executions).problem.empty(); };
+  fmt::print("{}\n{}\n{} points in {} sets; shrinking them\n", case_name, judge(batch, executions).problem,
+             points_of(batch), batch.size());
+  std::fflush(stdout);
+  const Batch smallest = minimise(batch, fails);
+  fmt::print("A fixture for tests/data:\n{}",
+             fixture_text(smallest, fmt::format("{}\n{}", case_name, judge(smallest, executions).problem)));
+  return 1;
+}
+
+int run(const Request& request) {
+  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGALRM, SIGTERM})
+    ::signal(number, report_signal);
+  Triangulators triangulators;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(request.seconds));
+  std::uint64_t number = request.first;
+  std::size_t sets = 0, points = 0, refused = 0;
+  do {
+    constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;  // tells the seeds of neighbouring cases apart
+    testing::FixtureRandom random(request.seed + kOdd * (number + 1));
+    fmt::format_to_n(case_name, sizeof case_name - 1, "fuzz_triangulations --seed {} --first {}",
+                     request.seed, number);
+    const Batch batch = degenerate_batch(random);
+    const std::vector<Execution> executions = triangulators.executions(random, points_of(batch));
+    const Verdict verdict = judge(batch, executions);
+    if (!verdict.problem.empty()) return report(batch, executions);
+    refused += verdict.refused;
+    sets += batch.size();
+    points += points_of(batch);
+    ++number;
+  } while (Clock::now() < end);
+  ::alarm(0);
+  fmt::print(
+      "{} cases with {} sets and {} points are right in all modes, {} of them refused by all (seed {})\n",
+      number - request.first, sets, points, refused, request.seed);
+  return 0;
+}
+
+}  // namespace
+}  // namespace flaunay::fuzz
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Triangulates degenerate point sets in all modes until a result is wrong or the time is over.");
+  flaunay::fuzz::Request request;
+  app.add_option("--seconds", request.seconds, "How long; at least one case is run")->capture_default_str();
+  app.add_option("--seed", request.seed, "Decides, with the number of a case, its points")
+      ->capture_default_str();
+  app.add_option("--first", request.first, "The number of the first case")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return flaunay::fuzz::run(request);
+  } catch (const flaunay::Error& error) {
+    fmt::print(stderr, "fuzz_triangulations: {}\n", error.what());
+    return 4;
+  }
+}
