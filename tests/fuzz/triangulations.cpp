@@ -240,9 +240,10 @@ int report(const Batch& batch, const std::vector<Execution>& executions) {
 }
 
 int run(const Request& request) {
-  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGALRM, SIGTERM})
-    ::signal(number, report_signal);
   Triangulators triangulators;
+  // Not earlier, since PoCL installs handlers of its own; its handler for SIGFPE is needed by kernels.
+  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGILL, SIGALRM, SIGTERM})
+    ::signal(number, report_signal);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(request.seconds));
