@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "calls.hpp"
-#include "cli/exit_codes.hpp"
-#include "io/file.hpp"
+#include "cli/errors.hpp"
+#include "io/output.hpp"
 
 namespace flaunay::bench {
 namespace {
@@ -129,9 +129,9 @@ int measure_and_record(const std::string& subcommand, const std::string& command
                 {"runs", measurement.runs},
                 {"agree", result.agree}};
     record.update(result.tables);
-    io::OutputFile file(measurement.json_path);
-    file.print("{}", text_of(record));
-    file.commit();
+    io::Outputs outputs;
+    outputs.open(measurement.json_path).print("{}", text_of(record));
+    outputs.commit();
   }
   return result.agree ? cli::kSuccess : cli::kFailure;
 }

@@ -5,7 +5,7 @@
 #include <exception>
 #include <string>
 
-#include "cli/exit_codes.hpp"
+#include "cli/errors.hpp"
 #include "command.hpp"
 
 namespace flaunay::bench {
@@ -25,10 +25,7 @@ void add_paper(CLI::App& app, Action& action);
 
 namespace {
 
-int fail(int code, const std::string& message) {
-  fmt::print(stderr, "flaunay-bench: {}\n", message);
-  return code;
-}
+int fail(int code, const std::string& message) { return cli::report_error("flaunay-bench", code, message); }
 
 int run(int argc, char** argv) {
   CLI::App app("Measures flaunay, its parts, and others that do the same.", "flaunay-bench");

@@ -24,37 +24,12 @@
 #include <vector>
 
 #include "flaunay/research.hpp"
-#include "tests/support/paths.hpp"
-
-extern char** environ;
+#include "tests/support/command.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
+using namespace flaunay::command;
 namespace research = flaunay::research;
-using Arguments = std::vector<std::string>;
-using Environment = std::map<std::string, std::string>;
-
-constexpr int kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDevice = 4;
-
-// What needs no device must not open one: these runs find no OpenCL platform at all. Sanitized builds look
-// for leaks here; with a device they would find those of the OpenCL implementation.
-const Environment kNoPlatform = {{"OCL_ICD_VENDORS", "/nonexistent"}, {"ASAN_OPTIONS", "detect_leaks=1"}};
-
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string contents(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-void write_file(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
 
 std::string npy(const std::string& type, const std::string& order, const std::string& shape,
                 const std::string& data) {
@@ -108,134 +83,6 @@ Rows sorted_rows(const fs::path& path) {
   std::sort(rows.begin(), rows.end());
   return rows;
 }
-
-/// The environment of a child: this one's, with changes.
-class ChildEnvironment {
- public:
-  explicit ChildEnvironment(const Environment& changes) {
-    Environment all = {{"ASAN_OPTIONS", "detect_leaks=0"}};
-    for (char** variable = environ; *variable != nullptr; ++variable) {
-      const std::string text = *variable;
-      all.emplace(text.substr(0, text.find('=')), text.substr(text.find('=') + 1));
-    }
-    for (const auto& [name, value] : changes) all[name] = value;
-    for (const auto& [name, value] : all) variables_.push_back(name + "=" + value);
-    for (std::string& variable : variables_) pointers_.push_back(variable.data());
-    pointers_.push_back(nullptr);
-  }
-  char** get() { return pointers_.data(); }
-
- private:
-  std::vector<std::string> variables_;
-  std::vector<char*> pointers_;
-};
-
-pid_t spawn(const Arguments& arguments, const Environment& changes, posix_spawn_file_actions_t* actions) {
-  std::vector<std::string> words = {flaunay::flaunay_executable()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  ChildEnvironment environment(changes);
-  pid_t child = -1;
-  EXPECT_EQ(posix_spawn(&child, pointers.front(), actions, nullptr, pointers.data(), environment.get()), 0);
-  return child;
-}
-
-int exit_code_of(pid_t child) {
-  int status = 0;
-  EXPECT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-class CommandTest : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "flaunay-cli-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    directory_ = pattern;
-    fs::create_directory(directory_ / "streams");
-    fs::create_directory(directory_ / "files");
-  }
-
-  void TearDown() override { fs::remove_all(directory_); }
-
-  /// A path for the test's own files.
-  std::string path(const std::string& name) const { return (directory_ / "files" / name).string(); }
-
-  std::string write(const std::string& name, const std::string& bytes) const {
-    write_file(path(name), bytes);
-    return path(name);
-  }
-
-  /// The names of the test's files, sorted.
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(directory_ / "files")) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  Outcome run(const Arguments& arguments, const Environment& environment = {}, const std::string& input = "",
-              const std::string& out_path = "") const {
-    const std::string in = (directory_ / "streams/in").string();
-    const std::string out = out_path.empty() ? (directory_ / "streams/out").string() : out_path;
-    const std::string err = (directory_ / "streams/err").string();
-    write_file(in, input);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, in.c_str(), O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0600);
-    const pid_t child = spawn(arguments, environment, &actions);
-    posix_spawn_file_actions_destroy(&actions);
-    Outcome outcome;
-    outcome.exit_code = exit_code_of(child);
-    if (out_path.empty()) outcome.out = contents(out);
-    outcome.err = contents(err);
-    return outcome;
-  }
-
-  /// Runs and expects success without a word on standard error, which is no terminal.
-  Outcome run_well(const Arguments& arguments, const Environment& environment = {},
-                   const std::string& input = "") const {
-    Outcome outcome = run(arguments, environment, input);
-    EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    return outcome;
-  }
-
-  /// Runs and expects one message on standard error that holds all the parts, and no new files.
-  void expect_error(int exit_code, const std::vector<std::string>& parts, const Arguments& arguments,
-                    const Environment& environment = kNoPlatform, const std::string& input = "") const {
-    std::string command = "flaunay";
-    for (const std::string& argument : arguments) command += " " + argument;
-    SCOPED_TRACE(command);
-    const std::vector<std::string> before = files();
-    const Outcome outcome = run(arguments, environment, input);
-    EXPECT_EQ(outcome.exit_code, exit_code);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err.rfind("flaunay: ", 0), 0u) << outcome.err;
-    EXPECT_EQ(outcome.err.find("flaunay: ", 1), std::string::npos)
-        << "more than one message: " << outcome.err;
-    EXPECT_EQ(outcome.err.find("internal"), std::string::npos) << outcome.err;
-    ASSERT_FALSE(outcome.err.empty());
-    EXPECT_EQ(outcome.err.back(), '\n');
-    for (const std::string& part : parts) {
-      EXPECT_NE(outcome.err.find(part), std::string::npos) << "no \"" << part << "\" in: " << outcome.err;
-    }
-    EXPECT_EQ(files(), before);
-  }
-
-  fs::path directory_;
-};
-
-std::string data(const std::string& name) { return flaunay::test_data() + "/" + name; }
 
 // ---------------------------------------------------------------------------------------------------- usage
 
@@ -336,6 +183,58 @@ TEST_F(CommandUsageTest, OutputsDoNotOverwriteTheInputOrEachOther) {
   expect_error(kUsage, {"points.npy", "overwrite the input"}, {"triangulate", array, "--hull", array});
   expect_error(kUsage, {"same path"},
                {"triangulate", points, "--hull", path("a.npy"), "--triangles", path("./a.npy")});
+}
+
+TEST_F(CommandUsageTest, TwoOutputsOfOnePathAreRefusedHoweverItIsWritten) {
+  write("points.xy", "0 0\n1 0\n0 1\n");
+  fs::create_directory(path("d"));
+  fs::create_directory_symlink(".", path("here"));
+  fs::create_symlink("t.npy", path("dangling.npy"));
+  const std::vector<std::string> before = files();
+  for (const char* other : {"./t.npy", "$PWD/t.npy", "d/../t.npy", "here/t.npy", "dangling.npy"}) {
+    SCOPED_TRACE(other);
+    const Outcome outcome =
+        run_script("\"$FLAUNAY\" triangulate points.xy --mode dwyer --triangles t.npy --neighbors \"" +
+                   std::string(other) + "\"");
+    EXPECT_EQ(outcome.exit_code, kUsage);
+    EXPECT_NE(outcome.err.find("two outputs have the same path"), std::string::npos) << outcome.err;
+    EXPECT_EQ(files(), before);
+  }
+}
+
+TEST_F(CommandUsageTest, WhatIsForAClosedStreamGoesIntoNoFile) {
+  write("points.xy", "0 0\n1 0\n0 1\n");
+  run_script("\"$FLAUNAY\" triangulate points.xy --mode dwyer -o expected.off");
+  const std::string expected = contents(path("expected.off"));
+  for (const char* closed : {"<&- >&-", ">&-", "<&- >&- 2>&-"}) {
+    SCOPED_TRACE(closed);
+    const std::string command =
+        "\"$FLAUNAY\" triangulate points.xy --mode dwyer -o mesh.off " + std::string(closed);
+    EXPECT_EQ(run_script(command).exit_code, kSuccess);
+    EXPECT_EQ(contents(path("mesh.off")), expected);
+  }
+  // Nothing is lost silently.
+  const Outcome points = run_script("\"$FLAUNAY\" generate uniform 10 -o - >&-");
+  EXPECT_EQ(points.exit_code, kBadInput);
+  EXPECT_EQ(points.err, "flaunay: -: cannot be written: Bad file descriptor\n");
+  EXPECT_EQ(run_script("\"$FLAUNAY\" triangulate - <&-").exit_code, kBadInput);
+}
+
+TEST_F(CommandUsageTest, MessagesEscapeWhatATerminalWouldObey) {
+  const std::string name = "a\nb\x1b[31m";
+  const std::string shown = "a\\nb\\x1b[31m";
+  expect_error(kBadInput, {shown + ".xy", "No such file"}, {"triangulate", path(name + ".xy")});
+  expect_error(kUsage, {shown, "unknown ending"}, {"triangulate", path(name + ".xy"), "-o", name + ".dwg"});
+  expect_error(kUsage, {shown}, {"triangulate", "points.xy", "--" + name});
+  expect_error(kUsage, {shown}, {"generate", name, "10", "-o", path("points.npy")});
+  expect_error(kBadInput, {"dtype '" + shown + "'"},
+               {"triangulate", write("dtype.npy", npy(name, "False", "(1, 2)", std::string(16, '\0')))});
+  const std::string points = write("points.xy", "0 0\n4 0\n0 4\n");
+  const Outcome wrong =
+      run({"verify", points, write(name + ".obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\n")}, kNoPlatform);
+  EXPECT_EQ(wrong.exit_code, kFailure);
+  EXPECT_NE(wrong.err.find(shown + ".obj: "), std::string::npos) << wrong.err;
+  EXPECT_EQ(wrong.err.find('\n') + 1, wrong.err.size()) << wrong.err;
 }
 
 // ------------------------------------------------------------------------------------------------ bad input

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "cli/exit_codes.hpp"
+#include "cli/errors.hpp"
 
 namespace flaunay::cli {
 

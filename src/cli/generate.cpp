@@ -36,13 +36,12 @@ int generate(const GenerateRequest& request) {
   if (request.output == "-") {
     // As in every filter, a closed pipe ends the program without a message.
     std::signal(SIGPIPE, SIG_DFL);
-    io::write_points("-", io::generate(request.distribution, request.count, request.seed));
-    return kSuccess;
   }
   OutputFiles outputs("-");
   outputs.add_points(request.output);
-  io::write_points(request.output, io::generate(request.distribution, request.count, request.seed));
-  outputs.keep();
+  const io::Points points = io::generate(request.distribution, request.count, request.seed);
+  io::write_points(outputs.files(), request.output, points);
+  outputs.files().commit();
   return kSuccess;
 }
 

@@ -1,24 +1,33 @@
 // The command `flaunay`: parses the arguments, runs one subcommand, and turns an error into a message and an
 // exit code.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
 
 #include "cli/commands.hpp"
 #include "flaunay/flaunay.hpp"
+#include "io/temporary.hpp"
 
 namespace {
 
 using namespace flaunay::cli;
 
-int fail(int code, const std::string& message) {
-  const std::string line = fmt::format("flaunay: {}\n", message);
-  std::fwrite(line.data(), 1, line.size(), stderr);
-  return code;
+int fail(int code, const std::string& message) { return report_error("flaunay", code, message); }
+
+// The system gives a file the lowest free descriptor. If a standard stream is closed, that would be the
+// stream's, and what is meant for the stream would go into the file.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    // In the other direction, so that using the stream is still an error.
+    ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
 }
 
 int run(int argc, char** argv) {
@@ -50,8 +59,11 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A closed pipe is handled where the output is written.
+  occupy_closed_streams();
+  // A closed pipe and a file that becomes too large are handled where the output is written.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  flaunay::io::clean_up_when_interrupted();
   try {
     return run(argc, argv);
   } catch (const flaunay::Error& error) {

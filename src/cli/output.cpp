@@ -1,11 +1,11 @@
 #include "cli/output.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 
 #include "flaunay/flaunay.hpp"
 #include "io/file.hpp"
@@ -14,61 +14,29 @@
 
 namespace flaunay::cli {
 
-namespace fs = std::filesystem;
-
-namespace {
-
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (fs::equivalent(a, b, error) && !error) return true;
-  const fs::path canonical_a = fs::weakly_canonical(a, error);
-  if (error) return a == b;
-  const fs::path canonical_b = fs::weakly_canonical(b, error);
-  return error ? a == b : canonical_a == canonical_b;
-}
-
-bool exists(const std::string& path) {
-  std::error_code error;
-  // A dangling symbolic link exists too.
-  return fs::exists(fs::symlink_status(path, error));
-}
-
-}  // namespace
-
 bool print(const std::string& text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
     return true;
-  if (errno == EPIPE) return false;
+  if (errno == EPIPE || errno == EBADF) return false;
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  io::OutputFile file(path);
-  file.write(text.data(), text.size());
-  file.commit();
 }
 
 OutputFiles::OutputFiles(const std::string& input) : input_(input) {}
 
-OutputFiles::~OutputFiles() {
-  if (keep_) return;
-  for (const File& file : files_) {
-    std::error_code ignored;
-    if (!file.existed) fs::remove(file.path, ignored);
-  }
-}
-
 void OutputFiles::reserve(const std::string& path) {
-  if (input_ != "-" && same_file(path, input_)) {
+  const io::Target target = io::find_target(path);
+  struct stat input {};
+  const bool is_file = input_ != "-" && ::stat(input_.c_str(), &input) == 0;
+  if (is_file && target.exists && target.id == io::file_id(input)) {
     throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the input", path));
   }
-  for (const File& file : files_) {
-    if (same_file(path, file.path)) {
+  for (const io::Target& other : announced_) {
+    if (io::is_same(target, other)) {
       throw Error(ErrorKind::usage, fmt::format("{}: two outputs have the same path", path));
     }
   }
-  files_.push_back({path, exists(path)});
+  announced_.push_back(target);
 }
 
 void OutputFiles::add_mesh(const std::string& path) {
@@ -86,6 +54,7 @@ void OutputFiles::add(const std::string& path, const std::string& ending) {
 }
 
 void OutputFiles::add_points(const std::string& path) {
+  if (path == "-") return;
   io::check_points_ending(path);
   io::check_output(path, io::ending_of(path));
   reserve(path);

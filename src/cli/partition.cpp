@@ -10,6 +10,7 @@
 #include "flaunay/research.hpp"
 #include "io/points.hpp"
 #include "io/svg.hpp"
+#include "io/temporary.hpp"
 
 namespace flaunay::cli {
 
@@ -60,9 +61,16 @@ int partition(const PartitionRequest& request) {
   stopwatch.restart();
   progress.update("writing");
   writer.write(points, result, {request.input, request.levels, request.cut, request.dividing_paths});
-  if (!request.picture.empty()) io::write_partition_svg(request.picture, points, result);
-  writer.keep();
-  outputs.keep();
+  if (!request.picture.empty()) {
+    io::write_partition_svg(outputs.files(), request.picture, points, result);
+    outputs.files().write_out();
+  }
+  {
+    const io::Uninterrupted until_kept;
+    writer.place();
+    outputs.files().commit();
+    writer.keep();
+  }
   facts.writing_seconds = stopwatch.seconds();
   progress.finish();
 

@@ -1,6 +1,8 @@
 #include "cli/partition_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,10 +14,10 @@
 #include <system_error>
 
 #include "cli/options.hpp"
-#include "cli/output.hpp"
 #include "io/file.hpp"
 #include "io/mesh.hpp"
 #include "io/npy.hpp"
+#include "io/output.hpp"
 #include "io/region.hpp"
 
 namespace flaunay::cli {
@@ -70,12 +72,31 @@ void check_in_the_way(const fs::path& file, const std::string& input, bool force
   }
 }
 
-std::string make_aside(const std::string& folder) {
+io::Temporary make_folder(const std::string& folder) {
+  const io::Uninterrupted made;
+  std::error_code error;
+  const bool is_new = fs::create_directory(folder, error);
+  if (error) io::fail(folder, "cannot be made: {}", error.message());
+  return is_new ? io::Temporary(folder) : io::Temporary();
+}
+
+io::Temporary make_aside(const std::string& folder) {
+  const io::Uninterrupted made;
   std::string path = inside(folder, ".flaunay-XXXXXX");
   if (::mkdtemp(path.data()) == nullptr) {
     io::fail(folder, "cannot be written: {}", io::system_reason(errno));
   }
-  return path;
+  return io::Temporary(path, io::Temporary::Contents::all);
+}
+
+// Waits until everything that was written there is on the disk: once, because there may be thousands of
+// files.
+void write_to_disk(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool is_written = descriptor >= 0 && ::syncfs(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!is_written) io::fail(folder, "cannot be written: {}", io::system_reason(reason));
 }
 
 std::string description(const research::Partition& partition, const PartitionFacts& facts) {
@@ -139,49 +160,71 @@ void check_points(const std::string& path, const io::StoredRegion& stored, const
 }  // namespace
 
 PartitionWriter::PartitionWriter(const std::string& folder, const std::string& input, bool force)
-    : folder_(folder) {
-  std::error_code error;
-  made_folder_ = fs::create_directory(folder, error);
-  if (error) io::fail(folder, "cannot be made: {}", error.message());
+    : folder_(folder), made_folder_(make_folder(folder)) {
   for (const fs::path& file : partition_files(folder)) check_in_the_way(file, input, force);
-  try {
-    aside_ = make_aside(folder);
-  } catch (...) {
-    // The destructor does not run if the constructor throws.
-    if (made_folder_) fs::remove(folder_, error);
-    throw;
-  }
+  aside_ = make_aside(folder);
 }
 
-PartitionWriter::~PartitionWriter() {
-  std::error_code ignored;
-  for (const std::string& file : placed_) fs::remove(file, ignored);
-  fs::remove_all(aside_, ignored);
-  if (made_folder_) fs::remove(folder_, ignored);
-}
+PartitionWriter::~PartitionWriter() { take_back(); }
 
 void PartitionWriter::write(const io::Points& points, const research::Partition& partition,
                             const PartitionFacts& facts) {
+  const std::string& aside = aside_.path();
   for (std::size_t r = 0; r < partition.regions.size(); ++r) {
-    io::write_region(region_stem(aside_, r), points, partition.regions[r]);
+    io::Outputs region;
+    io::write_region(region, region_stem(aside, r), points, partition.regions[r]);
+    region.commit_without_waiting();
   }
-  io::write_npy_int32(inside(aside_, kFinished), partition.triangles, 3);
-  write_text(inside(aside_, kDescription), description(partition, facts));
+  io::Outputs others;
+  io::write_npy_int32(others, inside(aside, kFinished), partition.triangles, 3);
+  others.open(inside(aside, kDescription)).print("{}", description(partition, facts));
+  others.commit_without_waiting();
+  write_to_disk(aside);
+}
+
+void PartitionWriter::place() {
+  try {
+    place_files();
+  } catch (const Error& error) {
+    throw Error(error.kind(), fmt::format("{}; {}", error.what(), take_back()));
+  }
+}
+
+void PartitionWriter::place_files() {
+  const std::string replaced = inside(aside_.path(), "replaced");
+  std::error_code error;
+  fs::create_directory(replaced, error);
+  if (error) io::fail(replaced, "cannot be made: {}", error.message());
+  for (const fs::path& file : partition_files(folder_)) {
+    move(file.string(), inside(replaced, file.filename().string()));
+  }
+  for (const fs::path& file : partition_files(aside_.path())) {
+    move(file.string(), inside(folder_, file.filename().string()));
+  }
 }
 
 void PartitionWriter::keep() {
+  moves_.clear();
+  made_folder_.release();
+}
+
+void PartitionWriter::move(const std::string& from, const std::string& to) {
   std::error_code error;
-  for (const fs::path& file : partition_files(folder_)) {
-    if (!fs::remove(file, error) && error) io::fail(file.string(), "cannot be removed: {}", error.message());
+  fs::rename(from, to, error);
+  if (error) io::fail(to, "cannot be put in place: {}", error.message());
+  moves_.push_back({from, to});
+}
+
+std::string PartitionWriter::take_back() {
+  std::string left;
+  for (; !moves_.empty(); moves_.pop_back()) {
+    std::error_code error;
+    fs::rename(moves_.back().to, moves_.back().from, error);
+    if (error) left = aside_.path();
   }
-  for (const fs::path& file : partition_files(aside_)) {
-    const std::string target = inside(folder_, file.filename().string());
-    fs::rename(file, target, error);
-    if (error) io::fail(target, "cannot be written: {}", error.message());
-    placed_.push_back(target);
-  }
-  placed_.clear();
-  made_folder_ = false;
+  if (left.empty()) return "the folder is as it was";
+  aside_.release();
+  return fmt::format("files are left in {}: the old ones in its folder 'replaced'", left);
 }
 
 PartitionReader::PartitionReader(const std::string& folder) : folder_(folder) {
@@ -232,10 +275,16 @@ research::Region PartitionReader::read_region(std::size_t r, const std::string& 
 }
 
 void check_no_partition_file(const std::string& folder, const std::string& path) {
-  const fs::path file(path);
-  std::error_code error;
-  if (is_partition_name(file.filename().string()) &&
-      fs::equivalent(file.has_parent_path() ? file.parent_path() : fs::path("."), folder, error)) {
+  if (path.empty()) return;
+  const io::Target target = io::find_target(path);
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0 || !(target.folder_id == io::file_id(status))) return;
+  // A file may have the name of another one in different case.
+  const std::vector<fs::path> files = partition_files(folder);
+  const auto is_target = [&](const fs::path& file) {
+    return target.exists && ::stat(file.c_str(), &status) == 0 && target.id == io::file_id(status);
+  };
+  if (is_partition_name(target.name) || std::any_of(files.begin(), files.end(), is_target)) {
     throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the partition", path));
   }
 }

@@ -9,6 +9,7 @@
 
 #include "flaunay/research.hpp"
 #include "io/points.hpp"
+#include "io/temporary.hpp"
 
 namespace flaunay::cli {
 
@@ -20,8 +21,8 @@ struct PartitionFacts {
   research::Hull dividing_paths = research::Hull::prune;
 };
 
-/// Writes a partition. All files are written to a temporary folder; keep() moves them to their places.
-/// Without keep(), the destructor leaves the folder as it was.
+/// Writes a partition. All files are written to a temporary folder; place() moves them to their places.
+/// Without keep(), the destructor leaves the folder as it was, and so does a signal that ends the process.
 class PartitionWriter {
  public:
   /// Makes the folder if it is missing. input: the file that must not be overwritten; "-" for none. Throws
@@ -33,14 +34,24 @@ class PartitionWriter {
   PartitionWriter& operator=(const PartitionWriter&) = delete;
 
   void write(const io::Points& points, const research::Partition& partition, const PartitionFacts& facts);
-  /// Replaces the partition that was in the folder, with its solutions.
+  /// Replaces the partition that was in the folder, with its solutions, until the destructor puts it back.
+  void place();
+  /// What place() did is kept.
   void keep();
 
  private:
+  struct Move {
+    std::string from, to;
+  };
+  void move(const std::string& from, const std::string& to);
+  void place_files();
+  /// Says in words how far that was possible.
+  std::string take_back();
+
   std::string folder_;
-  std::string aside_;
-  bool made_folder_ = false;
-  std::vector<std::string> placed_;  // files that keep() has moved, until it has moved all
+  io::Temporary made_folder_;  // the folder, if it is new
+  io::Temporary aside_;        // with the new files, and later with those that they replace
+  std::vector<Move> moves_;    // of place()
 };
 
 /// Reads a folder that a PartitionWriter wrote, and finds the solutions.

@@ -38,14 +38,16 @@ void write_results(const ResultPaths& paths, const io::Points& points, const res
                    RunFacts& facts, Progress& progress, OutputFiles& outputs) {
   Stopwatch stopwatch;
   progress.update("writing");
-  if (!paths.mesh.empty()) io::write_mesh(paths.mesh, points, mesh);
+  if (!paths.mesh.empty()) io::write_mesh(outputs.files(), paths.mesh, points, mesh);
   for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
     const ArrayFile& file = kArrayFiles[k];
-    if (!paths.arrays[k].empty()) io::write_npy_int32(paths.arrays[k], mesh.*file.values, file.columns);
+    if (paths.arrays[k].empty()) continue;
+    io::write_npy_int32(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns);
   }
+  outputs.files().write_out();
   facts.writing_seconds = stopwatch.seconds();
-  if (!paths.stats.empty()) write_text(paths.stats, statistics_json(mesh, facts));
-  outputs.keep();
+  if (!paths.stats.empty()) outputs.files().open(paths.stats).print("{}", statistics_json(mesh, facts));
+  outputs.files().commit();
   progress.finish();
 }
 

@@ -51,8 +51,8 @@ void ask_for(const ResultPaths& paths, Options& options);
 /// Announces the files to `outputs`, which checks their paths.
 void announce(OutputFiles& outputs, const ResultPaths& paths);
 
-/// Writes the files and keeps them, and ends the progress. The statistics come last, because they say how
-/// long writing the others took.
+/// Writes and commits the files, and ends the progress. The statistics come last, because they say how long
+/// writing the others took.
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
                    RunFacts& facts, Progress& progress, OutputFiles& outputs);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,8 +42,9 @@ int verify(const VerifyRequest& request) {
   progress.finish();
 
   // The problem goes to standard error first, because standard output may be closed.
-  if (!report.ok)
-    std::fputs(fmt::format("flaunay: {}: {}\n", request.triangles, report.problem).c_str(), stderr);
+  if (!report.ok) {
+    report_error("flaunay", kFailure, fmt::format("{}: {}", request.triangles, report.problem));
+  }
   print(
       fmt::format("{}: {} points, {} distinct, {} triangles, {} hull vertices, {} cocircular edges; "
                   "{} exact evaluations, {:.3f} s\n",

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/file.hpp"
+#include "io/output.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {

@@ -37,24 +37,18 @@ std::string node_path_beside(const std::string& ele_path) {
   return ele_path.substr(0, ele_path.size() - std::strlen(".ele")) + ".node";
 }
 
-void write_ele(const std::string& path, const Points& points, const Triangulation& mesh) {
-  OutputFile ele(path);
-  OutputFile node(node_path_beside(path));
-  print_node(node, points);
+void write_ele(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile& ele = outputs.open(path);
+  print_node(outputs.open(node_path_beside(path)), points);
   ele.print("{} 3 0\n", triangle_count(mesh));
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
     const std::int32_t* corner = &mesh.triangles[3 * t];
     ele.print("{} {} {} {}\n", t, corner[0], corner[1], corner[2]);
   }
-  // Neither file replaces its target before both are written.
-  node.finish();
-  ele.finish();
-  node.commit();
-  ele.commit();
 }
 
-void write_off(const std::string& path, const Points& points, const Triangulation& mesh) {
-  OutputFile file(path);
+void write_off(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile& file = outputs.open(path);
   file.print("OFF\n{} {} 0\n", points.size(), triangle_count(mesh));
   for (std::size_t i = 0; i < points.size(); ++i) {
     file.print("{} {} 0\n", points.coordinates[2 * i], points.coordinates[2 * i + 1]);
@@ -63,11 +57,10 @@ void write_off(const std::string& path, const Points& points, const Triangulatio
     const std::int32_t* corner = &mesh.triangles[3 * t];
     file.print("3 {} {} {}\n", corner[0], corner[1], corner[2]);
   }
-  file.commit();
 }
 
-void write_obj(const std::string& path, const Points& points, const Triangulation& mesh) {
-  OutputFile file(path);
+void write_obj(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile& file = outputs.open(path);
   file.print("# {} vertices, {} triangles\n", points.size(), triangle_count(mesh));
   for (std::size_t i = 0; i < points.size(); ++i) {
     file.print("v {} {} 0\n", points.coordinates[2 * i], points.coordinates[2 * i + 1]);
@@ -76,7 +69,6 @@ void write_obj(const std::string& path, const Points& points, const Triangulatio
     const std::int32_t* corner = &mesh.triangles[3 * t];
     file.print("f {} {} {}\n", corner[0] + 1LL, corner[1] + 1LL, corner[2] + 1LL);
   }
-  file.commit();
 }
 
 /// The points as x, y, 0.
@@ -87,8 +79,8 @@ void write_spatial_points(OutputFile& file, const Points& points) {
   }
 }
 
-void write_ply(const std::string& path, const Points& points, const Triangulation& mesh) {
-  OutputFile file(path);
+void write_ply(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+  OutputFile& file = outputs.open(path);
   file.print(
       "ply\nformat binary_little_endian 1.0\ncomment flaunay\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -99,10 +91,9 @@ void write_ply(const std::string& path, const Points& points, const Triangulatio
     file.write_value(std::uint8_t{3});
     file.write(&mesh.triangles[3 * t], 3 * sizeof(std::int32_t));
   }
-  file.commit();
 }
 
-void write_vtu(const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_vtu(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
   constexpr std::uint8_t kVtkTriangle = 5;
   const std::uint64_t point_bytes = points.size() * 3 * sizeof(double);
   const std::uint64_t corner_bytes = mesh.triangles.size() * sizeof(std::int32_t);
@@ -115,7 +106,7 @@ void write_vtu(const std::string& path, const Points& points, const Triangulatio
   const std::uint64_t ends_at = corners_at + prefix + corner_bytes;
   const std::uint64_t types_at = ends_at + prefix + end_bytes;
 
-  OutputFile file(path);
+  OutputFile& file = outputs.open(path);
   file.print(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -141,7 +132,6 @@ void write_vtu(const std::string& path, const Points& points, const Triangulatio
   file.write_value(type_bytes);
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) file.write_value(kVtkTriangle);
   file.print("\n</AppendedData>\n</VTKFile>\n");
-  file.commit();
 }
 
 std::vector<std::int32_t> read_ele(const std::string& path) {
@@ -345,22 +335,22 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
 
 }  // namespace
 
-void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
   switch (output_format(path)) {
     case Format::ele:
-      return write_ele(path, points, mesh);
+      return write_ele(outputs, path, points, mesh);
     case Format::off:
-      return write_off(path, points, mesh);
+      return write_off(outputs, path, points, mesh);
     case Format::ply:
-      return write_ply(path, points, mesh);
+      return write_ply(outputs, path, points, mesh);
     case Format::vtu:
-      return write_vtu(path, points, mesh);
+      return write_vtu(outputs, path, points, mesh);
     case Format::obj:
-      return write_obj(path, points, mesh);
+      return write_obj(outputs, path, points, mesh);
     case Format::npy:
-      return write_npy_int32(path, mesh.triangles, 3);
+      return write_npy_int32(outputs, path, mesh.triangles, 3);
     case Format::svg:
-      return write_svg(path, points, mesh);
+      return write_svg(outputs, path, points, mesh);
   }
 }
 

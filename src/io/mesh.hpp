@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "io/output.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {
@@ -13,7 +14,7 @@ namespace flaunay::io {
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
 /// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .svg (a picture).
 /// Throws Error(input) naming path and the system's reason if it cannot be written.
-void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh);
+void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh);
 
 /// Checks a path before any work. Throws Error(usage) for an unknown ending, Error(input) if the file cannot
 /// be created. Leaves no new file behind.
@@ -22,7 +23,8 @@ void check_mesh_output(const std::string& path);
 void check_output(const std::string& path, const std::string& ending);
 
 /// Writes an int32 .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
-void write_npy_int32(const std::string& path, const std::vector<std::int32_t>& values, std::size_t columns);
+void write_npy_int32(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+                     std::size_t columns);
 
 /// Reads triangles, 0-based, from .npy (int32 or int64, m x 3), .ele (either index base), .off, .obj (faces),
 /// .ply as write_mesh writes it. Throws Error(input) that names the place.

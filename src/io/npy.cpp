@@ -213,19 +213,18 @@ Array read_array(const std::string& path, std::string_view expected, const Layou
   return array;
 }
 
-void write_npy(const std::string& path, const char* descr, const std::string& shape, const void* data,
-               std::size_t bytes) {
+void write_npy(Outputs& outputs, const std::string& path, const char* descr, const std::string& shape,
+               const void* data, std::size_t bytes) {
   std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", descr, shape);
   constexpr std::size_t kPrefix = 10, kAlignment = 64;  // NumPy aligns the data, and counts a final newline
   text.append(kAlignment - (kPrefix + text.size() + 1) % kAlignment, ' ');
   text += '\n';
-  OutputFile file(path);
+  OutputFile& file = outputs.open(path);
   file.write(kMagic.data(), kMagic.size());
   file.write("\x01\x00", 2);
   file.write_value(static_cast<std::uint16_t>(text.size()));
   file.write(text.data(), text.size());
   file.write(data, bytes);
-  file.commit();
 }
 
 }  // namespace
@@ -242,8 +241,8 @@ Points read_npy_points(const std::string& path) {
   return points;
 }
 
-void write_npy_points(const std::string& path, const Points& points) {
-  write_npy(path, "<f8", shape_text({points.size(), 2}), points.coordinates.data(),
+void write_npy_points(Outputs& outputs, const std::string& path, const Points& points) {
+  write_npy(outputs, path, "<f8", shape_text({points.size(), 2}), points.coordinates.data(),
             2 * points.size() * sizeof(double));
 }
 
@@ -281,7 +280,8 @@ std::vector<std::int32_t> read_neighbors(const std::string& path) {
   return read_npy_indices(path, -1, "neighbour");
 }
 
-void write_npy_int32(const std::string& path, const std::vector<std::int32_t>& values, std::size_t columns) {
+void write_npy_int32(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+                     std::size_t columns) {
   if (columns > 0 && values.size() % columns != 0) {
     throw Error(ErrorKind::internal,
                 fmt::format("{}: {} values make no rows of {}", path, values.size(), columns));
@@ -289,7 +289,7 @@ void write_npy_int32(const std::string& path, const std::vector<std::int32_t>& v
   const std::vector<std::size_t> shape = columns == 0
                                              ? std::vector<std::size_t>{values.size()}
                                              : std::vector<std::size_t>{values.size() / columns, columns};
-  write_npy(path, "<i4", shape_text(shape), values.data(), values.size() * sizeof(std::int32_t));
+  write_npy(outputs, path, "<i4", shape_text(shape), values.data(), values.size() * sizeof(std::int32_t));
 }
 
 }  // namespace flaunay::io

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/drawing.hpp"
-#include "io/file.hpp"
+#include "io/output.hpp"
 #include "io/svg.hpp"
 
 namespace flaunay::io {
@@ -67,8 +67,8 @@ std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32
 
 class PartitionPicture {
  public:
-  PartitionPicture(const std::string& path, const Points& points, const research::Partition& partition)
-      : file_(path), path_(file_), page_(points), partition_(partition) {}
+  PartitionPicture(OutputFile& file, const Points& points, const research::Partition& partition)
+      : file_(file), path_(file_), page_(points), partition_(partition) {}
 
   void write() {
     page_.open(file_, "Regions of " + counted(page_.positions().size(), "point"), kUnits);
@@ -80,7 +80,6 @@ class PartitionPicture {
     write_dots();
     file_.print("</g>\n");
     page_.close(file_, caption());
-    file_.commit();
   }
 
  private:
@@ -170,7 +169,7 @@ class PartitionPicture {
     return text;
   }
 
-  OutputFile file_;
+  OutputFile& file_;
   PathData path_;
   const Page page_;
   const research::Partition& partition_;
@@ -178,9 +177,9 @@ class PartitionPicture {
 
 }  // namespace
 
-void write_partition_svg(const std::string& path, const Points& points,
+void write_partition_svg(Outputs& outputs, const std::string& path, const Points& points,
                          const research::Partition& partition) {
-  PartitionPicture(path, points, partition).write();
+  PartitionPicture(outputs.open(path), points, partition).write();
 }
 
 }  // namespace flaunay::io

@@ -141,8 +141,8 @@ Points read_binary(const std::string& path) {
   return points;
 }
 
-void write_text(const std::string& path, const Points& points) {
-  OutputFile file(path);
+void write_text(Outputs& outputs, const std::string& path, const Points& points) {
+  OutputFile& file = outputs.open(path);
   // Every reader skips this line. With it, a file of no points can be read back.
   const bool comma = ending_of(path) == ".csv";
   file.print("{}", comma ? "x,y\n" : "# x y\n");
@@ -150,24 +150,20 @@ void write_text(const std::string& path, const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     file.print("{}{}{}\n", points.coordinates[2 * i], separator, points.coordinates[2 * i + 1]);
   }
-  file.commit();
 }
 
-void write_node(const std::string& path, const Points& points) {
-  OutputFile file(path);
-  print_node(file, points);
-  file.commit();
+void write_node(Outputs& outputs, const std::string& path, const Points& points) {
+  print_node(outputs.open(path), points);
 }
 
-void write_binary(const std::string& path, const Points& points) {
+void write_binary(Outputs& outputs, const std::string& path, const Points& points) {
   if (points.size() == 0) {
     fail(path,
          "a .bin of no points would be an empty file, which no one can tell from a failed write; "
          "expected points, or another ending");
   }
-  OutputFile file(path);
+  OutputFile& file = outputs.open(path);
   file.write(points.coordinates.data(), 2 * points.size() * sizeof(double));
-  file.commit();
 }
 
 }  // namespace
@@ -201,16 +197,16 @@ Points read_points(const std::string& path) {
   throw Error(ErrorKind::internal, "read_points: a format without reader");
 }
 
-void write_points(const std::string& path, const Points& points) {
+void write_points(Outputs& outputs, const std::string& path, const Points& points) {
   switch (format_of(path)) {
     case Format::node:
-      return write_node(path, points);
+      return write_node(outputs, path, points);
     case Format::text:
-      return write_text(path, points);
+      return write_text(outputs, path, points);
     case Format::npy:
-      return write_npy_points(path, points);
+      return write_npy_points(outputs, path, points);
     case Format::binary:
-      return write_binary(path, points);
+      return write_binary(outputs, path, points);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "io/output.hpp"
+
 namespace flaunay::io {
 
 /// Points as read: x0 y0 x1 y1 ...
@@ -30,8 +32,9 @@ Points read_points(const std::string& path);
 /// Throws Error(usage) that lists the endings if read_points does not know the ending of path.
 void check_points_ending(const std::string& path);
 
-/// Writes points in the format of path's ending (.npy float64, .node, .xy/.txt/.csv, .bin); numbers in text
-/// are the shortest that read back to the same double. Throws Error(input) if path cannot be written.
-void write_points(const std::string& path, const Points& points);
+/// Writes points in the format of path's ending (.npy float64, .node, .xy/.txt/.csv, .bin), or text to
+/// standard output for "-"; numbers in text are the shortest that read back to the same double. Throws
+/// Error(input) if path cannot be written.
+void write_points(Outputs& outputs, const std::string& path, const Points& points);
 
 }  // namespace flaunay::io

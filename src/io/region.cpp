@@ -9,28 +9,24 @@
 namespace flaunay::io {
 namespace {
 
-void write_node(const std::string& path, const Points& points, const research::Region& region) {
+void write_node(OutputFile& file, const Points& points, const research::Region& region) {
   std::vector<char> on_border(region.points.size(), 0);
   for (const std::int32_t position : region.border) on_border[static_cast<std::size_t>(position)] = 1;
-  OutputFile file(path);
   file.print("{} 2 1 1\n", region.points.size());
   for (std::size_t k = 0; k < region.points.size(); ++k) {
     const auto index = static_cast<std::size_t>(region.points[k]);
     file.print("{} {} {} {} {}\n", k, points.coordinates[2 * index], points.coordinates[2 * index + 1], index,
                static_cast<int>(on_border[k]));
   }
-  file.commit();
 }
 
-void write_poly(const std::string& path, const research::Region& region) {
-  OutputFile file(path);
+void write_poly(OutputFile& file, const research::Region& region) {
   // The vertices are in the .node file.
   file.print("0 2 1 1\n{} 0\n", region.border.size() / 2);
   for (std::size_t k = 0; k + 1 < region.border.size(); k += 2) {
     file.print("{} {} {}\n", k / 2, region.border[k], region.border[k + 1]);
   }
   file.print("0\n");
-  file.commit();
 }
 
 /// The segments of a .poly without vertices of its own: two positions each.
@@ -64,9 +60,10 @@ void check_count(const std::string& path, const char* what, std::size_t found, s
 
 }  // namespace
 
-void write_region(const std::string& stem, const Points& points, const research::Region& region) {
-  write_node(stem + ".node", points, region);
-  write_poly(stem + ".poly", region);
+void write_region(Outputs& outputs, const std::string& stem, const Points& points,
+                  const research::Region& region) {
+  write_node(outputs.open(stem + ".node"), points, region);
+  write_poly(outputs.open(stem + ".poly"), region);
 }
 
 StoredRegion read_region(const std::string& stem, std::size_t points, std::size_t border_edges) {

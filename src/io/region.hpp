@@ -4,6 +4,7 @@
 #include <string>
 
 #include "flaunay/research.hpp"
+#include "io/output.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {
@@ -11,7 +12,8 @@ namespace flaunay::io {
 /// Writes, numbered from 0, stem.node with the region's points (attribute: the index of the input point;
 /// marker 1: on the border) and stem.poly with its border as segments, the region on the left. points: the
 /// input's. Throws Error(input) naming the file and the system's reason.
-void write_region(const std::string& stem, const Points& points, const research::Region& region);
+void write_region(Outputs& outputs, const std::string& stem, const Points& points,
+                  const research::Region& region);
 
 struct StoredRegion {
   Points points;

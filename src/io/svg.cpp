@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io/drawing.hpp"
-#include "io/file.hpp"
+#include "io/output.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -39,8 +39,8 @@ std::string shade_color(int shade) {
 
 class Picture {
  public:
-  Picture(const std::string& path, const Points& points, const Triangulation& mesh)
-      : file_(path), path_(file_), points_(points), mesh_(mesh), page_(points) {
+  Picture(OutputFile& file, const Points& points, const Triangulation& mesh)
+      : file_(file), path_(file_), points_(points), mesh_(mesh), page_(points) {
     choose_units();
   }
 
@@ -51,7 +51,6 @@ class Picture {
     write_hull();
     write_dots();
     page_.close(file_, caption());
-    file_.commit();
   }
 
  private:
@@ -323,7 +322,7 @@ class Picture {
   /// Trails per path element: viewers draw several short paths faster than a long one.
   static constexpr std::size_t kTrailsPerPath = 500;
 
-  OutputFile file_;
+  OutputFile& file_;
   PathData path_;
   const Points& points_;
   const Triangulation& mesh_;
@@ -339,8 +338,8 @@ class Picture {
 
 }  // namespace
 
-void write_svg(const std::string& path, const Points& points, const Triangulation& mesh) {
-  Picture(path, points, mesh).write();
+void write_svg(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+  Picture(outputs.open(path), points, mesh).write();
 }
 
 }  // namespace flaunay::io

@@ -15,18 +15,15 @@
 #include <vector>
 
 #include "io/file.hpp"
+#include "io/output.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {
 
-/// A field for messages: quoted, shortened, with control characters replaced.
+/// A field for messages: quoted and shortened.
 inline std::string quoted(std::string_view field) {
   constexpr std::size_t kLongest = 32;
-  std::string shown(field.substr(0, kLongest));
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-  }
-  return "'" + shown + (field.size() > kLongest ? "...'" : "'");
+  return fmt::format("'{}{}'", field.substr(0, kLongest), field.size() > kLongest ? "..." : "");
 }
 
 enum class ParsedNumber { fine, unreadable, infinite };

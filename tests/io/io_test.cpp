@@ -25,7 +25,9 @@
 #include "flaunay/research.hpp"
 #include "io/generate.hpp"
 #include "io/mesh.hpp"
+#include "io/output.hpp"
 #include "io/points.hpp"
+#include "io/printable.hpp"
 #include "io/region.hpp"
 #include "io/svg.hpp"
 #include "tests/support/paths.hpp"
@@ -35,6 +37,34 @@ namespace {
 
 using Values = std::vector<double>;
 using Indices = std::vector<std::int32_t>;
+
+// Each of these writes one file, and commits it.
+void write_points(const std::string& path, const Points& points) {
+  Outputs outputs;
+  write_points(outputs, path, points);
+  outputs.commit();
+}
+void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh) {
+  Outputs outputs;
+  write_mesh(outputs, path, points, mesh);
+  outputs.commit();
+}
+void write_npy_int32(const std::string& path, const Indices& values, std::size_t columns) {
+  Outputs outputs;
+  write_npy_int32(outputs, path, values, columns);
+  outputs.commit();
+}
+void write_region(const std::string& stem, const Points& points, const research::Region& region) {
+  Outputs outputs;
+  write_region(outputs, stem, points, region);
+  outputs.commit();
+}
+void write_partition_svg(const std::string& path, const Points& points,
+                         const research::Partition& partition) {
+  Outputs outputs;
+  write_partition_svg(outputs, path, points, partition);
+  outputs.commit();
+}
 
 /// A fresh folder for each test, removed after it.
 class IoTest : public testing::Test {
@@ -641,6 +671,91 @@ TEST_F(IoTest, ReplacingKeepsModeAndSymbolicLink) {
   ASSERT_EQ(stat(real.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0640u);
   EXPECT_EQ(names(), (std::set<std::string>{"real.off", "link.off"}));
+}
+
+TEST_F(IoTest, ADanglingLinkIsFollowed) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_symlink("folder/second.off", path("first.off"));
+  std::filesystem::create_symlink("../real.off", path("folder/second.off"));
+  EXPECT_NO_THROW(check_mesh_output(path("first.off")));
+  EXPECT_FALSE(std::filesystem::exists(path("real.off")));
+  write_mesh(path("first.off"), {kSquare}, square_mesh());
+  EXPECT_TRUE(std::filesystem::is_symlink(path("first.off")));
+  EXPECT_TRUE(std::filesystem::is_symlink(path("folder/second.off")));
+  EXPECT_EQ(read_triangles(path("real.off")), square_mesh().triangles);
+
+  std::filesystem::create_symlink("b.off", path("a.off"));
+  std::filesystem::create_symlink("a.off", path("b.off"));
+  expect_error(ErrorKind::input, path("a.off"), {"symbolic links"},
+               [&] { check_mesh_output(path("a.off")); });
+  std::filesystem::create_symlink("nowhere/c.off", path("c.off"));
+  expect_error(ErrorKind::input, path("c.off"), {"No such file"}, [&] { check_mesh_output(path("c.off")); });
+}
+
+TEST_F(IoTest, TargetsAreTheSameByWhateverPath) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_directory_symlink("folder", path("link"));
+  std::filesystem::create_symlink("folder/a", path("dangling"));
+  const auto same = [&](const std::string& a, const std::string& b) {
+    return is_same(find_target(path(a)), find_target(path(b)));
+  };
+  for (const std::string state : {"new", "existing"}) {
+    SCOPED_TRACE(state);
+    for (const char* other : {"folder/a", "./folder//a", "link/a", "folder/../folder/a", "dangling"}) {
+      EXPECT_TRUE(same("folder/a", other)) << other;
+    }
+    for (const char* other : {"a", "folder/b", "folder/\xc3\xa4"}) {
+      EXPECT_FALSE(same("folder/a", other)) << other;
+    }
+    write("folder/a", "");
+  }
+  write("folder/b", "");
+  EXPECT_FALSE(same("folder/a", "folder/b"));
+}
+
+TEST_F(IoTest, OutputsAreCommittedTogether) {
+  write("old", "old");
+  Outputs outputs;
+  outputs.open(path("old")).print("new");
+  outputs.open(path("second")).print("second");
+  outputs.write_out();
+  EXPECT_EQ(read(path("old")), "old");
+  EXPECT_FALSE(std::filesystem::exists(path("second")));
+  outputs.commit();
+  EXPECT_EQ(read(path("old")), "new");
+  EXPECT_EQ(read(path("second")), "second");
+  EXPECT_EQ(names(), (std::set<std::string>{"old", "second"}));
+}
+
+TEST_F(IoTest, IfOneOutputFailsAllStayAsTheyWere) {
+  write("old", "old");
+  for (const std::string name : {"folder", "./new", "./old"}) {
+    SCOPED_TRACE(name);
+    Outputs outputs;
+    outputs.open(path("old")).print("other");
+    outputs.open(path("new")).print("other");
+    outputs.open(path(name)).print("other");
+    // In the way of an output that was well when it was opened; the others have the path of an earlier one.
+    if (name == "folder") std::filesystem::create_directory(path(name));
+    const bool is_folder = name == "folder";
+    expect_error(is_folder ? ErrorKind::input : ErrorKind::usage, path(name),
+                 {is_folder ? "Is a directory" : "same path", "all outputs are as they were"},
+                 [&] { outputs.commit(); });
+    EXPECT_EQ(read(path("old")), "old");
+    EXPECT_FALSE(std::filesystem::exists(path("new")));
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"old", "folder"}));
+}
+
+TEST(PrintableTest, EscapesWhatATerminalWouldObey) {
+  EXPECT_EQ(printable("a\nb\tc\rd\x1b[31m\x7f"), "a\\nb\\tc\\rd\\x1b[31m\\x7f");
+  EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "\\xc2\\x9b31m")
+      << "CSI of one character";
+  EXPECT_EQ(printable("caf\xc3\xa9 \xc2\xb7 C:\\new"), "caf\xc3\xa9 \xc2\xb7 C:\\new");
+  EXPECT_EQ(printable(printable("\n")), "\\n");
 }
 
 // ---- meshes ----

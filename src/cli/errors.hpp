@@ -1,0 +1,44 @@
+// How `flaunay` and `flaunay-bench` report errors: exit codes, and messages on standard error.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "flaunay/flaunay.hpp"
+#include "io/printable.hpp"
+
+namespace flaunay::cli {
+
+enum ExitCode : int { kSuccess = 0, kFailure = 1, kUsage = 2, kBadInput = 3, kDevice = 4 };
+
+inline ExitCode exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage:
+      return kUsage;
+    case ErrorKind::input:
+      return kBadInput;
+    case ErrorKind::device:
+      return kDevice;
+    case ErrorKind::internal:
+      break;
+  }
+  return kFailure;
+}
+
+/// Writes the message on one line, and returns the code. The message of a device keeps its lines, because it
+/// may contain what a compiler says.
+inline int report_error(const char* program, int code, std::string_view message) {
+  std::string text = std::string(program) + ": ";
+  while (code == kDevice && message.find('\n') != message.npos) {
+    const std::size_t end = message.find('\n');
+    text += io::printable(message.substr(0, end)) + "\n";
+    message.remove_prefix(end + 1);
+  }
+  text += io::printable(message) + "\n";
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  return code;
+}
+
+}  // namespace flaunay::cli

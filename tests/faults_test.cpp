@@ -1,0 +1,233 @@
+// The command on systems that fail: signals, full disks, limits, renames that fail halfway. Outputs are all
+// written or all left as they were, and nothing else is left behind. tests/support/faults.c makes the faults.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.hpp"
+
+namespace {
+
+using namespace flaunay::command;
+
+class CommandFaultsTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("points.xy", "0 0\n4 0\n4 3\n0 4\n");
+  }
+
+  static Environment with(const std::string& faults, Environment environment = kNoPlatform) {
+    environment["LD_PRELOAD"] = FLAUNAY_FAULTS_LIBRARY;
+    environment["FLAUNAY_FAULTS"] = faults;
+    return environment;
+  }
+
+  /// Of all files in the folder and its folders.
+  std::map<std::string, std::string> everything() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(path(""))) {
+      all[entry.path().string()] = entry.is_directory() ? "folder" : contents(entry.path());
+    }
+    return all;
+  }
+
+  /// Writes one file that is there already, and others that are not.
+  Arguments triangulate() const {
+    return {"triangulate",    path("points.xy"), "--mode",      "dwyer",  "-o",
+            path("mesh.ele"), "--triangles",     path("t.npy"), "--hull", path("h.npy")};
+  }
+
+  /// Expects this one error, and that everything is as it was.
+  void expect_unchanged(const std::vector<std::string>& parts, const Arguments& arguments,
+                        const Environment& environment) const {
+    const auto before = everything();
+    expect_error(kBadInput, parts, arguments, environment);
+    EXPECT_EQ(everything(), before);
+  }
+
+  bool has_unnamed_files() const {
+    const int file = open(path("").c_str(), O_TMPFILE | O_WRONLY, 0600);
+    if (file >= 0) close(file);
+    return file >= 0;
+  }
+};
+
+TEST_F(CommandFaultsTest, SignalsLeaveNothingBehind) {
+  write("t.npy", "precious");
+  const auto before = everything();
+  for (const char* system : {"", ",no-unnamed-files"}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      SCOPED_TRACE(std::to_string(signal) + system);
+      const Outcome outcome =
+          run(triangulate(), with("end-at-sync=" + std::to_string(signal) + std::string(system)));
+      EXPECT_EQ(outcome.signal, signal) << outcome.err;
+      EXPECT_EQ(everything(), before);
+    }
+  }
+}
+
+TEST_F(CommandFaultsTest, ASignalThatCannotBeCaughtLeavesNothingBehind) {
+  if (!has_unnamed_files()) GTEST_SKIP() << "no files without names here";
+  write("t.npy", "precious");
+  const auto before = everything();
+  EXPECT_EQ(run(triangulate(), with("end-at-sync=" + std::to_string(SIGKILL))).signal, SIGKILL);
+  EXPECT_EQ(everything(), before);
+}
+
+TEST_F(CommandFaultsTest, AnIgnoredSignalStaysIgnored) {
+  const Outcome outcome =
+      run_script("trap '' HUP; \"$FLAUNAY\" triangulate points.xy --mode dwyer --quiet -o mesh.off",
+                 with("end-at-sync=" + std::to_string(SIGHUP)));
+  EXPECT_EQ(outcome.exit_code, kSuccess) << outcome.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"mesh.off", "points.xy"}));
+}
+
+TEST_F(CommandFaultsTest, EverySystemReplacesFiles) {
+  run_well(triangulate(), kNoPlatform);
+  const auto expected = everything();
+  for (const char* faults :
+       {"no-unnamed-files", "no-exchange", "no-exchange,no-links", "no-unnamed-files,no-exchange"}) {
+    SCOPED_TRACE(faults);
+    write("mesh.ele", "old");
+    write("h.npy", "old");
+    fs::remove(path("t.npy"));
+    run_well(triangulate(), with(faults));
+    EXPECT_EQ(everything(), expected);
+  }
+}
+
+TEST_F(CommandFaultsTest, IfOneOutputCannotBePlacedAllStayAsTheyWere) {
+  for (const char* system : {"", ",no-exchange", ",no-unnamed-files"}) {
+    for (const char* name : {"mesh.ele", "mesh.node", "t.npy", "h.npy"}) {
+      for (const char* old : {"mesh.ele", "t.npy", "h.npy"}) {
+        SCOPED_TRACE(name + std::string(system) + " with an old " + old);
+        write(old, "precious");
+        expect_unchanged({name, "Input/output error", "all outputs are as they were"}, triangulate(),
+                         with("fail-renames-to=" + std::string(name) + system));
+        fs::remove(path(old));
+      }
+    }
+  }
+}
+
+TEST_F(CommandFaultsTest, WhatCannotBePutBackIsSaid) {
+  write("mesh.ele", "precious");
+  // The first rename finds the old file, the second replaces it.
+  const Outcome outcome = run(triangulate(), with("fail-renames-from=3"));
+  EXPECT_EQ(outcome.exit_code, kBadInput);
+  const std::string said = path("mesh.ele") + " is the new file already, and the old one is ";
+  const std::size_t at = outcome.err.find(said);
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  std::string old = outcome.err.substr(at + said.size());
+  old.pop_back();
+  EXPECT_EQ(contents(old), "precious");
+  EXPECT_NE(contents(path("mesh.ele")), "precious");
+  EXPECT_EQ(files().size(), 3U) << "points.xy and these two";
+}
+
+TEST_F(CommandFaultsTest, AFullDiskLeavesOldOutputs) {
+  write("t.npy", "precious");
+  expect_unchanged({"mesh.ele", "No space left on device"}, triangulate(), with("full-at-sync"));
+}
+
+TEST_F(CommandFaultsTest, AFullFileSystemLeavesOldOutputs) {
+  const std::string mounted = "mkdir disk && mount -t tmpfs -o size=64k none disk";
+  if (run_script("unshare --mount sh -c '" + mounted + "'").exit_code != 0) {
+    GTEST_SKIP() << "file systems cannot be mounted here";
+  }
+  fs::remove(path("disk"));
+  const Outcome outcome = run_script("unshare --mount sh -c '" + mounted +
+                                     " && echo precious > disk/t.npy"
+                                     " && \"$FLAUNAY\" generate uniform 3000 -o points.npy"
+                                     " && { \"$FLAUNAY\" triangulate points.npy --mode dwyer --quiet --hull "
+                                     "disk/h.npy --triangles disk/t.npy;"
+                                     " echo $?; ls -A disk; cat disk/t.npy; }'");
+  EXPECT_EQ(outcome.out, "3\nt.npy\nprecious\n");
+  EXPECT_EQ(outcome.err, "flaunay: disk/t.npy: cannot be written: No space left on device\n");
+}
+
+TEST_F(CommandFaultsTest, ALimitOfTheSizeOfFilesIsAnError) {
+  write("points.npy", "precious");
+  const auto before = everything();
+  const Outcome outcome = run_script("ulimit -f 8; exec \"$FLAUNAY\" generate uniform 10000 -o points.npy");
+  EXPECT_EQ(outcome.exit_code, kBadInput) << "signal " << outcome.signal;
+  EXPECT_EQ(outcome.err, "flaunay: points.npy: cannot be written: File too large\n");
+  EXPECT_EQ(everything(), before);
+}
+
+TEST_F(CommandFaultsTest, AFolderThatCannotBeWrittenIsAnError) {
+  fs::create_directory(path("closed"));
+  write("closed/t.npy", "precious");
+  for (const std::string& name : {std::string("closed"), std::string("..")}) {
+    fs::permissions(path(name), fs::perms(0555));
+  }
+  fs::permissions(path("closed/t.npy"), fs::perms(0666));
+  const auto before = everything();
+  // Root may write everywhere.
+  const std::string as_user = geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+  for (const char* name : {"closed/t.npy", "closed/new.npy"}) {
+    const Outcome outcome = run_script(
+        as_user + "\"$FLAUNAY\" triangulate points.xy --mode dwyer --triangles " + std::string(name));
+    EXPECT_EQ(outcome.exit_code, kBadInput);
+    EXPECT_EQ(outcome.err, "flaunay: " + std::string(name) +
+                               ": cannot be created in folder 'closed/': Permission denied\n");
+  }
+  EXPECT_EQ(everything(), before);
+  for (const std::string& name : {std::string("closed"), std::string("..")}) {
+    fs::permissions(path(name), fs::perms(0755));
+  }
+}
+
+TEST_F(CommandFaultsTest, NamesThatDifferInCaseMayBeOneFile) {
+  const Arguments both = {"triangulate", path("points.xy"), "--mode", "dwyer",
+                          "--triangles", path("new.npy"),   "--hull", path("NEW.npy")};
+  expect_error(kUsage, {"NEW.npy", "same path"}, both, with("ignore-case"));
+  run_well(both, kNoPlatform);
+  EXPECT_EQ(files(), (std::vector<std::string>{"NEW.npy", "new.npy", "points.xy"}));
+}
+
+// ---------------------------------------------------------------------------------------------- partition
+
+class PartitionFaultsTest : public CommandFaultsTest {
+ protected:
+  void SetUp() override {
+    CommandFaultsTest::SetUp();
+    run_well({"generate", "uniform", "300", "-o", path("points.npy")}, kNoPlatform);
+    run_well({"partition", path("points.npy"), "--levels", "1", "-o", path("p"), "--picture", path("p.svg")});
+    write("p/region-00000.npy", "a solution");
+    write("p/notes.txt", "precious");
+  }
+  Arguments partition(const std::string& folder) const {
+    return {"partition",  path("points.npy"), "--levels",  "2",          "-o",
+            path(folder), "--force",          "--picture", path("p.svg")};
+  }
+};
+
+TEST_F(PartitionFaultsTest, APartitionThatCannotBePlacedLeavesTheOldOne) {
+  // Region 3 is only in the new partition, and the picture comes last.
+  for (const char* folder : {"p", "new"}) {
+    for (const std::string& name : {folder + std::string("/region-00003.node"), std::string("p.svg")}) {
+      SCOPED_TRACE(folder + (" " + name));
+      expect_unchanged({name, "Input/output error"}, partition(folder), with("fail-renames-to=" + name, {}));
+    }
+  }
+}
+
+TEST_F(PartitionFaultsTest, SignalsLeaveTheOldPartition) {
+  const auto before = everything();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const char* folder : {"p", "new"}) {
+      SCOPED_TRACE(folder + std::to_string(signal));
+      EXPECT_EQ(run(partition(folder), with("end-at-sync=" + std::to_string(signal), {})).signal, signal);
+      EXPECT_EQ(everything(), before);
+    }
+  }
+}
+
+}  // namespace
