@@ -158,7 +158,9 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
                                   code, file, error_advice(code), log.c_str()),
                       code, "clBuildProgram");
   }
-  build_seconds_ += now() - begin;
+  const double seconds = now() - begin;
+  build_seconds_ += seconds;
+  all_build_seconds_ += seconds;
   return programs.emplace(file, std::move(program)).first->second;
 }
 
@@ -292,6 +294,8 @@ std::map<std::string, KernelTime> Runtime::kernel_times() {
   collect_times();
   return times_;
 }
+
+double Runtime::working_clock() const { return now() - all_build_seconds_; }
 
 void Runtime::reset_accounts() {
   collect_times();

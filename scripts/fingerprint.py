@@ -72,7 +72,7 @@ class Fingerprint:
         if self.device:
             text = text.replace(self.device, "DEVICE")
         text = re.sub(r"\b[\d.]+ s\b", "T s", text)
-        text = re.sub(r"(compiling kernels|solving) T s, ", "", text)  # only if they take long
+        text = re.sub(r"(preparing the device|compiling kernels|solving) T s, ", "", text)  # only if they take long
         text = re.sub(r"\b\d+ points per second", "S points per second", text)
         # Some devices report their free memory, which varies.
         text = re.sub(r"\d+ would fit on", "N would fit on", text)

@@ -724,6 +724,26 @@ TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   EXPECT_GT(stats["kernels"][0].value("launches", 0), 0);
 }
 
+TEST_F(CommandTriangulateTest, TimesAddUpAndCompilingIsNoneOfThem) {
+  // A new cache, so that everything is compiled.
+  const Environment environment = {{"POCL_CACHE_DIR", path("cache")}};
+  for (const char* mode : {"blocks", "flattened"}) {
+    SCOPED_TRACE(mode);
+    run_well({"generate", "uniform", "3000", "-o", path("points.npy")}, kNoPlatform);
+    const Outcome outcome = run_well(
+        {"triangulate", path("points.npy"), "--mode", mode, "--stats", path("stats.json")}, environment);
+    EXPECT_NE(outcome.out.find(", compiling kernels "), std::string::npos) << outcome.out;
+    const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
+    ASSERT_TRUE(stats.is_object());
+    const double triangulating = stats["seconds"].value("triangulating", 0.0);
+    double phases = 0;
+    for (const auto& phase : stats["phases"]) phases += phase.value("seconds", 0.0);
+    EXPECT_NEAR(phases, triangulating, 1e-6);
+    EXPECT_GT(stats["seconds"].value("building_programs", 0.0), triangulating) << outcome.out;
+    EXPECT_NEAR(stats.value("points_per_second", 0.0) * triangulating, 3000, 1e-3);
+  }
+}
+
 TEST_F(CommandTriangulateTest, BlocksIsTheDefault) {
   run_well({"triangulate", data("ukraine.xy"), "--stats", path("stats.json"), "--profile"});
   const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);

@@ -5,7 +5,6 @@
 #include "blocks/run.hpp"
 #include "call/handles.hpp"
 #include "call/implementation.hpp"
-#include "host/clock.hpp"
 
 namespace flaunay::call {
 
@@ -63,7 +62,7 @@ void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangu
   self.check_size(points.count);
   QueuedCall call(runtime, enqueue);
   self.reset_accounts();
-  const double begin = host::now();
+  const double begin = runtime.working_clock();
   const std::vector<std::size_t> offsets = checked_offsets(runtime, points);
   const std::size_t n = points.count;
   const std::size_t sets = offsets.size() - 1;
@@ -88,7 +87,7 @@ void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangu
     result.hull_offsets = std::move(outcome.sizes.hull_offsets);
   }
   call.end();
-  statistics.seconds = host::now() - begin;
+  statistics.seconds = runtime.working_clock() - begin;
   self.write_accounts(statistics);
   result.statistics = std::move(statistics);
 }

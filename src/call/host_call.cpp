@@ -115,7 +115,7 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
   const std::size_t sets = offsets.size() - 1;
   Triangulation result = empty_result(self, sets);
   if (n == 0) return result;
-  statistics::Phases phases(options);
+  statistics::Phases phases(options, [&self] { return self.runtime.working_clock(); });
   self.begin_call(options.profile);
   if (self.workspace != nullptr) self.provide_memory(n, sets);
   Arena::Scope scope(self.persistent), scratch_scope(self.runtime.arena());

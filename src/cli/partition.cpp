@@ -2,6 +2,7 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/compiling.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/partition_folder.hpp"
@@ -28,7 +29,8 @@ struct PartitionRequest {
   bool quiet = false;
 };
 
-research::Partition compute(const PartitionRequest& request, const io::Points& points, Progress& progress) {
+research::Partition compute(const PartitionRequest& request, const io::Points& points, RunFacts& facts,
+                            Progress& progress) {
   research::Options options;
   options.cut = request.cut;
   options.hull = request.dividing_paths;
@@ -36,7 +38,14 @@ research::Partition compute(const PartitionRequest& request, const io::Points& p
     progress.update(stage, level, done);
   };
   progress.update_slow("preparing the device", "compiling kernels, cached for next time");
+  const Stopwatch stopwatch;
   Triangulator triangulator(request.device);
+  facts.opening_seconds = stopwatch.seconds();
+  research::Options silent = options;
+  silent.progress = nullptr;
+  facts.compiling_seconds = compile_kernels(points.size(), Mode::flattened, [&](std::size_t n) {
+    research::partition(triangulator, points.coordinates.data(), n, request.levels, silent);
+  });
   return research::partition(triangulator, points.coordinates.data(), points.size(), request.levels, options);
 }
 
@@ -56,7 +65,7 @@ int partition(const PartitionRequest& request) {
   const io::Points points = io::read_points(request.input);
   facts.reading_seconds = stopwatch.seconds();
 
-  const research::Partition result = compute(request, points, progress);
+  const research::Partition result = compute(request, points, facts, progress);
 
   stopwatch.restart();
   progress.update("writing");

@@ -22,6 +22,10 @@ double points_per_second(const Statistics& statistics) {
   return statistics.seconds > 0 ? static_cast<double>(statistics.points) / statistics.seconds : 0;
 }
 
+double compiling_seconds(const Statistics& statistics, const RunFacts& facts) {
+  return facts.compiling_seconds + statistics.build_seconds;
+}
+
 std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -29,12 +33,12 @@ std::string counted(std::size_t count, const char* one, const char* many) {
 std::string phase_times(const Statistics& statistics, const RunFacts& facts) {
   std::string times = fmt::format("reading {:.3f} s", facts.reading_seconds);
   auto out = std::back_inserter(times);
-  if (statistics.build_seconds >= kNoticeableSeconds) {
-    fmt::format_to(out, ", compiling kernels {:.3f} s", statistics.build_seconds);
-  }
-  if (facts.solving_seconds >= kNoticeableSeconds) {
-    fmt::format_to(out, ", solving {:.3f} s", facts.solving_seconds);
-  }
+  const auto add_if_noticeable = [&](const char* what, double seconds) {
+    if (seconds >= kNoticeableSeconds) fmt::format_to(out, ", {} {:.3f} s", what, seconds);
+  };
+  add_if_noticeable("preparing the device", facts.opening_seconds);
+  add_if_noticeable("compiling kernels", compiling_seconds(statistics, facts));
+  add_if_noticeable("solving", facts.solving_seconds);
   for (const PhaseStatistics& phase : statistics.phases) {
     fmt::format_to(out, ", {} {:.3f} s", phase.name, phase.seconds);
   }
@@ -148,7 +152,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["hull_vertices"] = statistics.hull_vertices;
   json["seconds"] = {{"reading", facts.reading_seconds},
                      {"opening_device", facts.opening_seconds},
-                     {"building_programs", statistics.build_seconds},
+                     {"building_programs", compiling_seconds(statistics, facts)},
                      {"solving_regions", facts.solving_seconds},
                      {"triangulating", statistics.seconds},
                      {"writing", facts.writing_seconds}};

@@ -16,8 +16,9 @@ struct RunFacts {
   bool counted = false;        ///< Triangulation::work is filled
   std::string what_was_done = "triangulated";
   double reading_seconds = 0;
-  double opening_seconds = 0;  ///< choosing the device and preparing it; programs may be built then
-  double solving_seconds = 0;  ///< solving regions that no other program has solved
+  double opening_seconds = 0;    ///< choosing the device and testing it, which compiles a few kernels
+  double compiling_seconds = 0;  ///< the call of compile_kernels
+  double solving_seconds = 0;    ///< solving regions that no other program has solved
   double writing_seconds = 0;
 };
 

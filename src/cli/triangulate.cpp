@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/compiling.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
@@ -114,6 +115,11 @@ int triangulate(const TriangulateRequest& request) {
     progress.update_slow("preparing the device", "compiling kernels, cached for next time");
     Triangulator triangulator(request.device);
     facts.opening_seconds = stopwatch.restart();
+    research::Options silent = options;
+    silent.progress = nullptr;
+    facts.compiling_seconds = compile_kernels(points.size(), request.mode, [&](std::size_t n) {
+      research::triangulate(triangulator, points.coordinates.data(), n, silent);
+    });
     mesh = research::triangulate(triangulator, points.coordinates.data(), points.size(), options);
   }
 

@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/clock.hpp"
-
 namespace flaunay::flattened {
-
-using host::now;
 namespace {
 
 // Adds the statistics of a step to those of its level: one region, or all regions of the level at once.
@@ -42,7 +38,7 @@ Borders Recursion::begin() {
 }
 
 Level Recursion::step(const Level& level, int depth) {
-  const double begin = now();
+  const double begin = work_.runtime.working_clock();
   Arena::Scope scope(work_.scratch());
   LevelStatistics statistics;
   statistics.regions = level.regions;
@@ -58,7 +54,7 @@ Level Recursion::step(const Level& level, int depth) {
   merge(work_, table_, cut_level, paths, children, retired);
   done_ += endgame(work_, table_, retired, triangles_, done_);
   if (work_.counting != nullptr) work_.counting->end_step(depth);
-  statistics.seconds = now() - begin;
+  statistics.seconds = work_.runtime.working_clock() - begin;
   auto& levels = work_.levels;
   if (levels.size() <= static_cast<std::size_t>(depth)) levels.resize(depth + 1);
   accumulate(levels[depth], statistics);

@@ -49,7 +49,7 @@ class Call {
 Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinates,
            const std::vector<std::size_t>& offsets, const research::Options& wanted, Statistics& noted,
            std::vector<LevelStatistics>& levels, Work& work_done, std::vector<std::int32_t>& representatives)
-    : phases(wanted),
+    : phases(wanted, [&runtime] { return runtime.working_clock(); }),
       options(wanted),
       statistics(noted),
       scope_(memory.persistent),

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -14,26 +16,34 @@ constexpr double kTriangulated = 0.8;
 
 class Phases {
  public:
-  explicit Phases(const Options& options) : options_(options) {}
+  /// Seconds on a clock that may stand still meanwhile, for what belongs to no phase.
+  using Clock = std::function<double()>;
+
+  explicit Phases(const Options& options, Clock clock = wall_clock)
+      : options_(options), clock_(std::move(clock)) {}
 
   void progress(const char* stage, double done) const {
     if (options_.progress) options_.progress(stage, -1, done);
   }
   void end(const char* name) {
-    const Clock::time_point now = Clock::now();
-    phases_.push_back({name, std::chrono::duration<double>(now - last_).count()});
+    const double now = clock_();
+    phases_.push_back({name, now - last_});
     last_ = now;
   }
   void write(Statistics& statistics) const {
-    statistics.seconds = std::chrono::duration<double>(last_ - begin_).count();
+    statistics.seconds = last_ - begin_;
     statistics.phases = phases_;
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  static double wall_clock() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
   const Options& options_;
-  const Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
+  const Clock clock_;
+  const double begin_ = clock_();
+  double last_ = begin_;
   std::vector<PhaseStatistics> phases_;
 };
 

@@ -16,6 +16,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
+#include "host/clock.hpp"
 #include "io/generate.hpp"
 #include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
@@ -1081,6 +1082,25 @@ TEST(Statistics, CountsAreConsistent) {
     EXPECT_LE(phase_seconds, statistics.seconds + 1e-9) << "but for rounding";
   }
   EXPECT_TRUE(triangulate({0, 0, 1, 0, 0, 1}).statistics.kernels.empty()) << "profile was not asked for";
+}
+
+TEST(Statistics, CompilingIsPartOfNoOtherTime) {
+  const Coordinates points = make_fixture("uniform", 3000, 2);
+  // Each compiles its own kernels.
+  Triangulator fresh("");
+  const double begin = host::now();
+  const research::Triangulation result =
+      research::triangulate(fresh, points.data(), points.size() / 2, defaults());
+  const double passed = host::now() - begin;
+  const Statistics& statistics = result.statistics;
+  EXPECT_GT(statistics.build_seconds, 0);
+  EXPECT_LE(statistics.seconds + statistics.build_seconds, passed);
+  double phases = 0;
+  for (const PhaseStatistics& phase : statistics.phases) phases += phase.seconds;
+  EXPECT_NEAR(phases, statistics.seconds, 1e-6);
+  double levels = 0;
+  for (const research::LevelStatistics& level : result.levels) levels += level.seconds;
+  EXPECT_LE(levels, statistics.seconds);
 }
 
 TEST(Statistics, UndecidedPredicatesAreCounted) {

@@ -1,0 +1,24 @@
+// Compiling the kernels before the time is measured.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "cli/progress.hpp"
+#include "flaunay/research.hpp"
+
+namespace flaunay::cli {
+
+/// Calls `call` with a number of points, and returns how many seconds that took. Drivers may compile a kernel
+/// when it runs for the first time, so only a call that has run all kernels makes the next one free of
+/// compiling.
+template <typename Call>
+double compile_kernels(std::size_t points, research::Mode mode, const Call& call) {
+  // More than one block; but a mode that launches kernels for each region needs a thousand times longer.
+  const std::size_t enough = mode == research::Mode::recursive_device ? 64 : 2500;
+  const Stopwatch stopwatch;
+  call(std::min(points, enough));
+  return stopwatch.seconds();
+}
+
+}  // namespace flaunay::cli
