@@ -56,12 +56,21 @@ class Runtime {
   void wait_for(const std::vector<cl_event>& events);
   /// Returns an event that completes when everything enqueued so far is complete. The caller releases it.
   cl_event mark();
+  /// Waits for an event that mark() returned.
+  void await(cl_event event);
 
   /// Launches a kernel with one work-item per element. The kernel must ignore the surplus work-items of the
   /// last group.
   template <typename Kernel>
   void map(std::size_t n, const Kernel& kernel) {
     launch(n, sizes_->map_group, n, kernel);
+  }
+
+  /// map for a kernel with large private arrays. PoCL keeps those of a whole group on the stack of a thread,
+  /// which may be small.
+  template <typename Kernel>
+  void map_in_small_groups(std::size_t n, const Kernel& kernel) {
+    launch(n, sizes_->private_group, n, kernel);
   }
 
   /// Launches a kernel with one work-item per chunk of elements.
@@ -296,6 +305,7 @@ class Runtime {
   void collect_times();
 
   boost::compute::device device_;
+  bool on_pocl_;
   std::shared_ptr<const Sizes> sizes_;
   boost::compute::context context_;
   boost::compute::command_queue own_queues_[2];  // the second one times kernels, and is made on first use

@@ -36,7 +36,7 @@ DeviceLimits limits_of(const boost::compute::device& device) {
 
 void fit(Sizes& sizes, const DeviceLimits& limits) {
   const std::size_t most = std::max<std::size_t>(1, limits.work_group);
-  for (std::size_t* group : {&sizes.map_group, &sizes.chunk_group, &sizes.sort_group}) {
+  for (std::size_t* group : {&sizes.map_group, &sizes.private_group, &sizes.chunk_group, &sizes.sort_group}) {
     *group = std::min(*group, most);
   }
   while (sort_table_bytes(sizes) > limits.local_memory && sizes.sort_group > 1) sizes.sort_group /= 2;

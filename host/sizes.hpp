@@ -13,6 +13,8 @@ namespace flaunay::host {
 struct Sizes {
   /// Work-group size of kernels with one work-item per element.
   std::size_t map_group = 1;
+  /// Work-group size of kernels with one work-item per element that have large private arrays.
+  std::size_t private_group = 1;
   /// Work-group size of kernels where each work-item walks a contiguous chunk.
   std::size_t chunk_group = 1;
   /// A chunk has at least this many elements; at least 2.

@@ -13,13 +13,13 @@ std::size_t endgame(Workspace& work, const PointTable& table, const RetiredRegio
   Arena::Scope scope(scratch);
   const auto counts = scratch.allocate<cl_uint>(retired.regions + 1);
   const auto status = scratch.allocate<cl_uchar>(retired.regions);
-  runtime.map(retired.regions, kernels::small_regions{.bounds = work.bounds,
-                                                      .offsets = retired.offsets,
-                                                      .points = table.points,
-                                                      .corners = retired.corner_ids,
-                                                      .counts = counts,
-                                                      .status = status,
-                                                      .broken = work.broken});
+  runtime.map_in_small_groups(retired.regions, kernels::small_regions{.bounds = work.bounds,
+                                                                      .offsets = retired.offsets,
+                                                                      .points = table.points,
+                                                                      .corners = retired.corner_ids,
+                                                                      .counts = counts,
+                                                                      .status = status,
+                                                                      .broken = work.broken});
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, status, retired.regions);

@@ -324,16 +324,16 @@ void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, queries, m, found);
-  runtime.map(m, kernels::interpolate_queries{.order = pass.order,
-                                              .placed = pass.placed,
-                                              .bound = pass.scaling.orient_bound,
-                                              .unit = pass.scaling.unit,
-                                              .points = locator.points,
-                                              .source = locator.source,
-                                              .faces = locator.faces,
-                                              .found = found,
-                                              .values = values,
-                                              .results = results});
+  runtime.map_in_small_groups(m, kernels::interpolate_queries{.order = pass.order,
+                                                              .placed = pass.placed,
+                                                              .bound = pass.scaling.orient_bound,
+                                                              .unit = pass.scaling.unit,
+                                                              .points = locator.points,
+                                                              .source = locator.source,
+                                                              .faces = locator.faces,
+                                                              .found = found,
+                                                              .values = values,
+                                                              .results = results});
 }
 
 }  // namespace flaunay::locate

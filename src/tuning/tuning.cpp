@@ -41,6 +41,13 @@ constexpr Row kTable[] = {
      {256},
      {3},
      "A CPU runs a group in one loop, which it enters once; 8 warps hide a GPU's latency."},
+    {"private_group",
+     &Tuning::private_group,
+     {16},
+     {256},
+     {3},
+     "PoCL keeps the private arrays of a group, up to 2.2 KB per work-item, on a thread's stack; a GPU as "
+     "map_group."},
     {"chunk_group",
      &Tuning::chunk_group,
      {1},
@@ -211,7 +218,8 @@ std::optional<Tuning> kind_named(const std::string& name, const boost::compute::
   const auto group = number_of(name.substr(prefix.size()), kLargestGroup);
   if (!group || *group == 0) return {};
   Tuning tuning = column(&Row::gpu, device);
-  tuning.map_group = tuning.chunk_group = tuning.sort_group = tuning.block_group = *group;
+  tuning.map_group = tuning.private_group = tuning.chunk_group = tuning.sort_group = tuning.block_group =
+      *group;
   return tuning;
 }
 

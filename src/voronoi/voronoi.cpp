@@ -13,11 +13,11 @@ void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
                          const Buffer<cl_double>& circumcentres) {
   const std::size_t n = mesh.points();
   const auto accounts = inspect_later(runtime, mesh.coordinates, n);
-  runtime.map(mesh.triangle_count(), kernels::circumcentres{.points = n,
-                                                            .input = mesh.coordinates,
-                                                            .accounts = accounts,
-                                                            .triangles = mesh.triangles,
-                                                            .centres = circumcentres});
+  runtime.map_in_small_groups(mesh.triangle_count(), kernels::circumcentres{.points = n,
+                                                                            .input = mesh.coordinates,
+                                                                            .accounts = accounts,
+                                                                            .triangles = mesh.triangles,
+                                                                            .centres = circumcentres});
 }
 
 void write_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result) {

@@ -48,6 +48,7 @@ TEST(SmallTuning, GroupsOfAGivenSize) {
     if (group > most) continue;
     const Tuning tuning = tuning_named("gpu:" + std::to_string(group));
     EXPECT_EQ(tuning.map_group, group);
+    EXPECT_EQ(tuning.private_group, group);
     EXPECT_EQ(tuning.chunk_group, group);
     EXPECT_EQ(tuning.sort_group, group);
     EXPECT_EQ(tuning.sort_bits, tuning_named("gpu").sort_bits);
@@ -63,6 +64,7 @@ TEST(SmallTuning, FitsTheDevice) {
   const Tuning gpu = fitted(tuning_named("gpu"), {1024, 64 * kilobyte});
   Tuning small = fitted(gpu, {64, 64 * kilobyte});
   EXPECT_EQ(small.map_group, 64u);
+  EXPECT_EQ(small.private_group, 64u);
   EXPECT_EQ(small.chunk_group, 64u);
   EXPECT_EQ(small.sort_group, 64u);
   small = fitted(gpu, {1, 64 * kilobyte});
