@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/error.hpp"
+#include "host/system_memory.hpp"
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -58,8 +59,9 @@ std::size_t Arena::held_bytes() const {
   return sum;
 }
 
-std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, [[maybe_unused]] bool in_host_memory,
-                                                std::size_t bytes) {
+std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host_memory, std::size_t bytes) {
+  // Where memory lacks, the implementation may end the process.
+  if (in_host_memory) require_memory(bytes, "a buffer");
 #ifdef __linux__
   // Kernels access these blocks irregularly: with pages of 4 KiB, address translation would take longer than
   // the loads.

@@ -110,7 +110,8 @@ class Arena {
   std::size_t block_allocations_ = 0;
 };
 
-/// Makes a buffer that kernels read and write. On a CPU it uses huge pages if the system provides them.
+/// Makes a buffer that kernels read and write. On a CPU it uses huge pages if the system provides them, and
+/// throws DeviceError if the system has not enough memory.
 std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host_memory, std::size_t bytes);
 
 /// Asks the system to use huge pages for [begin, begin + bytes), memory that was not accessed before.

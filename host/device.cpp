@@ -8,6 +8,8 @@
 #include <cstdlib>
 
 #include "host/error.hpp"
+#include "host/pocl.hpp"
+#include "host/system_memory.hpp"
 
 namespace flaunay::host {
 namespace {
@@ -25,6 +27,15 @@ std::string listing(const std::vector<boost::compute::device>& devices) {
   return text;
 }
 
+// The loader skips a driver that does not fit into the address space, without a word.
+std::string hint_of_address_space() {
+  constexpr std::size_t kSpaceForDriver = 1024 * kMebibyte;
+  const MemoryLeft left = address_space_left();
+  if (left.bytes >= kSpaceForDriver) return "";
+  return fmt::format(". A driver may not have been loaded because {} leaves only {}: raise it", left.limit,
+                     mebibytes(left.bytes));
+}
+
 }  // namespace
 
 std::vector<boost::compute::device> all_devices() {
@@ -32,18 +43,26 @@ std::vector<boost::compute::device> all_devices() {
   const cl_int code = clGetPlatformIDs(0, nullptr, &platform_count);
   if (code != CL_SUCCESS || platform_count == 0) {
     throw DeviceError(
-        "no OpenCL platform found: install a driver. On Debian, for the CPU: apt-get install "
-        "pocl-opencl-icd; "
-        "for a GPU: its vendor's OpenCL driver (nvidia-opencl-icd, rocm-opencl-icd, intel-opencl-icd). "
-        "If one is installed, see that /etc/OpenCL/vendors (or OCL_ICD_VENDORS) names it",
+        std::string(
+            "no OpenCL platform found: install a driver. On Debian, for the CPU: apt-get install "
+            "pocl-opencl-icd; "
+            "for a GPU: its vendor's OpenCL driver (nvidia-opencl-icd, rocm-opencl-icd, intel-opencl-icd). "
+            "If one is installed, see that /etc/OpenCL/vendors (or OCL_ICD_VENDORS) names it") +
+            hint_of_address_space(),
         code == CL_SUCCESS ? -1001 : code, "clGetPlatformIDs");
   }
   std::vector<cl_platform_id> platforms(platform_count);
   FLAUNAY_CL(clGetPlatformIDs(platform_count, platforms.data(), nullptr));
   std::vector<boost::compute::device> devices;
   for (const cl_platform_id platform : platforms) {
+    const bool needs_folder = is_pocl(platform);
+    if (needs_folder) require_space_for_pocl();
     cl_uint device_count = 0;
-    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &device_count) != CL_SUCCESS) continue;
+    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &device_count) != CL_SUCCESS) {
+      // PoCL has no device if it cannot make its folder, and does not say why.
+      if (needs_folder) require_cache_folder(pocl_cache_folder());
+      continue;
+    }
     std::vector<cl_device_id> ids(device_count);
     FLAUNAY_CL(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, device_count, ids.data(), nullptr));
     for (const cl_device_id id : ids) devices.emplace_back(id);
@@ -57,6 +76,11 @@ bool has_fp64(const boost::compute::device& device) {
   return clGetDeviceInfo(device.id(), CL_DEVICE_DOUBLE_FP_CONFIG, sizeof config, &config, nullptr) ==
              CL_SUCCESS &&
          config != 0;
+}
+
+bool shares_host_memory(const boost::compute::device& device) {
+  return (device.type() & CL_DEVICE_TYPE_CPU) != 0 ||
+         device.get_info<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY) != CL_FALSE;
 }
 
 boost::compute::device find_device(const std::string& requested) {

@@ -18,4 +18,7 @@ boost::compute::device find_device(const std::string& wanted);
 
 bool has_fp64(const boost::compute::device& device);
 
+/// Whether the memory of the device is that of the host: a CPU, or a GPU without memory of its own.
+bool shares_host_memory(const boost::compute::device& device);
+
 }  // namespace flaunay::host

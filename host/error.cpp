@@ -78,7 +78,8 @@ std::string error_advice(cl_int code) {
       return "the host is out of memory: use fewer points";
     case CL_BUILD_PROGRAM_FAILURE:
     case CL_COMPILER_NOT_AVAILABLE:
-      return "the driver could not compile the kernels: update it, or use another device (FLAUNAY_DEVICE)";
+      return "the driver could not compile the kernels, perhaps because memory or disk space lacks; if its "
+             "words below do not tell, update it, or use another device (FLAUNAY_DEVICE)";
     case CL_INVALID_WORK_GROUP_SIZE:
       return "the device takes no work-group of this kernel: update its driver, or use another device "
              "(FLAUNAY_DEVICE)";

@@ -11,6 +11,7 @@
 
 #include "host/clock.hpp"
 #include "host/device.hpp"
+#include "host/pocl.hpp"
 #include "kernels/embedded.hpp"
 
 namespace flaunay::host {
@@ -65,6 +66,7 @@ Runtime::Runtime(const boost::compute::device& device, std::shared_ptr<const Siz
 Runtime::Runtime(const boost::compute::context& context, const boost::compute::device& device,
                  std::shared_ptr<const Sizes> sizes)
     : device_(device),
+      on_pocl_(is_pocl(device.platform().id())),
       sizes_(std::move(sizes)),
       context_(context),
       own_queues_{make_queue(false), {}},
@@ -75,6 +77,7 @@ Runtime::Runtime(const boost::compute::context& context, const boost::compute::d
 
 Runtime::~Runtime() {
   clFinish(queue_.get());
+  if (on_pocl_ && !programs_[0].empty()) note_pocl_ended_well();
   for (const auto& [event, name] : events_) clReleaseEvent(event);
 }
 
@@ -122,6 +125,11 @@ cl_event Runtime::mark() {
   return event;
 }
 
+void Runtime::await(cl_event event) {
+  ++waits_;
+  FLAUNAY_CL(clWaitForEvents(1, &event));
+}
+
 void Runtime::keep_order() {
   if (is_unordered_) FLAUNAY_CL(clEnqueueBarrierWithWaitList(queue_.get(), 0, nullptr, nullptr));
 }
@@ -144,6 +152,7 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   const auto found = programs.find(file);
   if (found != programs.end()) return found->second;
   const double begin = now();
+  if (on_pocl_) require_pocl_compiler();
   auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
   const std::string options =
       fmt::format("-cl-std=CL1.2 {}{}", sizes_->build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");

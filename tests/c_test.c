@@ -281,6 +281,35 @@ static void test_progress_and_profile(void) {
   flaunay_triangulation_destroy(mesh);
 }
 
+static int triangulate_once(void* unused) {
+  (void)unused;
+  flaunay_triangulation* mesh = NULL;
+  const int refused = fails(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, NULL, &mesh),
+                            FLAUNAY_ERROR_USAGE, "in use") &&
+                      mesh == NULL;
+  flaunay_triangulation_destroy(mesh);
+  return refused;
+}
+
+static void use_from_another_thread(const char* stage, int level, double done, void* refused) {
+  (void)stage, (void)level, (void)done;
+  thrd_t thread;
+  int result = 0;
+  REQUIRE(thrd_create(&thread, triangulate_once, NULL) == thrd_success);
+  REQUIRE(thrd_join(thread, &result) == thrd_success);
+  *(int*)refused += result;
+}
+
+static void test_a_triangulator_in_use(void) {
+  int refused = 0;
+  flaunay_options options = {.progress = use_from_another_thread, .progress_data = &refused};
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, points, kPoints, NULL, 0, &options, &mesh) == FLAUNAY_SUCCESS);
+  CHECK(refused >= 4);
+  flaunay_triangulation_destroy(mesh);
+  CHECK(!triangulate_once(NULL));
+}
+
 static void check_is_empty(flaunay_triangulation* mesh, size_t sets) {
   CHECK(flaunay_triangulation_point_count(mesh) == 0);
   CHECK(flaunay_triangulation_set_count(mesh) == sets);
@@ -961,6 +990,7 @@ static void test_all(void) {
   test_modes();
   test_on_host();
   test_progress_and_profile();
+  test_a_triangulator_in_use();
   test_no_points();
   test_device_to_device();
   test_own_buffers();

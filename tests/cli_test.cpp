@@ -559,7 +559,7 @@ TEST_F(CommandDeviceTest, TheOptionGoesBeforeTheEnvironment) {
 TEST_F(CommandDeviceTest, DevicesListsWhatMatters) {
   const std::string out = run_well({"devices"}).out;
   for (const char* part :
-       {"#0", "platform", "driver", "fp64", "memory", "largest buffer", "units", "self-test"}) {
+       {"#0", "platform", "driver", "fp64", "memory", "available", "largest buffer", "units", "self-test"}) {
     EXPECT_NE(out.find(part), std::string::npos) << out;
   }
   EXPECT_NE(out.find("passed"), std::string::npos) << out;

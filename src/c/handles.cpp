@@ -134,6 +134,7 @@ flaunay_device_info view_of(const DeviceInfo& info) {
   view.compute_units = info.compute_units;
   view.clock_mhz = info.clock_mhz;
   view.memory_bytes = info.memory_bytes;
+  view.available_bytes = info.available_bytes;
   view.largest_buffer_bytes = info.largest_buffer_bytes;
   view.local_memory_bytes = info.local_memory_bytes;
   view.work_group_size = info.work_group_size;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/compute/platform.hpp>
 
 #include "call/device_info.hpp"
@@ -41,6 +42,16 @@ std::string self_test_failure(host::Runtime& runtime) {
   return failure;
 }
 
+host::MemoryLeft usable_memory(const boost::compute::device& device, std::size_t held) {
+  const host::MemoryLeft whole{device.global_memory_size(),
+                               "the driver's account (CL_DEVICE_GLOBAL_MEM_SIZE)"};
+  if (!host::shares_host_memory(device)) return whole;
+  const host::MemoryLeft left = host::memory_left();
+  return left.bytes < whole.bytes - std::min(whole.bytes, held)
+             ? host::MemoryLeft{left.bytes + held, left.limit}
+             : whole;
+}
+
 DeviceInfo describe(const boost::compute::device& device) {
   DeviceInfo info;
   info.name = device.name();
@@ -53,6 +64,7 @@ DeviceInfo describe(const boost::compute::device& device) {
   info.compute_units = device.compute_units();
   info.clock_mhz = device.clock_frequency();
   info.memory_bytes = device.global_memory_size();
+  info.available_bytes = usable_memory(device).bytes;
   info.largest_buffer_bytes = device.max_memory_alloc_size();
   info.local_memory_bytes = device.local_memory_size();
   info.work_group_size = device.max_work_group_size();

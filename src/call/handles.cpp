@@ -124,7 +124,6 @@ void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Acce
 }
 
 void check_enqueue(host::Runtime& runtime, const Enqueue& enqueue) {
-  if (enqueue.event != nullptr) *enqueue.event = nullptr;
   check_queue(runtime, enqueue);
   for (const cl_event event : enqueue.wait_for) check_event(runtime, event);
 }

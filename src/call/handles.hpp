@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "call/implementation.hpp"
 #include "flaunay/device_memory.hpp"
 #include "host/runtime.hpp"
 
@@ -38,7 +39,14 @@ std::shared_ptr<_cl_mem> retained(cl_mem memory);
 void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Access access,
                   const std::string& what);
 
-/// Sets the caller's event to null. Throws Error(usage) unless the queue is null or belongs to the runtime's
+/// Runs a public call on device memory; see take_turn. The caller's event is null if it fails.
+template <typename Work>
+void take_turn(Implementation& self, const Enqueue& enqueue, const Work& work) {
+  if (enqueue.event != nullptr) *enqueue.event = nullptr;
+  take_turn(self, work);
+}
+
+/// Throws Error(usage) unless the queue is null or belongs to the runtime's
 /// context and device and supports profiling if that is asked for, and all events belong to the context.
 /// Released handles are dangling pointers and cannot be detected.
 void check_enqueue(host::Runtime& runtime, const Enqueue& enqueue);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "blocks/memory.hpp"
+#include "call/device_info.hpp"
 #include "call/self_test.hpp"
 #include "host/device.hpp"
 #include "shared/limits.h"
@@ -18,6 +19,18 @@ namespace {
 constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
 // The most device memory per point that any measured input has needed, including adversarial inputs.
 constexpr std::size_t kBytesPerPoint = 320;
+// Calls that need no more memory than this are not checked, because asking the system would take a part of
+// their time that can be measured.
+constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
+
+// The largest number of points that arrays and indices allow, whatever memory is free.
+std::size_t largest_call(const boost::compute::device& device) {
+  // An arena may have several blocks, but each array is in one buffer. The largest array has the rings'
+  // edges.
+  const std::size_t by_buffer =
+      device.max_memory_alloc_size() / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge));
+  return std::min(kMostPoints, by_buffer);
+}
 
 boost::compute::device checked_device(const boost::compute::device& device) {
   if (host::has_fp64(device)) return device;
@@ -54,23 +67,38 @@ Triangulator::Implementation::Implementation(const boost::compute::context& cont
   }
 }
 
+call::Turn::Turn(Implementation& self) : self_(self) {
+  if (self.is_busy.exchange(true, std::memory_order_acquire)) {
+    throw Error(ErrorKind::usage,
+                "the triangulator is in use by another call, on another thread or around this one (from a "
+                "progress callback): it and its locators do one call at a time; make a triangulator for each "
+                "thread");
+  }
+}
+
+call::Turn::~Turn() {
+  self_.held_at_rest.store(self_.held_bytes(), std::memory_order_relaxed);
+  self_.is_busy.store(false, std::memory_order_release);
+}
+
 std::size_t Triangulator::Implementation::capacity() const {
-  const std::size_t by_memory = runtime.device().global_memory_size() / kBytesPerPoint;
-  // An arena may have several blocks, but each array is in one buffer. The largest array has the rings'
-  // edges.
-  const std::size_t by_buffer =
-      runtime.device().max_memory_alloc_size() / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge));
-  return std::min({kMostPoints, by_memory, by_buffer});
+  return std::min(largest_call(runtime.device()),
+                  call::usable_memory(runtime.device(), held_at_rest).bytes / kBytesPerPoint);
 }
 
 void Triangulator::Implementation::check_size(std::size_t n) const {
-  if (n <= capacity()) return;
+  const boost::compute::device& device = runtime.device();
+  const std::size_t most = largest_call(device);
+  if (n <= most && n <= std::max<std::size_t>(kNeverLacking, held_at_rest) / kBytesPerPoint) return;
+  const host::MemoryLeft memory = call::usable_memory(device, held_at_rest);
+  const std::size_t fitting = std::min(most, memory.bytes / kBytesPerPoint);
+  if (n <= fitting) return;
   throw Error(
       n > kMostPoints ? ErrorKind::input : ErrorKind::device,
-      fmt::format("{} points are too many: {} would fit on {} ({} bytes of memory, {} in one piece, {} "
+      fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}, {} in one piece, {} "
                   "bytes a point)",
-                  n, capacity(), runtime.device().name(), runtime.device().global_memory_size(),
-                  runtime.device().max_memory_alloc_size(), kBytesPerPoint));
+                  n, fitting, device.name(), host::mebibytes(memory.bytes), memory.limit,
+                  host::mebibytes(device.max_memory_alloc_size()), kBytesPerPoint));
 }
 
 void Triangulator::Implementation::use_own_memory() {

@@ -3,10 +3,12 @@
 
 #include <CL/cl.h>
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <string>
 
+#include "call/errors.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 
@@ -17,7 +19,7 @@ struct Triangulator::Implementation {
   explicit Implementation(const std::string& wanted);
   Implementation(const boost::compute::context& context, const boost::compute::device& device);
 
-  /// The largest number of points of one call.
+  /// The largest number of points of one call, with the memory that is free now.
   std::size_t capacity() const;
   /// Throws Error if n is larger than the capacity.
   void check_size(std::size_t n) const;
@@ -39,9 +41,12 @@ struct Triangulator::Implementation {
   host::Arena even, odd;   ///< the regions of even and of odd levels, in the modes that go level by level
   std::shared_ptr<_cl_mem> workspace;  ///< the caller's workspace, or null
   std::size_t buffer_allocations = 0;  ///< number of buffers made for DeviceBuffers
+  std::atomic<bool> is_busy{false};    ///< whether a call is running; see Turn
+  /// The device memory that was held when no call was running. Any thread may read it.
+  std::atomic<std::size_t> held_at_rest{0};
+  std::size_t held_bytes() const;
 
  private:
-  std::size_t held_bytes() const;
   std::size_t allocations() const;
 
   std::size_t allocations_before_ = 0;
@@ -54,7 +59,31 @@ struct TriangulatorAccess {
 };
 
 namespace call {
+
 using Implementation = TriangulatorAccess::Implementation;
+
+/// Marks a triangulator as busy for the length of a call. Throws Error(usage) if it is busy already, since
+/// two calls at once would overwrite each other's memory and kernel arguments.
+class Turn {
+ public:
+  explicit Turn(Implementation& self);
+  ~Turn();
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  Implementation& self_;
+};
+
+/// Runs a public call that uses the triangulator's memory or queue; see Turn and with_errors.
+template <typename Work>
+auto take_turn(Implementation& self, const Work& work) {
+  return with_errors([&] {
+    const Turn turn(self);
+    return work();
+  });
 }
+
+}  // namespace call
 
 }  // namespace flaunay

@@ -31,7 +31,7 @@ struct Locator::Implementation {
   template <typename Result, typename Work>
   std::vector<Result> answer(const double* queries, const std::vector<std::size_t>& offsets,
                              const Work& work) {
-    return with_errors([&] {
+    return call::take_turn(*owner, [&] {
       geometry::check_offsets(offsets);
       const std::size_t m = offsets.back();
       check_queries(m);
@@ -52,7 +52,7 @@ struct Locator::Implementation {
   template <typename Result, typename Work>
   void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
               const Enqueue& enqueue, const Work& work) {
-    with_errors([&] {
+    call::take_turn(*owner, enqueue, [&] {
       owner->use_own_memory();
       host::Runtime& runtime = owner->runtime;
       call::check_enqueue(runtime, enqueue);
@@ -86,7 +86,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates, std::siz
 Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
     : implementation_(make(triangulator)) {
-  with_errors([&] {
+  call::take_turn(*implementation_->owner, [&] {
     implementation_->owner->check_size(offsets.empty() ? 0 : offsets.back());
     const call::OwnCall own_call(*implementation_->owner);
     const host::Runtime::Settled settled(own_call.runtime);
@@ -100,8 +100,8 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
 Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
                  const DeviceTriangulation& triangulation, const Enqueue& enqueue)
     : implementation_(make(triangulator)) {
-  with_errors([&] {
-    Triangulator::Implementation& owner = *implementation_->owner;
+  Triangulator::Implementation& owner = *implementation_->owner;
+  call::take_turn(owner, enqueue, [&] {
     owner.use_own_memory();
     host::Runtime& runtime = owner.runtime;
     call::check_enqueue(runtime, enqueue);

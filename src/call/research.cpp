@@ -36,6 +36,7 @@ Triangulation checked_call(Triangulator& triangulator, const call::HostPoints& p
     }
     check_options(options);
     call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+    const call::Turn turn(self);
     self.check_size(n);
     return row.on_device(self, request);
   });
@@ -85,6 +86,7 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     uncounted.count = false;
     check_options(uncounted);
     call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+    const call::Turn turn(self);
     self.check_size(n);
     geometry::check_coordinates(coordinates, n);
     Partition result;

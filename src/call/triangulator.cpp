@@ -86,21 +86,22 @@ Triangulation Triangulator::triangulate(const float* coordinates, std::size_t n,
 
 Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return with_errors([&] {
+  return call::take_turn(*implementation_, [&] {
     return checked_call(*implementation_, {coordinates, nullptr}, offsets, options);
   });
 }
 
 Triangulation Triangulator::triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return with_errors([&] {
+  return call::take_turn(*implementation_, [&] {
     return checked_call(*implementation_, {nullptr, coordinates}, offsets, options);
   });
 }
 
 void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
                                const Enqueue& enqueue) {
-  with_errors([&] { call::triangulate(*implementation_, points, result, parts, enqueue); });
+  call::take_turn(*implementation_, enqueue,
+                  [&] { call::triangulate(*implementation_, points, result, parts, enqueue); });
 }
 
 std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {
@@ -114,8 +115,8 @@ std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const
 }
 
 void Triangulator::use_workspace(cl_mem workspace) {
-  with_errors([&] {
-    Implementation& self = *implementation_;
+  Implementation& self = *implementation_;
+  call::take_turn(self, [&] {
     std::shared_ptr<_cl_mem> lent;
     if (workspace != nullptr) {
       call::check_buffer(self.runtime, workspace, 1, call::Access::workspace, "the workspace");

@@ -10,7 +10,7 @@ namespace flaunay {
 using host::Arena;
 
 Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation) {
-  return with_errors([&] {
+  return call::take_turn(*implementation_, [&] {
     implementation_->check_size(n);
     const call::OwnCall own(*implementation_);
     host::Runtime& runtime = own.runtime;
@@ -35,7 +35,7 @@ Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Tr
 
 void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
                            DeviceVoronoi& result, const Enqueue& enqueue) {
-  with_errors([&] {
+  call::take_turn(*implementation_, enqueue, [&] {
     implementation_->use_own_memory();
     host::Runtime& runtime = implementation_->runtime;
     std::size_t& made = implementation_->buffer_allocations;

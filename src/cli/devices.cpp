@@ -38,16 +38,16 @@ int devices() {
                 "compute on the CPU");
   }
 
-  constexpr std::size_t kColumns = 10;
+  constexpr std::size_t kColumns = 11;
   using Row = std::array<std::string, kColumns>;
-  std::vector<Row> rows = {
-      {"#", "name", "type", "platform", "driver", "fp64", "memory", "largest buffer", "units", "self-test"}};
+  std::vector<Row> rows = {{"#", "name", "type", "platform", "driver", "fp64", "memory", "available",
+                            "largest buffer", "units", "self-test"}};
   for (std::size_t k = 0; k < found.size(); ++k) {
     const DeviceInfo& device = found[k];
     rows.push_back({fmt::format("#{}", k), device.name, device.type, device.platform, device.driver,
                     device.fp64 ? "yes" : "no", gibibytes(device.memory_bytes),
-                    gibibytes(device.largest_buffer_bytes), std::to_string(device.compute_units),
-                    self_test(device)});
+                    gibibytes(device.available_bytes), gibibytes(device.largest_buffer_bytes),
+                    std::to_string(device.compute_units), self_test(device)});
   }
   std::array<std::size_t, kColumns> widths{};
   for (const Row& row : rows) {

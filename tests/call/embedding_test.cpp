@@ -580,6 +580,105 @@ TEST(Embedding, TwoThreadsInOneContext) {
   }
 }
 
+/// Every call that uses a triangulator's memory or queue, by name.
+std::vector<std::pair<std::string, std::function<void()>>> calls_on(
+    Triangulator& t, Locator& locator, const Coordinates& xy, const Triangulation& mesh, const Memory& memory,
+    DeviceTriangulation& on_device, const Enqueue& enqueue) {
+  const std::size_t n = xy.size() / 2;
+  const auto buffer = std::make_shared<DeviceBuffer>();
+  const auto dual = std::make_shared<DeviceVoronoi>();
+  const auto narrow = std::make_shared<std::vector<float>>(xy.begin(), xy.end());
+  const DevicePoints points = points_in(memory, n);
+  return {
+      {"triangulate", [=, &t, &xy] { t.triangulate(xy.data(), n); }},
+      {"triangulate float", [=, &t] { t.triangulate(narrow->data(), n); }},
+      {"triangulate on device",
+       [=, &t, &on_device, &enqueue] { t.triangulate(points, on_device, kAll, enqueue); }},
+      {"use_workspace", [&t] { t.use_workspace(nullptr); }},
+      {"voronoi", [=, &t, &xy, &mesh] { t.voronoi(xy.data(), n, mesh); }},
+      {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
+      {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
+      {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
+      {"locate", [=, &locator, &xy] { locator.locate(xy.data(), n); }},
+      {"nearest", [=, &locator, &xy] { locator.nearest(xy.data(), n); }},
+      {"interpolate", [=, &locator, &xy] { locator.interpolate(xy.data(), xy.data(), n); }},
+      {"locate on device", [=, &locator, &enqueue] { locator.locate(points, *buffer, enqueue); }},
+      {"nearest on device", [=, &locator, &enqueue] { locator.nearest(points, *buffer, enqueue); }},
+      {"research",
+       [=, &t, &xy] {
+         research::Options options;
+         options.mode = research::Mode::flattened;
+         research::triangulate(t, xy.data(), n, options);
+       }},
+      {"partition", [=, &t, &xy] { research::partition(t, xy.data(), n, 2); }},
+  };
+}
+
+/// A triangulator does one call at a time: a call that another thread makes meanwhile, or the callback of the
+/// running one, is an error, and the running one goes on.
+TEST(SmallEmbedding, ACallDuringAnotherIsAUsageError) {
+  const Coordinates xy = make_fixture("uniform", 300, 8);
+  const Triangulation mesh = embedded().triangulate(xy.data(), 300);
+  const Memory memory = embedder().upload(xy);
+  DeviceTriangulation on_device;
+  embedded().triangulate(points_in(memory, 300), on_device, kAll, on_own());
+  Locator locator(embedded(), xy.data(), 300, mesh);
+  cl_event done = nullptr;
+  Enqueue enqueue = on_own();
+  enqueue.event = &done;
+  const auto calls = calls_on(embedded(), locator, xy, mesh, memory, on_device, enqueue);
+  std::size_t refused = 0;
+  const auto try_all = [&] {
+    for (const auto& [name, call] : calls) {
+      SCOPED_TRACE(name);
+      done = reinterpret_cast<cl_event>(&refused);  // what an event is before the call
+      expect_usage_error({"in use", "for each thread"}, call);
+      const bool has_event = name.find("on device") != std::string::npos;
+      EXPECT_EQ(done == nullptr, has_event);
+      ++refused;
+    }
+  };
+  Options options;
+  bool is_first = true;
+  options.progress = [&](const std::string&, int, double) {
+    if (!std::exchange(is_first, false)) return;
+    std::thread(try_all).join();
+    try_all();
+    // These only read what never changes.
+    EXPECT_GT(embedded().workspace_bytes(100), 0u);
+    EXPECT_FALSE(embedded().device().name.empty());
+  };
+  const Triangulation again = embedded().triangulate(xy.data(), 300, options);
+  EXPECT_EQ(refused, 2 * calls.size());
+  EXPECT_TRUE(same(again.triangles, mesh.triangles));
+  for (const auto& [name, call] : calls) {
+    SCOPED_TRACE(name);
+    EXPECT_NO_THROW(call());
+    if (name.find("on device") != std::string::npos) clReleaseEvent(done);
+  }
+}
+
+/// Whatever happens to be done at the same time: a result, or that error.
+TEST(Embedding, ThreadsThatShareATriangulatorGetResultsOrErrors) {
+  const Coordinates xy = make_fixture("uniform", 500, 9);
+  const Triangulation expected = expected_of(xy, {0, 500});
+  const Triangulation mesh = embedded().triangulate(xy.data(), 500);
+  Locator locator(embedded(), xy.data(), 500, mesh);
+  const auto work = [&] {
+    for (int k = 0; k < 200; ++k) {
+      try {
+        EXPECT_TRUE(same(embedded().triangulate(xy.data(), 500).triangles, expected.triangles));
+        EXPECT_EQ(locator.nearest(xy.data(), 500)[499], 499);
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 3; ++k) threads.emplace_back(work);
+  for (std::thread& thread : threads) thread.join();
+}
+
 TEST(SmallEmbedding, MovesWithItsContext) {
   const Coordinates coordinates = make_fixture("uniform", 30, 5);
   const Memory memory = embedder().upload(coordinates);

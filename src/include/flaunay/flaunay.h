@@ -10,8 +10,9 @@
 /// Handles are made by flaunay_..._create or by a computation, and destroyed by their flaunay_..._destroy,
 /// which also accepts NULL. The arrays, strings and structs that accessors return belong to the handle; they
 /// are valid until the handle is destroyed or computed again. A triangulator and the locators that it made
-/// must be used by one thread at a time. Several threads may read a result, and different triangulators may
-/// be used at the same time, even if they share a device and a context.
+/// do one call at a time: a call during another one, on another thread or from a progress callback, is
+/// FLAUNAY_ERROR_USAGE. Several threads may read a result, and different triangulators may be used at the
+/// same time, even if they share a device and a context.
 ///
 /// OpenCL handles that the caller passes (contexts, queues, events, buffers) must be alive when the call is
 /// made; the behaviour with a released handle is undefined.
@@ -215,6 +216,9 @@ typedef struct flaunay_device_info {
   int fp64;                       ///< 1 if it has double precision, without which it cannot be used
   int self_test_passed;           ///< 1 if the arithmetic self test was run and passed
   const char* self_test_failure;  ///< what failed, or ""
+  /// What can be used of memory_bytes now. A device that shares the host's memory has at most what is free
+  /// there, and what the limits of the process and of its control group leave.
+  size_t available_bytes;
 } flaunay_device_info;
 
 // ---- Errors

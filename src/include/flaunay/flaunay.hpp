@@ -119,15 +119,18 @@ struct Triangulation {
 
 /// An OpenCL device.
 struct DeviceInfo {
-  std::string name;                      ///< CL_DEVICE_NAME; FLAUNAY_DEVICE may name a part of it
-  std::string platform;                  ///< CL_PLATFORM_NAME
-  std::string vendor;                    ///< CL_DEVICE_VENDOR
-  std::string driver;                    ///< CL_DRIVER_VERSION
-  std::string version;                   ///< CL_DEVICE_VERSION
-  std::string type;                      ///< "CPU", "GPU", "accelerator"
-  unsigned compute_units = 0;            ///< CL_DEVICE_MAX_COMPUTE_UNITS
-  unsigned clock_mhz = 0;                ///< CL_DEVICE_MAX_CLOCK_FREQUENCY
-  std::size_t memory_bytes = 0;          ///< CL_DEVICE_GLOBAL_MEM_SIZE
+  std::string name;              ///< CL_DEVICE_NAME; FLAUNAY_DEVICE may name a part of it
+  std::string platform;          ///< CL_PLATFORM_NAME
+  std::string vendor;            ///< CL_DEVICE_VENDOR
+  std::string driver;            ///< CL_DRIVER_VERSION
+  std::string version;           ///< CL_DEVICE_VERSION
+  std::string type;              ///< "CPU", "GPU", "accelerator"
+  unsigned compute_units = 0;    ///< CL_DEVICE_MAX_COMPUTE_UNITS
+  unsigned clock_mhz = 0;        ///< CL_DEVICE_MAX_CLOCK_FREQUENCY
+  std::size_t memory_bytes = 0;  ///< CL_DEVICE_GLOBAL_MEM_SIZE
+  /// What can be used of it now. A device that shares the host's memory has at most what is free there, and
+  /// what the limits of the process and of its control group leave.
+  std::size_t available_bytes = 0;
   std::size_t largest_buffer_bytes = 0;  ///< CL_DEVICE_MAX_MEM_ALLOC_SIZE
   std::size_t local_memory_bytes = 0;    ///< CL_DEVICE_LOCAL_MEM_SIZE
   std::size_t work_group_size = 0;       ///< CL_DEVICE_MAX_WORK_GROUP_SIZE
@@ -172,8 +175,9 @@ struct Voronoi {
 };
 
 /// Computes triangulations on one device. It owns the compiled kernels, the working memory and a queue; the
-/// context is its own or the caller's. Making one compiles kernels, so keep it for the next call. It must be
-/// used by one thread at a time; triangulators on several threads may share a context and a device.
+/// context is its own or the caller's. Making one compiles kernels, so keep it for the next call. It and its
+/// locators do one call at a time: a call during another one, on another thread or from a progress callback,
+/// throws Error(usage). Triangulators on several threads may share a context and a device.
 class FLAUNAY_API Triangulator {
  public:
   /// device: "" (FLAUNAY_DEVICE if set, else the first GPU, else the first device with fp64), "#k" (the k-th
@@ -201,7 +205,7 @@ class FLAUNAY_API Triangulator {
   /// The triangulator's own queue, which is in order. Owned by the triangulator.
   cl_command_queue queue() const noexcept;
 
-  /// The largest number of points that one call can take on this device.
+  /// The largest number of points that one call can take on this device, with the memory that is free now.
   std::size_t capacity() const;
 
   /// Triangulates one set of n points. coordinates: 2 n values, x0 y0 x1 y1 ...; may be null if n is 0.
@@ -271,8 +275,8 @@ class FLAUNAY_API Triangulator {
 /// One call answers any number of queries. If the triangulation has several sets, there must be as many sets
 /// of queries, each for the set of the same number; their offsets are like those of points. A query that is
 /// not finite, or whose coordinates are too fine for exact arithmetic in doubles, is an Error(input) that
-/// names it. The locator shares device and memory with its triangulator, so one thread at a time may use
-/// them; it may outlive the triangulator.
+/// names it. The locator shares device and memory with its triangulator, so a call during another one of
+/// either throws Error(usage); it may outlive the triangulator.
 class FLAUNAY_API Locator {
  public:
   /// Makes a locator for a triangulation of these n points, which must have neighbours. The locator copies

@@ -1,0 +1,36 @@
+// What PoCL, the OpenCL implementation for CPUs, needs of the system. Where it lacks, PoCL ends the process;
+// so it is checked before PoCL is asked.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <string>
+
+namespace flaunay::host {
+
+bool is_pocl(cl_platform_id platform);
+
+/// To be called before PoCL opens its device. Throws DeviceError if the limits of the process leave too
+/// little address space for it.
+void require_space_for_pocl();
+
+/// To be called before PoCL compiles a program. Throws DeviceError if the limits of the process leave too
+/// little address space for it, or if PoCL cannot write to its folder of compiled kernels. The first call
+/// removes empty kernels from that folder if the last process did not end well, or if nobody looked in the
+/// last hour: to look takes milliseconds.
+void require_pocl_compiler();
+
+/// To be called when PoCL has compiled and run its kernels: the next process need not look for empty ones.
+void note_pocl_ended_well() noexcept;
+
+/// The folder in which PoCL keeps compiled kernels.
+std::string pocl_cache_folder();
+
+/// Throws DeviceError, which names the folder and the remedy, if it is not writable or has too little space.
+void require_cache_folder(const std::string& folder);
+
+/// Removes empty kernels from PoCL's folder, which a full disk or a power failure has left. PoCL would not
+/// compile them again, but fail to load them and end the process.
+void remove_empty_kernels(const std::string& folder);
+
+}  // namespace flaunay::host
