@@ -7,38 +7,55 @@
 namespace flaunay::blocks {
 namespace {
 
-// Triangulates the blocks that have more than `larger` and at most `capacity` points.
+// If the caller wants progress, blocks are solved in several launches. Each has many blocks per work-item,
+// because work-items end at different times, and then wait for the last one.
+constexpr std::size_t kMostLaunches = 32;
+constexpr std::size_t kLeastBlocksPerWorker = 64;
+
+// Triangulates the blocks that have more than `larger` and at most `capacity` points. milestones: null for
+// none.
 void solve(Workspace& work, const Blocks& blocks, std::size_t workers, std::size_t capacity,
-           std::ptrdiff_t larger, const Rings& rings, const Buffer<cl_int>& representatives) {
+           std::ptrdiff_t larger, const Rings& rings, const Buffer<cl_int>& representatives,
+           Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
   const auto next = scratch.allocate<cl_int>(1);
-  runtime.fill(next, 1, cl_int{0});
   const auto points = scratch.allocate<cl_double2>(workers * capacity);
   const auto source = scratch.allocate<cl_int>(workers * capacity);
   const auto ranks = scratch.allocate<cl_int2>(3 * workers * capacity);
   const auto axes = scratch.allocate<cl_uchar>(workers * capacity);
-  runtime.launch(workers, tuning_of(runtime).block_group,
-                 kernels::solve_blocks{.workers = workers,
-                                       .blocks = blocks.count,
-                                       .capacity = capacity,
-                                       .larger = larger,
-                                       .offsets = blocks.device_offsets,
-                                       .bounds = work.bounds,
-                                       .next = next,
-                                       .points = blocks.vertices,
-                                       .source = blocks.source,
-                                       .representatives = representatives,
-                                       .edges = rings.edges,
-                                       .vertex_edge = rings.vertex_edge,
-                                       .solved = rings.solved,
-                                       .distinct_counts = rings.device_distinct,
-                                       .undecided = rings.device_undecided,
-                                       .scratch_points = points,
-                                       .scratch_source = source,
-                                       .scratch_ranks = ranks,
-                                       .scratch_axes = axes});
+  const bool is_watched = milestones != nullptr && milestones->are_wanted();
+  const std::size_t per_launch =
+      is_watched ? std::max(kLeastBlocksPerWorker * workers, blocks.count / kMostLaunches + 1) : blocks.count;
+  for (std::size_t first = 0; first < blocks.count; first += per_launch) {
+    const std::size_t last = std::min(first + per_launch, blocks.count);
+    runtime.fill(next, 1, static_cast<cl_int>(first));
+    runtime.launch(workers, tuning_of(runtime).block_group,
+                   kernels::solve_blocks{.workers = workers,
+                                         .blocks = last,
+                                         .capacity = capacity,
+                                         .larger = larger,
+                                         .offsets = blocks.device_offsets,
+                                         .bounds = work.bounds,
+                                         .next = next,
+                                         .points = blocks.vertices,
+                                         .source = blocks.source,
+                                         .representatives = representatives,
+                                         .edges = rings.edges,
+                                         .vertex_edge = rings.vertex_edge,
+                                         .solved = rings.solved,
+                                         .distinct_counts = rings.device_distinct,
+                                         .undecided = rings.device_undecided,
+                                         .scratch_points = points,
+                                         .scratch_source = source,
+                                         .scratch_ranks = ranks,
+                                         .scratch_axes = axes});
+    if (is_watched) {
+      milestones->set("triangulate", kBlocksMade + (kBlocksSolved - kBlocksMade) * static_cast<double>(last) /
+                                                       static_cast<double>(blocks.count));
+    }
+  }
 }
 
 }  // namespace
@@ -50,7 +67,8 @@ std::size_t solve_bytes(const Tuning& tuning, std::size_t n) {
                                        tuning.block_workers * tuning.large_blocks * tuning.block_points));
 }
 
-Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives) {
+Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
+             Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Rings rings;
   rings.edges = work.persistent.allocate<kernel::ring_edge>(kernel::EDGES_PER_VERTEX * blocks.points);
@@ -69,9 +87,9 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
   const std::size_t affordable =
       std::max<std::size_t>(1, tuning.scratch_per_point * blocks.points / capacity);
   solve(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
-        representatives);
+        representatives, milestones);
   if (largest > capacity) {
-    solve(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives);
+    solve(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives, nullptr);
   }
   std::size_t first = 0;
   for (const std::size_t end : blocks.level_ends) {
@@ -86,6 +104,10 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
                                          .solved = rings.solved,
                                          .undecided = rings.device_undecided});
     first = end;
+    if (milestones != nullptr)
+      milestones->set("triangulate", kBlocksSolved + (kBlocksMerged - kBlocksSolved) *
+                                                         static_cast<double>(end) /
+                                                         static_cast<double>(blocks.merges.size()));
   }
   runtime.flush();
   return rings;

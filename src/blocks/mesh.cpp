@@ -70,7 +70,7 @@ MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) 
 }
 
 void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
-                const MeshBuffers& buffers) {
+                const MeshBuffers& buffers, Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Arena::Scope scope(work.scratch());
   const std::size_t pairs = rings.edges.size() / 2;
@@ -87,6 +87,7 @@ void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const
                                             .first_rows = sizes.first_rows,
                                             .triangles = buffers.triangles,
                                             .corner_of_edge = corner_of_edge});
+    if (milestones != nullptr) milestones->set("output", kTrianglesWritten);
     if (with_neighbors) {
       runtime.map(
           pairs, kernels::write_neighbors{

@@ -1,13 +1,6 @@
 #include "blocks/run.hpp"
 
 namespace flaunay::blocks {
-namespace {
-
-// The share of the time that is over when a phase ends, for progress.
-constexpr double kBlocksMade = 0.15;
-constexpr double kTriangulated = 0.8;
-
-}  // namespace
 
 void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.points = n;
@@ -32,14 +25,18 @@ Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::si
   phases.end("blocks");
 
   phases.progress("triangulate", kBlocksMade);
-  rings = divide(work, blocks, representatives);
+  Milestones milestones(runtime, phases);
+  rings = divide(work, blocks, representatives, &milestones);
   exchange.while_device_computes();
+  milestones.report();
   await_rings(work, blocks, rings);
   phases.end("triangulate");
 
-  phases.progress("output", kTriangulated);
+  phases.progress("output", kBlocksMerged);
   Outcome outcome{count_mesh(work, blocks, rings), rings.undecided};
-  write_mesh(work, blocks, rings, outcome.sizes, exchange.mesh(outcome.sizes));
+  phases.progress("output", kMeshCounted);
+  write_mesh(work, blocks, rings, outcome.sizes, exchange.mesh(outcome.sizes), &milestones);
+  milestones.report();
   return outcome;
 }
 

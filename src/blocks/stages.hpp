@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "blocks/milestones.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 #include "points/distribute.hpp"
@@ -25,6 +26,13 @@ using host::Buffer;
 /// Bytes of the persistent arena per point: vertices, their sources and edges, and the arrays of blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 97;
 
+/// The share of a call's time that is over when a stage ends, for progress.
+constexpr double kBlocksMade = 0.15;
+constexpr double kBlocksSolved = 0.7;
+constexpr double kBlocksMerged = 0.8;
+constexpr double kMeshCounted = 0.85;
+constexpr double kTrianglesWritten = 0.95;
+
 /// The triangulations of all sets, as rings of edges around their vertices.
 struct Rings {
   Buffer<kernel::ring_edge> edges{};  ///< kernel::EDGES_PER_VERTEX per point
@@ -37,8 +45,10 @@ struct Rings {
 };
 
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
-/// sets the numbers in Rings that are on the host.
-Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives);
+/// sets the numbers in Rings that are on the host. Sets a milestone for some of the blocks each, and for each
+/// level of merges, unless milestones are null.
+Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
+             Milestones* milestones = nullptr);
 /// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
@@ -67,8 +77,9 @@ struct MeshBuffers {
   Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{};
 };
 
-/// Writes the parts of the mesh. Neighbours and halfedges need the triangles. Does not wait.
+/// Writes the parts of the mesh, with milestones unless they are null. Neighbours and halfedges need the
+/// triangles. Does not wait.
 void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
-                const MeshBuffers& buffers);
+                const MeshBuffers& buffers, Milestones* milestones = nullptr);
 
 }  // namespace flaunay::blocks

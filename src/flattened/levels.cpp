@@ -22,8 +22,8 @@ void accumulate(LevelStatistics& sum, const LevelStatistics& part) {
 }  // namespace
 
 Recursion::Recursion(Workspace& work, PointTable& table, const research::Options& options,
-                     std::array<Arena*, 2> arenas)
-    : work_(work), table_(table), options_(options), arenas_(arenas) {}
+                     std::array<Arena*, 2> arenas, double levels_end)
+    : work_(work), table_(table), options_(options), arenas_(arenas), levels_end_(levels_end) {}
 
 Borders Recursion::begin() {
   work_.children = arenas_[0];
@@ -61,11 +61,14 @@ Level Recursion::step(const Level& level, int depth) {
   return children;
 }
 
-void Recursion::report(int depth, std::size_t points_left) {
-  if (!options_.progress) return;
-  const double left =
-      static_cast<double>(points_left) / static_cast<double>(std::max<std::size_t>(1, internal_points_));
-  options_.progress("levels", depth, 0.1 + 0.8 * (1.0 - left));
+void Recursion::report(int depth, double share) {
+  if (options_.progress)
+    options_.progress("levels", depth, kBordersMade + (levels_end_ - kBordersMade) * share);
+}
+
+double Recursion::share_without(std::size_t points_left) const {
+  if (internal_points_ == 0) return 1;
+  return 1 - static_cast<double>(points_left) / static_cast<double>(internal_points_);
 }
 
 void Recursion::flattened(int levels) {
@@ -74,7 +77,8 @@ void Recursion::flattened(int levels) {
     auto scope = std::make_unique<Arena::Scope>(*work_.children);
     level_ = step(level_, depth);
     scope_ = std::move(scope);
-    report(depth, level_.points);
+    // A few levels end with most points left, so that their number tells more.
+    report(depth, std::max(share_without(level_.points), static_cast<double>(depth + 1) / levels));
   }
 }
 
@@ -93,7 +97,7 @@ void Recursion::recurse(const Level& region, int depth) {
   Arena::Scope scope(*work_.children);
   const Level children = step(region, depth);
   finished_points_ += region.points - children.points;
-  report(depth, internal_points_ - finished_points_);
+  report(depth, share_without(internal_points_ - finished_points_));
   if (children.regions == 1) {
     recurse(children, depth + 1);
   } else if (children.regions > 1) {

@@ -12,12 +12,16 @@
 
 namespace flaunay::flattened {
 
+/// The share of a call's time that is over when the recursion begins, for progress.
+constexpr double kBordersMade = 0.1;
+
 /// The recursion of one call: the data that its steps share, and the triangles so far.
 class Recursion {
  public:
-  /// arenas: level d is stored in arenas[d % 2]; recursive() stores all levels in the first one.
+  /// arenas: level d is stored in arenas[d % 2]; recursive() stores all levels in the first one. levels_end:
+  /// the share of the call's time that is over after the last level, for progress.
   Recursion(Workspace& work, PointTable& table, const research::Options& options,
-            std::array<Arena*, 2> arenas);
+            std::array<Arena*, 2> arenas, double levels_end);
 
   /// Computes the first borders and regions, and allocates memory for the triangles.
   Borders begin();
@@ -43,12 +47,15 @@ class Recursion {
   void recurse(const Level& region, int depth);
   Level single_region(const Level& level, std::size_t region, const std::vector<cl_int>& point_offsets,
                       const std::vector<cl_int>& corner_offsets);
-  void report(int depth, std::size_t points_left);
+  /// share: that of the recursion which is done.
+  void report(int depth, double share);
+  double share_without(std::size_t points_left) const;
 
   Workspace& work_;
   PointTable& table_;
   const research::Options& options_;
   std::array<Arena*, 2> arenas_;
+  double levels_end_;
   Level level_{};
   std::unique_ptr<Arena::Scope> scope_;
   Buffer<cl_int> triangles_{};

@@ -20,6 +20,12 @@ constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // needed twice: for the current level and for the next one
 constexpr std::size_t kScratchBytesPerPoint = 118;
 
+// The share of the time that is over when a stage ends, for progress.
+constexpr double kSorted = 0.05;
+constexpr double kPartitioned = 0.4;
+constexpr double kTriangulated = 0.9;
+constexpr double kCanonical = 0.95;
+
 // The state of one call: the sorted points, and statistics so far.
 class Call {
  public:
@@ -84,7 +90,7 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
   statistics.points = n;
   statistics.duplicates = n - table.count;
   phases.end("sort");
-  phases.progress("borders", 0.05);
+  phases.progress("borders", kSorted);
 }
 
 void Call::end_levels(std::size_t done, std::size_t wanted) {
@@ -125,7 +131,7 @@ void write_result(Call& call, const Buffer<cl_int>& triangles, const Borders& bo
   check_invariants(work);
   call.phases.end("canonical form");
 
-  call.phases.progress("output", 0.95);
+  call.phases.progress("output", kCanonical);
   read_rows(work, table, triangles, twins, count, call.options, result);
   result.hull = read_indices(work, table, borders.hull, borders.size);
   result.hull_offsets = borders.hull_offsets;
@@ -142,7 +148,7 @@ void finish_partition(Call& call, Recursion& recursion, const Borders& borders, 
   std::vector<std::int32_t> triangles = recursion.read_triangles();
   const RegionArrays regions = recursion.read_regions();
   call.phases.end("partition");
-  call.phases.progress("regions", 0.4);
+  call.phases.progress("regions", kPartitioned);
   OperationCounts counts;
   const std::vector<std::int32_t> solved = solve_regions(sets, regions, options.count ? &counts : nullptr);
   triangles.insert(triangles.end(), solved.begin(), solved.end());
@@ -151,7 +157,7 @@ void finish_partition(Call& call, Recursion& recursion, const Borders& borders, 
   Work::Components& last = work.levels.empty() ? work.start : work.levels.back();
   statistics::add_beside(last[static_cast<std::size_t>(Component::endgame)], counts);
   call.phases.end("regions");
-  call.phases.progress("canonical form", 0.9);
+  call.phases.progress("canonical form", kTriangulated);
   Triangulation finished = finish(sets, std::move(triangles), {}, options);
   finished.statistics = std::move(result.statistics);
   static_cast<Triangulation&>(result) = std::move(finished);
@@ -165,7 +171,8 @@ void run(host::Runtime& runtime, const Memory& memory, const double* coordinates
          const SolveRegions& solve_regions, research::Triangulation& result) {
   Call call(runtime, memory, coordinates, offsets, options, result.statistics, result.levels, result.work,
             result.representatives);
-  Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd});
+  Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd},
+                      solve_regions ? kPartitioned : kTriangulated);
   const Borders borders = recursion.begin();
   call.phases.end("borders");
   if (solve_regions) {
@@ -178,10 +185,11 @@ void run(host::Runtime& runtime, const Memory& memory, const double* coordinates
     }
     call.end_levels(recursion.done(), borders.triangles);
     call.phases.end("levels");
-    call.phases.progress("canonical form", 0.9);
+    call.phases.progress("canonical form", kTriangulated);
     write_result(call, recursion.triangles(), borders, result);
   }
   call.finish_statistics(borders);
+  call.phases.progress("output", 1);
 }
 
 void partition(host::Runtime& runtime, const Memory& memory, const double* coordinates, std::size_t n,
@@ -190,7 +198,7 @@ void partition(host::Runtime& runtime, const Memory& memory, const double* coord
   Work uncounted;
   Call call(runtime, memory, coordinates, {0, n}, options, result.statistics, result.levels, uncounted,
             representatives);
-  Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd});
+  Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd}, kTriangulated);
   const Borders borders = recursion.begin();
   call.phases.end("borders");
   recursion.flattened(std::min<int>(levels, kMostLevels));
@@ -199,6 +207,7 @@ void partition(host::Runtime& runtime, const Memory& memory, const double* coord
   result.triangles = read_indices(call.work, call.table, recursion.triangles(), 3 * recursion.done());
   call.phases.end("levels");
   call.finish_statistics(borders);
+  call.phases.progress("levels", 1);
 }
 
 }  // namespace flaunay::flattened

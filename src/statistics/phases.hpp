@@ -22,8 +22,10 @@ class Phases {
   explicit Phases(const Options& options, Clock clock = wall_clock)
       : options_(options), clock_(std::move(clock)) {}
 
+  /// Whether the caller wants progress.
+  bool are_heard() const { return options_.progress != nullptr; }
   void progress(const char* stage, double done) const {
-    if (options_.progress) options_.progress(stage, -1, done);
+    if (are_heard()) options_.progress(stage, -1, done);
   }
   void end(const char* name) {
     const double now = clock_();
