@@ -14,6 +14,13 @@ FloatArray = Union[npt.NDArray[np.float32], npt.NDArray[np.float64]]
 # From this size on, numbers of another type may have more digits than a double.
 _BYTES_OF_DOUBLE = 8
 
+_SINGULAR = {
+    "points": "point",
+    "triangles": "triangle",
+    "hull_vertices": "hull vertex",
+    "vertices": "vertex",
+}
+
 
 def _as_doubles(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.float64]:
     """Other numbers as doubles; UsageError if they are none, or none of the same value."""
@@ -71,3 +78,14 @@ def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
 def names_of(**wanted: bool) -> set[str]:
     """The names whose values are true."""
     return {name for name, is_wanted in wanted.items() if is_wanted}
+
+
+def summary(result: object, sets: int = 1, **counts: int) -> str:
+    """The repr of a result: its class, and how many it has of what, such as ``<flaunay.Delaunay: 4 points>``."""
+    parts = [
+        f"{count} {name.replace('_', ' ')}" if count != 1 else f"1 {_SINGULAR[name]}"
+        for name, count in counts.items()
+    ]
+    if sets != 1:
+        parts.append(f"{sets} sets")
+    return f"<flaunay.{type(result).__name__}: {', '.join(parts)}>"

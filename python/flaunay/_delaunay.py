@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import FloatArray, as_floats, as_points
+from flaunay._arrays import FloatArray, as_floats, as_points, summary
 from flaunay._errors import UsageError
 from flaunay._triangulation import triangulate
 
@@ -108,6 +108,11 @@ class Delaunay:
         self.representatives: Indices = mesh.representatives
 
     ndim = 2
+
+    def __repr__(self) -> str:
+        return summary(
+            self, points=self.npoints, triangles=self.nsimplex, hull_vertices=len(self.hull)
+        )
 
     @property
     def npoints(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_segments, names_of
+from flaunay._arrays import as_segments, names_of, summary
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 _COORDINATES = (np.dtype(np.float64), np.dtype(np.float32))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class DeviceTriangulation:
     """A triangulation in device memory, of one or more sets of points.
 
@@ -48,6 +49,16 @@ class DeviceTriangulation:
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
     event: pyopencl.Event
+
+    def __repr__(self) -> str:
+        # Of the sizes alone, since the arrays are in device memory.
+        return summary(
+            self,
+            points=self.statistics["points"],
+            triangles=int(self.triangle_offsets[-1]),
+            hull_vertices=int(self.hull_offsets[-1]),
+            sets=len(self.hull_offsets) - 1,
+        )
 
     def get(self) -> Triangulation:
         """Copies all to host memory, when it is there.
@@ -161,6 +172,16 @@ def _queue_for(
     return queue
 
 
+def _as_events(wait_for: Optional[Iterable[pyopencl.Event]]) -> list[pyopencl.Event]:
+    if wait_for is None:
+        return []
+    cl = _import_pyopencl()
+    events = list(wait_for) if isinstance(wait_for, Iterable) else [None]
+    if not all(isinstance(event, cl.Event) for event in events):
+        raise TypeError(f"wait_for must be a sequence of pyopencl.Event, not {wait_for!r}")
+    return events
+
+
 def _view(
     handle: int, shape: tuple[int, ...], queue: pyopencl.CommandQueue, event: pyopencl.Event
 ) -> pyopencl.array.Array:
@@ -239,7 +260,7 @@ def triangulate_device(
     cl = _import_pyopencl()
     queue = _queue_for(points, queue)
     device_points, arrays = _to_points(points, segments, queue)
-    events = [event for array in arrays for event in array.events] + list(wait_for or ())
+    events = [event for array in arrays for event in array.events] + _as_events(wait_for)
     triangulator = _triangulators.of_queue(queue)
     wanted = names_of(
         triangles=True,

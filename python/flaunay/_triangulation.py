@@ -9,13 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_points, as_segments, names_of
+from flaunay._arrays import as_points, as_segments, names_of, summary
 from flaunay._errors import UsageError
 
 _MODES_ON_HOST = {mode["name"] for mode in _flaunay.modes() if mode["on_host"]}
 
 
-@dataclass(frozen=True)
+# Without __eq__ and __repr__ of all fields: arrays have no single truth value, and can be long.
+@dataclass(frozen=True, eq=False, repr=False)
 class Triangulation:
     """The triangulations of one or more sets of points.
 
@@ -51,6 +52,15 @@ class Triangulation:
     triangle_offsets: npt.NDArray[np.int64]
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
+
+    def __repr__(self) -> str:
+        return summary(
+            self,
+            points=len(self.representatives),
+            triangles=len(self.triangles),
+            hull_vertices=len(self.hull),
+            sets=len(self.hull_offsets) - 1,
+        )
 
 
 def triangulate(
@@ -105,6 +115,8 @@ def triangulate(
     --------
     >>> import flaunay
     >>> mesh = flaunay.triangulate([[0, 0], [4, 0], [4, 3], [0, 4]])
+    >>> mesh
+    <flaunay.Triangulation: 4 points, 2 triangles, 4 hull vertices>
     >>> mesh.triangles
     array([[0, 2, 3],
            [0, 1, 2]], dtype=int32)
@@ -121,6 +133,9 @@ def triangulate(
     coordinates = as_points(points)
     offsets = None if segments is None else as_segments(segments)
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
+    if not isinstance(mode, str):
+        names = ", ".join(row["name"] for row in _flaunay.modes())
+        raise UsageError(f"there is no mode {mode!r}; there are {names}")
     if mode in _MODES_ON_HOST:
         if device is not None:
             raise UsageError(f"mode {mode} runs on the host and takes no device")

@@ -91,8 +91,9 @@ def devices() -> list[dict[str, Any]]:
     list of dict
         Of each its ``name``, ``platform``, ``vendor``, ``driver``, ``version``, ``type`` (``"CPU"``,
         ``"GPU"``, ``"accelerator"``), ``compute_units``, ``clock_mhz``, ``memory_bytes``,
-        ``largest_buffer_bytes``, ``local_memory_bytes``, ``work_group_size`` and ``fp64``: without
-        the last, a device cannot be used.
+        ``available_bytes`` (what can be used of it now), ``largest_buffer_bytes``,
+        ``local_memory_bytes``, ``work_group_size`` and ``fp64``: without the last, a device cannot be
+        used.
 
     Raises
     ------

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import FloatArray
+from flaunay._arrays import FloatArray, summary
 from flaunay._delaunay import Delaunay
 
 Indices = npt.NDArray[np.int32]
@@ -82,6 +82,9 @@ class Voronoi:
             tri.representatives,
         )
         self.unbounded: npt.NDArray[np.bool_] = unbounded.view(np.bool_)
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.npoints, vertices=len(self.vertices))
 
     @property
     def npoints(self) -> int:

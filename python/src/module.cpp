@@ -39,6 +39,7 @@ py::dict to_dict(const DeviceInfo& info) {
   result["compute_units"] = info.compute_units;
   result["clock_mhz"] = info.clock_mhz;
   result["memory_bytes"] = info.memory_bytes;
+  result["available_bytes"] = info.available_bytes;
   result["largest_buffer_bytes"] = info.largest_buffer_bytes;
   result["local_memory_bytes"] = info.local_memory_bytes;
   result["work_group_size"] = info.work_group_size;

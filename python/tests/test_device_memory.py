@@ -47,6 +47,26 @@ def test_the_results_are_those_of_triangulate(random, queue, dtype, n):
     check_equal(result, flaunay.triangulate(points, halfedges=True))
 
 
+def test_a_result_is_short_in_print(random, queue):
+    result = flaunay.triangulate_device(cl_array.to_device(queue, random.random((100, 2))))
+    sizes = f"100 points, {result.triangle_offsets[-1]} triangles, {result.hull_offsets[-1]} hull vertices"
+    assert repr(result) == f"<flaunay.DeviceTriangulation: {sizes}>"
+    assert result == result
+
+
+@pytest.mark.parametrize("wait_for", [[None], 3, ["event"], [[]]])
+def test_what_is_no_event_to_wait_for(random, queue, wait_for):
+    points = cl_array.to_device(queue, random.random((100, 2)))
+    with pytest.raises(TypeError, match="wait_for must be a sequence of pyopencl.Event"):
+        flaunay.triangulate_device(points, wait_for=wait_for)
+
+
+def test_one_event_is_no_sequence(random, queue):
+    points = cl_array.to_device(queue, random.random((100, 2)))
+    with pytest.raises(TypeError, match="wait_for must be a sequence of pyopencl.Event"):
+        flaunay.triangulate_device(points, wait_for=cl.enqueue_marker(queue))
+
+
 def test_no_points_at_all(queue):
     result = flaunay.triangulate_device(cl_array.zeros(queue, (0, 2), np.float64), **ALL)
     check_equal(result, flaunay.triangulate(np.empty((0, 2)), halfedges=True))

@@ -99,6 +99,9 @@ def test_segments_that_are_none(segments, message, mode):
 def test_modes():
     with pytest.raises(flaunay.UsageError, match="no mode 'fast'; there are blocks, flattened"):
         flaunay.triangulate(FOUR, mode="fast")
+    for mode in None, 3, ["dwyer"], b"dwyer":
+        with pytest.raises(flaunay.UsageError, match="no mode .*; there are blocks, flattened"):
+            flaunay.triangulate(FOUR, mode=mode)
     with pytest.raises(flaunay.UsageError, match="takes no device"):
         flaunay.triangulate(FOUR, mode="dwyer", device="#0")
 

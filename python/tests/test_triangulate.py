@@ -183,3 +183,20 @@ def test_a_device_by_number_and_by_name(random):
 
 def test_the_version():
     assert flaunay.__version__.count(".") == 2
+
+
+def test_results_are_short_in_print(random):
+    points = random.random((100000, 2))
+    mesh = flaunay.triangulate(points)
+    hull, triangles = len(mesh.hull), len(mesh.triangles)
+    sizes = f"100000 points, {triangles} triangles, {hull} hull vertices"
+    assert repr(mesh) == f"<flaunay.Triangulation: {sizes}>"
+    assert repr(flaunay.Delaunay(points)) == f"<flaunay.Delaunay: {sizes}>"
+    assert repr(flaunay.Voronoi(points)) == f"<flaunay.Voronoi: 100000 points, {triangles} vertices>"
+    two = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5]], segments=[0, 3, 4])
+    assert repr(two) == "<flaunay.Triangulation: 4 points, 1 triangle, 4 hull vertices, 2 sets>"
+
+
+def test_results_are_equal_to_themselves_alone():
+    mesh, other = (flaunay.triangulate([[0, 0], [1, 0], [0, 1]]) for _ in range(2))
+    assert mesh == mesh and mesh != other and len({mesh, other}) == 2
