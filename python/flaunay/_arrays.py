@@ -39,6 +39,14 @@ def _as_doubles(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.float64]:
     return doubles
 
 
+def _as_array(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
+    """What numpy makes of it; UsageError, with numpy's words, if it cannot, as of a list of unequal rows."""
+    try:
+        return np.asarray(given)
+    except ValueError as error:
+        raise UsageError(f"{name} are no array of numbers: {error}") from error
+
+
 def as_floats(given: npt.ArrayLike, name: str) -> FloatArray:
     """A C-contiguous, aligned array of float32 or float64, copied only if it is none already.
 
@@ -47,7 +55,7 @@ def as_floats(given: npt.ArrayLike, name: str) -> FloatArray:
     """
     if isinstance(given, np.ma.MaskedArray):
         raise UsageError(f"{name} cannot be a masked array")
-    array = np.asarray(given)
+    array = _as_array(given, name)
     if array.size == 0 and array.dtype.kind == "O":
         array = array.astype(np.float64)
     if array.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
@@ -67,7 +75,7 @@ def as_points(given: npt.ArrayLike) -> FloatArray:
 
 def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
     """Offsets of sets; UsageError unless they are a list of integers."""
-    array = np.asarray(given)
+    array = _as_array(given, "segments")
     if array.ndim != 1 or array.dtype.kind not in "iu":
         raise UsageError(
             f"segments must be integers in one dimension, not {array.dtype} of shape {array.shape}"

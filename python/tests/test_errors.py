@@ -54,8 +54,10 @@ def test_points_that_are_none(call, points, message):
 
 @pytest.mark.parametrize("call", CALLS)
 def test_ragged_lists(call):
-    with pytest.raises(ValueError):
+    with pytest.raises(flaunay.UsageError, match="points are no array of numbers"):
         call([[0, 1], [2]])
+    with pytest.raises(flaunay.UsageError, match="segments are no array of numbers"):
+        flaunay.triangulate(FOUR, segments=[[0], [1, 4]])
 
 
 @pytest.mark.parametrize("call", CALLS)
