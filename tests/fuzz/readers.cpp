@@ -21,6 +21,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "io/mesh.hpp"
+#include "io/output.hpp"
 #include "io/points.hpp"
 #include "io/region.hpp"
 
@@ -57,7 +58,9 @@ void read_points(const std::string& ending, std::string_view bytes) {
   require(points.coordinates.size() % 2 == 0, "points have two coordinates");
   for (const double value : points.coordinates) require(std::isfinite(value), "coordinates are finite");
   if (points.size() == 0) return;
-  io::write_points(path, points);
+  io::Outputs outputs;
+  io::write_points(outputs, path, points);
+  outputs.commit();
   require(same_bits(io::read_points(path).coordinates, points.coordinates), "points read back as written");
 }
 
