@@ -1,8 +1,10 @@
-# flaunay_add_launchers(TARGET DIRECTORY OUTPUT FILES...) adds a target that generates a C++ header with launchers for
-# each kernel file of the directory: OUTPUT/flattened/cut.cl.hpp for flattened/cut.cl. If another kernel file includes
-# the file, that one is its program.
+# flaunay_add_launchers(TARGET DIRECTORY OUTPUT FILES files... [NATIVE files... NATIVE_OUTPUT folder]) adds a target that
+# generates a C++ header with launchers for each kernel file of the directory: OUTPUT/flattened/cut.cl.hpp for
+# flattened/cut.cl. If another kernel file includes the file, that one is its program. For those of NATIVE, it also
+# generates C++ files that compile the kernels for the host, such as NATIVE_OUTPUT/blocks/mesh.cpp.
 function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
-  foreach(FILE IN LISTS ARGN)
+  cmake_parse_arguments(PARSE_ARGV 3 GIVEN "" "NATIVE_OUTPUT" "FILES;NATIVE")
+  foreach(FILE IN LISTS GIVEN_FILES)
     file(STRINGS ${DIRECTORY}/${FILE} INCLUDES REGEX "^#include \".*\\.cl\"")
     foreach(INCLUDE IN LISTS INCLUDES)
       string(REGEX REPLACE "^#include \"(.*)\"$" "\\1" INCLUDED "${INCLUDE}")
@@ -11,16 +13,22 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
   endforeach()
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/launchers.cmake)
   set(LAUNCHERS "")
-  foreach(FILE IN LISTS ARGN)
+  foreach(FILE IN LISTS GIVEN_FILES)
     if(DEFINED PROGRAM_OF_${FILE})
       set(PROGRAM ${PROGRAM_OF_${FILE}})
     else()
       string(REGEX REPLACE "\\.cl$" "" PROGRAM ${FILE})
     endif()
+    set(NATIVE_ARGUMENT "")
+    set(NATIVE_FILE "")
+    if(FILE IN_LIST GIVEN_NATIVE)
+      string(REGEX REPLACE "\\.cl$" ".cpp" NATIVE_FILE ${GIVEN_NATIVE_OUTPUT}/${FILE})
+      set(NATIVE_ARGUMENT -DNATIVE_OUTPUT=${NATIVE_FILE})
+    endif()
     add_custom_command(
-      OUTPUT ${OUTPUT}/${FILE}.hpp
+      OUTPUT ${OUTPUT}/${FILE}.hpp ${NATIVE_FILE}
       COMMAND ${CMAKE_COMMAND} -DDIRECTORY=${DIRECTORY} -DFILE=${FILE} -DPROGRAM=${PROGRAM}
-              -DOUTPUT=${OUTPUT}/${FILE}.hpp -P ${SCRIPT}
+              -DOUTPUT=${OUTPUT}/${FILE}.hpp ${NATIVE_ARGUMENT} -P ${SCRIPT}
       DEPENDS ${DIRECTORY}/${FILE} ${SCRIPT}
       VERBATIM)
     list(APPEND LAUNCHERS ${OUTPUT}/${FILE}.hpp)

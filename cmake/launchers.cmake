@@ -1,5 +1,5 @@
 # cmake -DDIRECTORY=kernels -DFILE=flattened/cut.cl -DPROGRAM=flattened/cut -DOUTPUT=launchers/flattened/cut.cl.hpp
-#       -P launchers.cmake
+#       [-DNATIVE_OUTPUT=native/flattened/cut.cpp] -P launchers.cmake
 #
 # Writes a C++ header with a struct per kernel of the file: a member per argument, of the argument's type and name. Runtime
 # (host/runtime.hpp) launches these structs, so that a wrong, missing or unknown argument does not compile. PROGRAM is the
@@ -7,6 +7,9 @@
 #
 # It understands the forms that our kernel files use: signatures `kernel void name(arguments)` without macros other than
 # COUNTERS (shared/counting.h), which Runtime sets; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
+#
+# With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp).
+cmake_policy(VERSION 3.25)
 
 # The launch sets the number of elements and the size of a chunk; Runtime::arg_reduce sets the reduction's others.
 set(LEADING_PerElement n)
@@ -83,10 +86,20 @@ function(append_launcher NAME FORM ARGUMENTS)
       string(APPEND VISITS "    visit(${MEMBER});\n")
     endif()
   endforeach()
+  set(NATIVE_DECLARATION "")
+  set(NATIVE_FUNCTION nullptr)
+  if(NATIVE_OUTPUT)
+    set(NATIVE_FUNCTION native::${NAME})
+    set(NATIVE_SIGNATURE "void ${NAME}(host::WorkItems items, void* const* arguments)")
+    set(NATIVE_DECLARATION "namespace native {\n${NATIVE_SIGNATURE};\n}\n")
+    set(NATIVE_CODE
+        "${NATIVE_CODE}${NATIVE_SIGNATURE} {\n  kernel::run_work_items<kernel::${NAME}>(items, arguments);\n}\n"
+        PARENT_SCOPE)
+  endif()
   string(CONCAT LAUNCHER
-    "\n/// See kernel ${NAME} in kernels/${FILE}.\n"
+    "\n${NATIVE_DECLARATION}/// See kernel ${NAME} in kernels/${FILE}.\n"
     "struct ${NAME} {\n"
-    "  static constexpr host::KernelName kernel_name{\"${PROGRAM}\", \"${NAME}\"};\n"
+    "  static constexpr host::KernelName kernel_name{\"${PROGRAM}\", \"${NAME}\", ${NATIVE_FUNCTION}};\n"
     "  static constexpr host::Form form = host::Form::${FORM};\n"
     "${MEMBERS}\n"
     "  template <typename Visit>\n"
@@ -102,6 +115,7 @@ string(REPLACE ";" " " TEXT "${TEXT}")
 string(REGEX REPLACE "[][]" " " TEXT "${TEXT}")
 string(REGEX MATCHALL "(kernel void [a-z_0-9]+|\nSEGMENTED_ARG_REDUCE)\\([^)]*\\)" SIGNATURES "${TEXT}")
 set(CODE "")
+set(NATIVE_CODE "")
 foreach(SIGNATURE IN LISTS SIGNATURES)
   if(SIGNATURE MATCHES "kernel void ([a-z_0-9]+)\\(([^)]*)\\)")
     append_launcher(${CMAKE_MATCH_1} "" "${CMAKE_MATCH_2}")
@@ -118,3 +132,33 @@ string(CONCAT HEADER
   "namespace flaunay::kernels {\n${CODE}\n}  // namespace flaunay::kernels\n")
 # Written only if it has changed, so that files that include it are compiled again only if a signature changed.
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "${HEADER}" @ONLY)
+
+if(NATIVE_OUTPUT)
+  # The shared headers come first, as they have namespaces of their own.
+  set(HEADERS "")
+  set(FILES ${FILE})
+  while(FILES)
+    list(POP_FRONT FILES CURRENT)
+    file(STRINGS ${DIRECTORY}/${CURRENT} INCLUDES REGEX "^#include \"")
+    foreach(INCLUDE IN LISTS INCLUDES)
+      string(REGEX REPLACE "^#include \"(.*)\"$" "\\1" INCLUDED "${INCLUDE}")
+      if(INCLUDED MATCHES "\\.cl$")
+        list(APPEND FILES ${INCLUDED})
+      elseif(NOT INCLUDED IN_LIST HEADERS)
+        list(APPEND HEADERS ${INCLUDED})
+      endif()
+    endforeach()
+  endwhile()
+  list(TRANSFORM HEADERS REPLACE "(.+)" "#include \"\\1\"\n")
+  string(CONCAT HEADERS ${HEADERS} "")
+  string(CONCAT NATIVE
+    "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n"
+    "#include \"launchers/${FILE}.hpp\"\n"
+    "#include \"host/native/opencl.hpp\"\n"
+    "${HEADERS}\n"
+    "namespace flaunay::kernel {\n"
+    "#include \"host/native/words.h\"\n#include \"${FILE}\"\n#include \"host/native/end_of_words.h\"\n"
+    "}\n\n"
+    "namespace flaunay::kernels::native {\n${NATIVE_CODE}}\n")
+  file(CONFIGURE OUTPUT ${NATIVE_OUTPUT} CONTENT "${NATIVE}" @ONLY)
+endif()

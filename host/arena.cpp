@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <new>
 #include <utility>
 
 #include "host/error.hpp"
@@ -19,16 +20,32 @@ namespace {
 
 constexpr std::size_t kSmallestBlock = std::size_t{1} << 20;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
+constexpr std::size_t kAlignment = 128;
 
 std::shared_ptr<_cl_mem> own(cl_mem memory) {
   return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
 }
 
-std::shared_ptr<_cl_mem> create_buffer(cl_context context, std::size_t bytes) {
+std::shared_ptr<_cl_mem> create_buffer(const boost::compute::context& context, std::size_t bytes) {
   cl_int code = CL_SUCCESS;
-  cl_mem memory = clCreateBuffer(context, CL_MEM_READ_WRITE, bytes, nullptr, &code);
+  cl_mem memory = clCreateBuffer(context.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code);
   check_call(code, "clCreateBuffer");
   return own(memory);
+}
+
+// Kernels access large blocks irregularly: with pages of 4 KiB, address translation would take longer than
+// the loads. Null if there is not enough memory.
+void* allocate_pages(std::size_t bytes) {
+  const std::size_t page = bytes < kHugePage ? kAlignment : kHugePage;
+  void* const pages = std::aligned_alloc(page, (bytes + page - 1) / page * page);
+  if (pages != nullptr && page == kHugePage) prefer_huge_pages(pages, bytes);
+  return pages;
+}
+
+std::shared_ptr<_cl_mem> allocate_native(std::size_t bytes) {
+  void* const pages = allocate_pages(bytes);
+  if (pages == nullptr) throw std::bad_alloc();
+  return {handle_of(pages), [](cl_mem memory) { std::free(address_of(memory)); }};
 }
 
 }  // namespace
@@ -42,13 +59,16 @@ void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_
 #endif
 }
 
-Arena::Arena(boost::compute::context context, const boost::compute::device& device)
-    : context_(std::move(context)),
-      in_host_memory_(device.type() & CL_DEVICE_TYPE_CPU),
-      // At least a cache line, so that vector loads of one array never share a cache line with another array.
-      alignment_(std::max<std::size_t>(128, device.get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8)),
-      largest_(device.max_memory_alloc_size()),
-      blocks_(1) {}
+MemorySource memory_of(const boost::compute::context& context, const boost::compute::device& device) {
+  // At least a cache line, so that vector loads of one array never share a cache line with another array.
+  const std::size_t alignment = device.get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8;
+  return {context, (device.type() & CL_DEVICE_TYPE_CPU) != 0, std::max(kAlignment, alignment),
+          device.max_memory_alloc_size()};
+}
+
+MemorySource native_memory() { return {{}, true, kAlignment, std::size_t{1} << 62}; }
+
+Arena::Arena(MemorySource source) : source_(std::move(source)), blocks_(1) {}
 
 Arena::~Arena() = default;
 
@@ -59,18 +79,16 @@ std::size_t Arena::held_bytes() const {
   return sum;
 }
 
-std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host_memory, std::size_t bytes) {
-  // Where memory lacks, the implementation may end the process.
-  if (in_host_memory) require_memory(bytes, "a buffer");
+std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes) {
+  // Where memory lacks, an OpenCL implementation may end the process.
+  if (source.in_host_memory) require_memory(bytes, "a buffer");
+  if (source.context.get() == nullptr) return allocate_native(bytes);
 #ifdef __linux__
-  // Kernels access these blocks irregularly: with pages of 4 KiB, address translation would take longer than
-  // the loads.
-  if (in_host_memory && bytes >= kHugePage) {
-    const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-    if (void* pages = std::aligned_alloc(kHugePage, rounded)) {
-      prefer_huge_pages(pages, rounded);
+  if (source.in_host_memory && bytes >= kHugePage) {
+    if (void* const pages = allocate_pages(bytes)) {
       cl_int code = CL_SUCCESS;
-      cl_mem memory = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, rounded, pages, &code);
+      cl_mem memory =
+          clCreateBuffer(source.context.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, pages, &code);
       // The pages are freed with the buffer, which OpenCL keeps while enqueued work uses it.
       if (code == CL_SUCCESS) {
         code = clSetMemObjectDestructorCallback(
@@ -82,15 +100,15 @@ std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host
     }
   }
 #endif
-  return create_buffer(context, bytes);
+  return create_buffer(source.context, bytes);
 }
 
 void Arena::check_size(std::size_t bytes) const {
-  if (bytes <= largest_) return;
+  if (bytes <= source_.largest) return;
   throw DeviceError(
       fmt::format("a buffer of {} bytes is more than the device allows in one piece ({} bytes); "
                   "use fewer points, or another device (FLAUNAY_DEVICE)",
-                  bytes, largest_),
+                  bytes, source_.largest),
       CL_INVALID_BUFFER_SIZE);
 }
 
@@ -99,14 +117,14 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
     throw DeviceError(fmt::format("the memory that was lent lacks {} bytes", bytes), CL_INVALID_BUFFER_SIZE);
   }
   check_size(bytes);
-  std::shared_ptr<_cl_mem> memory = allocate_device_memory(context_.get(), in_host_memory_, bytes);
+  std::shared_ptr<_cl_mem> memory = allocate_memory(source_, bytes);
   ++block_allocations_;
   return memory;
 }
 
 void Arena::reserve(std::size_t bytes) {
   if (separate_ || is_lent_ || current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
-  bytes = std::min(std::max(bytes, kSmallestBlock), largest_);
+  bytes = std::min(std::max(bytes, kSmallestBlock), source_.largest);
   blocks_.assign(1, {});
   blocks_[0].memory = allocate_block(bytes);
   blocks_[0].size = bytes;
@@ -118,8 +136,19 @@ void Arena::lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std
   if (!is_lent_) return;
   own_blocks_ = std::exchange(blocks_, std::vector<Block>(1));
   // OpenCL requires sub-buffers to begin at multiples of the alignment.
-  const std::size_t begin = (offset + alignment_ - 1) / alignment_ * alignment_;
+  const std::size_t begin = (offset + source_.alignment - 1) / source_.alignment * source_.alignment;
   blocks_[0] = {memory, begin, offset + bytes < begin ? 0 : offset + bytes - begin, 0};
+}
+
+std::shared_ptr<_cl_mem> Arena::part_of(const std::shared_ptr<_cl_mem>& memory, std::size_t begin,
+                                        std::size_t bytes) const {
+  if (source_.context.get() == nullptr) return {memory, handle_of(address_of(memory.get()) + begin)};
+  cl_buffer_region region{begin, bytes};
+  cl_int code = CL_SUCCESS;
+  cl_mem part =
+      clCreateSubBuffer(memory.get(), CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);
+  check_call(code, "clCreateSubBuffer");
+  return own(part);
 }
 
 std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t size) {
@@ -131,17 +160,19 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
   const std::size_t bytes = count * size;
   if (separate_ && !is_lent_) {
     ++block_allocations_;
-    return create_buffer(context_.get(), std::max<std::size_t>(bytes, 1));
+    const std::size_t exact = std::max<std::size_t>(bytes, 1);
+    return source_.context.get() == nullptr ? allocate_native(exact) : create_buffer(source_.context, exact);
   }
   // OpenCL has no empty buffers, so an empty array gets some bytes, too.
-  const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment_ - 1) / alignment_ * alignment_;
+  const std::size_t rounded =
+      (std::max<std::size_t>(bytes, 1) + source_.alignment - 1) / source_.alignment * source_.alignment;
   while (blocks_[current_].used + rounded > blocks_[current_].size) {
     if (current_ + 1 == blocks_.size()) blocks_.emplace_back();
     Block& next = blocks_[current_ + 1];
     if (next.size < rounded) {
       // An eighth of the memory held now, so that there are few blocks and little unused memory.
       std::size_t block_size = std::max({rounded, kSmallestBlock, held_bytes() / 8});
-      block_size = std::max(rounded, std::min(block_size, largest_));
+      block_size = std::max(rounded, std::min(block_size, source_.largest));
       next.memory.reset();
       next.size = 0;
       next.memory = allocate_block(block_size);
@@ -151,16 +182,13 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
     ++current_;
   }
   Block& block = blocks_[current_];
-  cl_buffer_region region{block.offset + block.used, rounded};
-  cl_int code = CL_SUCCESS;
-  cl_mem memory =
-      clCreateSubBuffer(block.memory.get(), CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code);
-  check_call(code, "clCreateSubBuffer");
+  const std::size_t begin = block.offset + block.used;
+  std::shared_ptr<_cl_mem> memory = part_of(block.memory, begin, rounded);
   block.used += rounded;
   std::size_t used = 0;
   for (std::size_t b = 0; b <= current_; ++b) used += blocks_[b].used;
   peak_ = std::max(peak_, used);
-  return own(memory);
+  return memory;
 }
 
 void Arena::release(std::size_t block, std::size_t used) {

@@ -32,12 +32,28 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
+/// Where memory for kernels comes from.
+struct MemorySource {
+  boost::compute::context context;  ///< null: kernels run natively, in the memory of the process
+  bool in_host_memory;              ///< whether kernels run in host memory
+  std::size_t alignment;            ///< every array begins at a multiple of this many bytes
+  std::size_t largest;              ///< the largest number of bytes in one piece
+};
+/// The memory of an OpenCL device.
+MemorySource memory_of(const boost::compute::context& context, const boost::compute::device& device);
+/// The memory of the process, for kernels that run natively.
+MemorySource native_memory();
+
+/// For kernels that run natively, the handle of an array is its address.
+inline cl_mem handle_of(void* address) { return reinterpret_cast<cl_mem>(address); }
+inline char* address_of(cl_mem memory) { return reinterpret_cast<char*>(memory); }
+
 /// A stack allocator: scopes release what was allocated last. Work that is enqueued on an in-order queue may
 /// go on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
 /// further block is allocated and kept. On a CPU, blocks use huge pages if the system provides them.
 class Arena {
  public:
-  Arena(boost::compute::context context, const boost::compute::device& device);
+  explicit Arena(MemorySource source);
   ~Arena();
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
@@ -76,7 +92,7 @@ class Arena {
   };
 
   /// Every array begins at a multiple of this many bytes.
-  std::size_t alignment() const { return alignment_; }
+  std::size_t alignment() const { return source_.alignment; }
   /// The largest number of bytes in use since reset_peak, without unused ends of blocks.
   std::size_t peak_bytes() const { return peak_; }
   /// The bytes of all blocks, the arena's own and lent ones.
@@ -94,15 +110,14 @@ class Arena {
   };
   std::shared_ptr<_cl_mem> allocate_bytes(std::size_t count, std::size_t size);
   std::shared_ptr<_cl_mem> allocate_block(std::size_t bytes);
+  std::shared_ptr<_cl_mem> part_of(const std::shared_ptr<_cl_mem>& memory, std::size_t begin,
+                                   std::size_t bytes) const;
   void check_size(std::size_t bytes) const;
   void release(std::size_t block, std::size_t used);
 
-  boost::compute::context context_;
+  MemorySource source_;
   bool separate_ = false;
   bool is_lent_ = false;
-  bool in_host_memory_;
-  std::size_t alignment_;
-  std::size_t largest_;
   std::vector<Block> blocks_;
   std::vector<Block> own_blocks_;  // kept here while a buffer is lent
   std::size_t current_ = 0;
@@ -110,9 +125,9 @@ class Arena {
   std::size_t block_allocations_ = 0;
 };
 
-/// Makes a buffer that kernels read and write. On a CPU it uses huge pages if the system provides them, and
+/// Allocates memory that kernels read and write. On a CPU it uses huge pages if the system provides them, and
 /// throws DeviceError if the system has not enough memory.
-std::shared_ptr<_cl_mem> allocate_device_memory(cl_context context, bool in_host_memory, std::size_t bytes);
+std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes);
 
 /// Asks the system to use huge pages for [begin, begin + bytes), memory that was not accessed before.
 void prefer_huge_pages(void* begin, std::size_t bytes);

@@ -1,6 +1,7 @@
 #include "host/device.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/compute/platform.hpp>
@@ -83,18 +84,34 @@ bool shares_host_memory(const boost::compute::device& device) {
          device.get_info<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY) != CL_FALSE;
 }
 
+std::size_t physical_memory() {
+  const long pages = sysconf(_SC_PHYS_PAGES), bytes = sysconf(_SC_PAGESIZE);
+  return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : 0;
+}
+
+std::string wanted_device(const std::string& given) {
+  const char* const environment = std::getenv("FLAUNAY_DEVICE");
+  return given.empty() && environment != nullptr ? environment : given;
+}
+
+std::optional<boost::compute::device> find_gpu() {
+  try {
+    for (const auto& device : all_devices()) {
+      if ((device.type() & CL_DEVICE_TYPE_GPU) && has_fp64(device)) return device;
+    }
+  } catch (const DeviceError&) {
+    // No OpenCL.
+  }
+  return {};
+}
+
 boost::compute::device find_device(const std::string& requested) {
   const std::vector<boost::compute::device> devices = all_devices();
   if (devices.empty()) {
     throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo");
   }
-  std::string wanted = requested;
-  std::string origin;
-  if (wanted.empty()) {
-    const char* environment = std::getenv("FLAUNAY_DEVICE");
-    if (environment != nullptr) wanted = environment;
-    origin = " (FLAUNAY_DEVICE)";
-  }
+  const std::string wanted = wanted_device(requested);
+  const std::string origin = requested.empty() ? " (FLAUNAY_DEVICE)" : "";
   if (wanted.empty()) {
     for (const bool gpu_only : {true, false}) {
       for (const auto& device : devices) {

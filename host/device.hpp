@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/compute/device.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,19 @@ namespace flaunay::host {
 /// Lists every device of every platform, platforms in the loader's order. Throws DeviceError, which says what
 /// to install, if there is no platform.
 std::vector<boost::compute::device> all_devices();
+
+/// The name that stands for the host itself, without OpenCL.
+constexpr const char* kHostName = "host";
+
+/// The bytes of memory that the machine has; 0 if that is not known.
+std::size_t physical_memory();
+
+/// The name of a device as given, or, if that is empty, as the environment variable FLAUNAY_DEVICE says;
+/// empty if neither names one.
+std::string wanted_device(const std::string& given);
+
+/// Finds the first GPU with fp64; nothing if there is none, or no OpenCL.
+std::optional<boost::compute::device> find_gpu();
 
 /// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else the first GPU with fp64,
 /// else the first device with fp64), "#k" (the k-th of all_devices), or a part of a device's or platform's

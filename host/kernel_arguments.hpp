@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "host/arena.hpp"
+#include "host/native/function.hpp"
 
 namespace flaunay::host {
 
@@ -18,6 +19,7 @@ namespace flaunay::host {
 struct KernelName {
   const char* program;
   const char* name;
+  NativeFunction native = nullptr;  ///< the kernel compiled for the host; null if it is not
 };
 
 /// The first arguments of a kernel, which the launch sets and the launcher does not have.

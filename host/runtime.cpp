@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/compute/platform.hpp>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -12,6 +14,7 @@
 #include "host/clock.hpp"
 #include "host/device.hpp"
 #include "host/pocl.hpp"
+#include "host/program_cache.hpp"
 #include "kernels/embedded.hpp"
 
 namespace flaunay::host {
@@ -71,15 +74,24 @@ Runtime::Runtime(const boost::compute::context& context, const boost::compute::d
       context_(context),
       own_queues_{make_queue(false), {}},
       queue_(own_queues_[0]),
-      arena_(context_, device) {
+      arena_(memory_of(context_, device)) {
+  if (sizes_->separate_buffers != 0) arena_.separate_buffers();
+}
+
+Runtime::Runtime(std::shared_ptr<const Sizes> sizes)
+    : threads_(std::make_unique<Threads>()), sizes_(std::move(sizes)), arena_(native_memory()) {
   if (sizes_->separate_buffers != 0) arena_.separate_buffers();
 }
 
 Runtime::~Runtime() {
-  clFinish(queue_.get());
+  settle();
   if (on_pocl_ && !programs_[0].empty()) note_pocl_ended_well();
   for (const auto& [event, name] : events_) clReleaseEvent(event);
 }
+
+std::string Runtime::name() const { return is_native() ? "host" : device_.name(); }
+
+MemorySource Runtime::memory() const { return is_native() ? native_memory() : memory_of(context_, device_); }
 
 // Makes an in-order queue. Time stamps slow some devices down, so they are only enabled for profiling.
 boost::compute::command_queue Runtime::make_queue(bool profiling) const {
@@ -87,6 +99,10 @@ boost::compute::command_queue Runtime::make_queue(bool profiling) const {
 }
 
 void Runtime::use_queue(cl_command_queue wanted, bool profiling) {
+  if (is_native()) {
+    profiling_ = profiling;
+    return;
+  }
   if (wanted == nullptr || (wanted == own_queues_[0].get() && profiling)) {
     if (profiling && own_queues_[1].get() == nullptr) own_queues_[1] = make_queue(true);
     wanted = own_queues_[profiling].get();
@@ -153,9 +169,45 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   if (found != programs.end()) return found->second;
   const double begin = now();
   if (on_pocl_) require_pocl_compiler();
-  auto program = boost::compute::program::create_with_source(kernel_source(file), context_);
+  const std::string source = kernel_source(file);
   const std::string options =
       fmt::format("-cl-std=CL1.2 {}{}", sizes_->build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");
+  // Everything that a compiled program depends on.
+  const auto platform = device_.platform();
+  const std::string key =
+      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", FLAUNAY_VERSION, platform.name(), platform.version(),
+                  device_.vendor(), device_.name(), device_.driver_version(), options, source);
+  const ProgramCache cache(default_cache_folder());
+  boost::compute::program program;
+  if (const auto binary = cache.load(key)) program = program_of(*binary, options);
+  if (program.get() == nullptr) {
+    if (before_compiling_) before_compiling_();
+    program = compiled(file, source, options);
+    if (const std::string binary = binary_of(program); !binary.empty()) cache.store(key, binary);
+  }
+  const double seconds = now() - begin;
+  build_seconds_ += seconds;
+  all_build_seconds_ += seconds;
+  return programs.emplace(file, std::move(program)).first->second;
+}
+
+// Makes a program of what binary_of returned; null if the driver does not accept it.
+boost::compute::program Runtime::program_of(const std::string& binary, const std::string& options) const {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
+  const std::size_t size = binary.size();
+  const cl_device_id id = device_.id();
+  cl_int status = CL_SUCCESS, code = CL_SUCCESS;
+  cl_program made = clCreateProgramWithBinary(context_.get(), 1, &id, &size, &bytes, &status, &code);
+  if (made == nullptr) return {};
+  boost::compute::program program(made, false);
+  if (code != CL_SUCCESS || status != CL_SUCCESS) return {};
+  if (clBuildProgram(made, 1, &id, options.c_str(), nullptr, nullptr) != CL_SUCCESS) return {};
+  return program;
+}
+
+boost::compute::program Runtime::compiled(const std::string& file, const std::string& source,
+                                          const std::string& options) const {
+  auto program = boost::compute::program::create_with_source(source, context_);
   const cl_device_id id = device_.id();
   const cl_int code = clBuildProgram(program.get(), 1, &id, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
@@ -167,17 +219,48 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
                                   code, file, error_advice(code), log.c_str()),
                       code, "clBuildProgram");
   }
-  const double seconds = now() - begin;
-  build_seconds_ += seconds;
-  all_build_seconds_ += seconds;
-  return programs.emplace(file, std::move(program)).first->second;
+  return program;
 }
 
-Runtime::Kernel& Runtime::find_kernel(const KernelName& wanted) {
-  const auto [file, name] = wanted;
+// The compiled program as the driver stores it; empty if it does not.
+std::string Runtime::binary_of(const boost::compute::program& program) const {
+  // One entry per device of the context, of which only ours has a binary.
+  cl_uint devices = 0;
+  if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof devices, &devices, nullptr) !=
+      CL_SUCCESS)
+    return "";
+  std::vector<cl_device_id> ids(devices);
+  std::vector<std::size_t> sizes(devices);
+  const std::size_t bytes = devices * sizeof(std::size_t);
+  if (clGetProgramInfo(program.get(), CL_PROGRAM_DEVICES, devices * sizeof(cl_device_id), ids.data(),
+                       nullptr) != CL_SUCCESS ||
+      clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, bytes, sizes.data(), nullptr) != CL_SUCCESS) {
+    return "";
+  }
+  std::vector<std::string> binaries;
+  std::vector<unsigned char*> places;
+  for (const std::size_t size : sizes) binaries.emplace_back(size, '\0');
+  for (std::string& binary : binaries) places.push_back(reinterpret_cast<unsigned char*>(binary.data()));
+  if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, devices * sizeof(unsigned char*), places.data(),
+                       nullptr) != CL_SUCCESS) {
+    return "";
+  }
+  const auto own = std::find(ids.begin(), ids.end(), device_.id());
+  return own == ids.end() ? "" : binaries[static_cast<std::size_t>(own - ids.begin())];
+}
+
+Runtime::Kernel& Runtime::find_kernel(const KernelName& name) {
   auto& kernels = kernels_[counting_];
-  const auto found = kernels.find(&wanted);
-  if (found != kernels.end()) return found->second;
+  const auto found = kernels.find(&name);
+  return found != kernels.end() ? found->second : kernels.emplace(&name, make_kernel(name)).first->second;
+}
+
+Runtime::Kernel Runtime::make_kernel(const KernelName& wanted) {
+  const auto [file, name, native] = wanted;
+  if (is_native()) {
+    if (native == nullptr) throw DeviceError(fmt::format("kernel {} needs an OpenCL device", name));
+    return {{}, name, 0, 1, false, native};
+  }
   const boost::compute::program& program = find_program(file);
   cl_int code = CL_SUCCESS;
   cl_kernel kernel = clCreateKernel(program.get(), name, &code);
@@ -194,14 +277,34 @@ Runtime::Kernel& Runtime::find_kernel(const KernelName& wanted) {
   query(CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof required, required);
   query(CL_KERNEL_LOCAL_MEM_SIZE, sizeof local_memory, &local_memory);
   if (local_memory > device_.get_info<cl_ulong>(CL_DEVICE_LOCAL_MEM_SIZE)) largest = 0;
-  return kernels.emplace(&wanted, Kernel{owned, name, arguments, largest, required[0] != 0}).first->second;
+  return {owned, name, arguments, largest, required[0] != 0};
+}
+
+// Parts of a launch are several groups, but not so many that threads would wait for the last one for long.
+constexpr std::size_t kPartsPerThread = 8;
+
+void Runtime::run_natively(Kernel& kernel, std::size_t work_items, std::size_t group) {
+  std::vector<void*> arguments;
+  arguments.reserve(kernel.native_arguments.size());
+  for (Argument& argument : kernel.native_arguments) arguments.push_back(argument.bytes);
+  const double begin = profiling_ ? now() : 0;
+  threads_->share(work_items, std::max(group, work_items / (kPartsPerThread * threads_->count())),
+                  [&](std::size_t first, std::size_t last) {
+                    kernel.native({first, last, work_items}, arguments.data());
+                  });
+  if (!profiling_) return;
+  KernelTime& time = times_[kernel.name];
+  ++time.launches;
+  time.seconds += now() - begin;
 }
 
 void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group) {
   if (work_items == 0) return;  // OpenCL 1.2 does not allow empty launches
-  if (!kernel.requires_group) group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
-  cl_event event = nullptr;
+  if (!is_native() && !kernel.requires_group)
+    group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
   ++launches_;
+  if (is_native()) return run_natively(kernel, work_items, group);
+  cl_event event = nullptr;
   for (;;) {
     const std::size_t global = (work_items + group - 1) / group * group;
     const cl_int code = clEnqueueNDRangeKernel(queue_.get(), kernel.kernel.get(), 1, nullptr, &global, &group,
@@ -222,6 +325,10 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
 }
 
 void Runtime::enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait) {
+  if (is_native()) {
+    std::memcpy(to, address_of(from) + offset, bytes);
+    return;
+  }
   FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, wait, offset, bytes, to, 0, nullptr, nullptr));
   bytes_to_host_ += bytes;
   if (wait) {
@@ -234,6 +341,10 @@ void Runtime::enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, v
 
 void Runtime::enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from,
                             cl_bool wait) {
+  if (is_native()) {
+    std::memcpy(address_of(to) + offset, from, bytes);
+    return;
+  }
   FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, wait, offset, bytes, from, 0, nullptr, nullptr));
   bytes_to_device_ += bytes;
   if (wait) {
@@ -245,6 +356,11 @@ void Runtime::enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, co
 }
 
 void Runtime::enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes, std::size_t bytes) {
+  if (is_native()) {
+    for (std::size_t at = 0; at < bytes; at += value_bytes)
+      std::memcpy(address_of(to) + at, value, value_bytes);
+    return;
+  }
   ++launches_;
   FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to, value, value_bytes, 0, bytes, 0, nullptr, nullptr));
   keep_order();
@@ -252,12 +368,17 @@ void Runtime::enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes
 
 void Runtime::enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
                            std::size_t bytes) {
+  if (is_native()) {
+    std::memmove(address_of(to) + to_offset, address_of(from) + from_offset, bytes);
+    return;
+  }
   ++launches_;
   FLAUNAY_CL(clEnqueueCopyBuffer(queue_.get(), from, to, from_offset, to_offset, bytes, 0, nullptr, nullptr));
   keep_order();
 }
 
 std::shared_ptr<_cl_mem> Runtime::wrap(void* memory, std::size_t bytes, cl_mem_flags access) {
+  if (is_native()) return {std::shared_ptr<void>(), handle_of(memory)};
   cl_int code = CL_SUCCESS;
   cl_mem buffer = clCreateBuffer(context_.get(), access | CL_MEM_USE_HOST_PTR, bytes, memory, &code);
   check_call(code, "clCreateBuffer");
@@ -265,6 +386,7 @@ std::shared_ptr<_cl_mem> Runtime::wrap(void* memory, std::size_t bytes, cl_mem_f
 }
 
 void Runtime::hand_over(cl_mem shared, std::size_t bytes) {
+  if (is_native()) return;
   cl_int code = CL_SUCCESS;
   void* mapped =
       clEnqueueMapBuffer(queue_.get(), shared, CL_FALSE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &code);
@@ -274,9 +396,19 @@ void Runtime::hand_over(cl_mem shared, std::size_t bytes) {
   keep_order();
 }
 
-void Runtime::flush() { FLAUNAY_CL(clFlush(queue_.get())); }
+void Runtime::flush() {
+  if (!is_native()) FLAUNAY_CL(clFlush(queue_.get()));
+}
+
+void Runtime::settle() const {
+  if (!is_native()) clFinish(queue_.get());
+}
 
 void Runtime::finish() {
+  if (is_native()) {
+    kept_.clear();
+    return;
+  }
   ++waits_;
   FLAUNAY_CL(clFinish(queue_.get()));
   kept_.clear();

@@ -1,4 +1,6 @@
 // A device that is ready for work: its context, queue, kernels and memory, and counts of what was done.
+// Instead of a device, it can be the host itself, which runs the kernels that are compiled as C++
+// (host/native).
 #pragma once
 
 #include <boost/compute/command_queue.hpp>
@@ -7,7 +9,9 @@
 #include <boost/compute/kernel.hpp>
 #include <boost/compute/program.hpp>
 #include <cstddef>
+#include <cstring>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,6 +20,7 @@
 #include "host/arena.hpp"
 #include "host/error.hpp"
 #include "host/kernel_arguments.hpp"
+#include "host/native/threads.hpp"
 #include "host/sizes.hpp"
 
 namespace flaunay::host {
@@ -35,10 +40,22 @@ class Runtime {
   /// Uses the given context, which the device must belong to.
   Runtime(const boost::compute::context& context, const boost::compute::device& device,
           std::shared_ptr<const Sizes> sizes);
+  /// Runs kernels natively, on threads of the host: OpenCL is not used. Launches and copies are complete when
+  /// the call returns; there are no queues and events.
+  explicit Runtime(std::shared_ptr<const Sizes> sizes);
   ~Runtime();
 
+  bool is_native() const { return threads_ != nullptr; }
+  /// Null if kernels run natively.
   const boost::compute::device& device() const { return device_; }
+  /// Null if kernels run natively.
   const boost::compute::context& context() const { return context_; }
+  /// The device's name; "host" if kernels run natively.
+  std::string name() const;
+  /// The number of threads that run native kernels; 0 on a device.
+  std::size_t threads() const { return is_native() ? threads_->count() : 0; }
+  /// Where arenas and buffers get their memory from.
+  MemorySource memory() const;
   const Sizes& sizes() const { return *sizes_; }
   /// Changes the sizes. Kernels are compiled again.
   void set_sizes(std::shared_ptr<const Sizes> sizes);
@@ -207,6 +224,8 @@ class Runtime {
     enqueue_copy(from.memory(), from_first * sizeof(T), to.memory(), to_first * sizeof(T), count * sizeof(T));
   }
   void finish();
+  /// Waits like finish, but ignores errors and does not count.
+  void settle() const;
   /// Submits the enqueued commands to the device, which may then begin.
   void flush();
 
@@ -216,7 +235,7 @@ class Runtime {
    public:
     explicit Settled(const Runtime& runtime) : runtime_(runtime), exceptions_(std::uncaught_exceptions()) {}
     ~Settled() {
-      if (std::uncaught_exceptions() > exceptions_) clFinish(runtime_.queue());
+      if (std::uncaught_exceptions() > exceptions_) runtime_.settle();
     }
     Settled(const Settled&) = delete;
     Settled& operator=(const Settled&) = delete;
@@ -225,6 +244,9 @@ class Runtime {
     const Runtime& runtime_;
     int exceptions_;
   };
+
+  /// Sets what is called before a program is compiled from its source, which takes some time. Empty: nothing.
+  void set_before_compiling(std::function<void()> call) { before_compiling_ = std::move(call); }
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
   /// counters as their last argument; see kernels/shared/counting.h. An empty buffer ends this.
@@ -241,12 +263,18 @@ class Runtime {
   void reset_accounts();
 
  private:
+  /// The value of an argument of a native kernel.
+  struct Argument {
+    alignas(8) unsigned char bytes[32];
+  };
   struct Kernel {
     boost::compute::kernel kernel;
     std::string name;
     cl_uint arguments;
     std::size_t largest_group;  ///< largest work-group size
     bool requires_group;        ///< whether it has the attribute reqd_work_group_size
+    NativeFunction native = nullptr;
+    std::vector<Argument> native_arguments = {};
   };
   template <typename Launcher, typename... Leading>
   void launch_with(std::size_t work_items, std::size_t group, const Launcher& launcher,
@@ -263,24 +291,31 @@ class Runtime {
     if (counting_ && arguments < kernel.arguments) set_argument(kernel, arguments, counters_);
     enqueue(kernel, work_items, group);
   }
-  void set_memory(Kernel& kernel, cl_uint index, cl_mem memory) {
-    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(cl_mem), &memory), kernel.name);
+  template <typename T>
+  void set_bytes(Kernel& kernel, cl_uint index, const T& value) {
+    if (kernel.native != nullptr) {
+      static_assert(sizeof value <= sizeof(Argument) && std::is_trivially_copyable_v<T>);
+      if (kernel.native_arguments.size() <= index) kernel.native_arguments.resize(index + 1);
+      std::memcpy(kernel.native_arguments[index].bytes, &value, sizeof value);
+      return;
+    }
+    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof value, &value), kernel.name);
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
-    set_memory(kernel, index, buffer.memory());
+    set_bytes(kernel, index, buffer.memory());
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const In<T>& array) {
-    set_memory(kernel, index, array.memory.get());
+    set_bytes(kernel, index, array.memory.get());
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Out<T>& array) {
-    set_memory(kernel, index, array.memory.get());
+    set_bytes(kernel, index, array.memory.get());
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Value<T>& value) {
-    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof(T), &value.value), kernel.name);
+    set_bytes(kernel, index, value.value);
   }
   template <typename T, typename = std::enable_if_t<std::is_arithmetic_v<T>>>
   void set_argument(Kernel& kernel, cl_uint index, T value) {
@@ -292,7 +327,13 @@ class Runtime {
   void follow(cl_command_queue other);
   Kernel& find_kernel(const KernelName& name);
   const boost::compute::program& find_program(const std::string& file);
+  boost::compute::program program_of(const std::string& binary, const std::string& options) const;
+  boost::compute::program compiled(const std::string& file, const std::string& source,
+                                   const std::string& options) const;
+  std::string binary_of(const boost::compute::program& program) const;
+  Kernel make_kernel(const KernelName& name);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
+  void run_natively(Kernel& kernel, std::size_t work_items, std::size_t group);
   void enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait);
   std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access);
   void hand_over(cl_mem shared, std::size_t bytes);
@@ -304,6 +345,7 @@ class Runtime {
   void keep_order();
   void collect_times();
 
+  std::unique_ptr<Threads> threads_;  // null unless kernels run natively
   boost::compute::device device_;
   bool on_pocl_;
   std::shared_ptr<const Sizes> sizes_;
@@ -319,6 +361,7 @@ class Runtime {
   std::map<const KernelName*, Kernel> kernels_[2];
   Buffer<cl_uint> counters_{};
   bool counting_ = false;
+  std::function<void()> before_compiling_;
   std::vector<std::pair<cl_event, const std::string*>> events_;
   std::map<std::string, KernelTime> times_;
   std::size_t launches_ = 0;

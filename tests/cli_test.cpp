@@ -528,8 +528,33 @@ using CommandDeviceTest = CommandTest;
 
 TEST_F(CommandDeviceTest, NoPlatformSaysWhatToInstall) {
   const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
-  expect_error(kDevice, {"pocl-opencl-icd"}, {"triangulate", points, "-o", path("mesh.off")});
-  expect_error(kDevice, {"pocl-opencl-icd"}, {"devices"});
+  const Arguments command = {"triangulate", points, "-o", path("mesh.off")};
+  for (const Arguments& needs_opencl : {Arguments{"--device", "pocl"}, Arguments{"--mode", "flattened"}}) {
+    Arguments whole = command;
+    whole.insert(whole.end(), needs_opencl.begin(), needs_opencl.end());
+    expect_error(kDevice, {"pocl-opencl-icd"}, whole);
+  }
+  const Outcome devices = run({"devices"}, kNoPlatform);
+  EXPECT_EQ(devices.exit_code, kSuccess);
+  EXPECT_NE(devices.out.find("host"), std::string::npos) << devices.out;
+  EXPECT_NE(devices.err.find("pocl-opencl-icd"), std::string::npos) << devices.err;
+}
+
+// Small and large, with and without OpenCL, and on a device: the same bytes.
+TEST_F(CommandDeviceTest, NoPlatformIsNeededOnTheHost) {
+  for (const std::string n : {"1000", "50000"}) {
+    const std::string points = path("points.npy");
+    run_well({"generate", "uniform", n, "-o", points});
+    run_well({"triangulate", points, "--device", "#0", "--triangles", path("device.npy")}, {});
+    for (const Arguments& choice : {Arguments{}, Arguments{"--device", "host"}}) {
+      for (const Environment& environment : {Environment{}, kNoPlatform}) {
+        Arguments command = {"triangulate", points, "--triangles", path("host.npy")};
+        command.insert(command.end(), choice.begin(), choice.end());
+        run_well(command, environment);
+        EXPECT_EQ(contents(path("host.npy")), contents(path("device.npy"))) << n << " points";
+      }
+    }
+  }
 }
 
 TEST_F(CommandDeviceTest, UnknownDevice) {
@@ -547,7 +572,8 @@ TEST_F(CommandDeviceTest, TooManyPointsSaysHowManyWouldFit) {
   // PoCL can be told to have one GiB.
   run_well({"generate", "uniform", "4000000", "-o", path("points.npy")}, {});
   expect_error(kDevice, {"4000000 points", "would fit", "1024 MiB of memory"},
-               {"triangulate", path("points.npy"), "-o", path("mesh.off")}, {{"POCL_MEMORY_LIMIT", "1"}});
+               {"triangulate", path("points.npy"), "--device", "#0", "-o", path("mesh.off")},
+               {{"POCL_MEMORY_LIMIT", "1"}});
 }
 
 // Under the address sanitizer, whose own memory the limit would not leave, there is no such test.

@@ -27,10 +27,10 @@ typedef struct {
 static inline int distinct_by_x(int count, global const double2* points, global const int* source,
                                 const block_scratch* s, global int* representatives) {
   global keyed* elements = (global keyed*)s->by_x;
-  for (int i = 0; i < count; ++i) elements[i] = (keyed)(0, i);
+  for (int i = 0; i < count; ++i) elements[i] = VECTOR(keyed, 0, (uint)i);
   elements = sort_along(elements, (global keyed*)s->by_y, count, points, 0);
   int distinct = 0;
-  double2 last = (double2)(0.0, 0.0);
+  double2 last = VECTOR(double2, 0.0, 0.0);
   for (int i = 0; i < count; ++i) {
     const int from = elements[i].y;
     const double2 p = points[from];
@@ -47,14 +47,14 @@ static inline int distinct_by_x(int count, global const double2* points, global 
 static inline void rank(int count, block_scratch* s) {
   global keyed* elements = (global keyed*)s->by_y;
   // Of equal y, the larger x comes first.
-  for (int i = 0; i < count; ++i) elements[i] = (keyed)(0, count - 1 - i);
+  for (int i = 0; i < count; ++i) elements[i] = VECTOR(keyed, 0, (uint)(count - 1 - i));
   elements = sort_along(elements, (global keyed*)s->spare, count, s->points, 1);
   if (elements != (global keyed*)s->by_y) {
     s->spare = s->by_y;
     s->by_y = (global ranks*)elements;
   }
   for (int r = 0; r < count; ++r) {
-    const ranks both = (ranks)((int)elements[r].y, r);
+    const ranks both = VECTOR(ranks, (int)elements[r].y, r);
     s->by_y[r] = both;
     s->by_x[both.x] = both;
   }

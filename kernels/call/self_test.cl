@@ -28,7 +28,7 @@ kernel void self_test(global const double* restrict operands, global const ulong
     const double2 product = two_product(third, third);
     if (as_ulong(product.x) != expected[4] || as_ulong(product.y) != expected[6]) bits |= 64;
     // Vectors as scalars, and sums in the order written.
-    const double2 lanes = (double2)(a, third) * (double2)(b, third);
+    const double2 lanes = VECTOR(double2, a, third) * VECTOR(double2, b, third);
     if (as_ulong(lanes.x) != as_ulong(a * b) || as_ulong(lanes.y) != expected[4]) bits |= 128;
     if (as_ulong((large + third) - large) != expected[7]) bits |= 256;
     failed[0] = bits;

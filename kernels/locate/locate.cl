@@ -438,7 +438,7 @@ kernel void nearest_points(int n, int sets, global const int* restrict query_off
 static inline double2 area_filtered(double2 a, double2 b, double2 q) {
   const double left = (a.x - q.x) * (b.y - q.y);
   const double right = (a.y - q.y) * (b.x - q.x);
-  return (double2)(left - right, fabs(left) + fabs(right));
+  return VECTOR(double2, left - right, fabs(left) + fabs(right));
 }
 
 // The same, with all bits right except the last.

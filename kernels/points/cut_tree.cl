@@ -70,7 +70,7 @@ kernel void sort_chunks(int n, int tree_count, global const int* restrict first_
     const sampled_tree own = chunk.own;
     const int first = chunk.first;
     const int place = axis * all_samples + first;
-    for (int i = 0; i < own.chunk; ++i) elements[place + i] = (keyed)(0, i);
+    for (int i = 0; i < own.chunk; ++i) elements[place + i] = VECTOR(keyed, 0, (uint)i);
     global const keyed* const sorted = sort_along(elements + place, spare + place, own.chunk, samples + first, axis);
     for (int i = 0; i < own.chunk; ++i) order[place + i] = first + (int)sorted[i].y;
   }

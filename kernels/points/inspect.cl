@@ -17,7 +17,7 @@ static inline int2 bit_range(double x) {
     unit = field - 1075;
   }
   const int trailing = (int)popcount((mantissa & (~mantissa + 1)) - 1);
-  return (int2)(unit + 63 - (int)clz(mantissa), unit + trailing);
+  return VECTOR(int2, unit + 63 - (int)clz(mantissa), unit + trailing);
 }
 
 // Points of single precision from `first` on.

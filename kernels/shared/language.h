@@ -61,6 +61,8 @@ using std::fabs;
 using std::fma;
 inline int min(int a, int b) { return b < a ? b : a; }
 inline int max(int a, int b) { return a < b ? b : a; }
+inline long min(long a, long b) { return b < a ? b : a; }
+inline long max(long a, long b) { return a < b ? b : a; }
 inline ulong min(ulong a, ulong b) { return b < a ? b : a; }
 inline ulong max(ulong a, ulong b) { return a < b ? b : a; }
 // Of 0 the number of bits.

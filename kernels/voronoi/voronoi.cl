@@ -33,7 +33,7 @@ static inline double shifted(double x, int shift) { return scaled(x, scale_of(sh
 
 static inline double2 shifted_point(int i, global const double* input, int shift) {
   const double2 p = vload2(i, input);
-  return (double2)(shifted(p.x, shift), shifted(p.y, shift));
+  return VECTOR(double2, shifted(p.x, shift), shifted(p.y, shift));
 }
 
 // sum += sign * f * (gx^2 + gy^2), differences as two_sum gives them.
@@ -79,7 +79,7 @@ static inline double2 centre_exact(double2 a, double2 b, double2 c) {
   sum.size = 0;
   add_lifted(&sum, 1.0, bx, cx, cy);
   add_lifted(&sum, -1.0, cx, bx, by);
-  return (double2)(x / whole, rounded(&sum) / whole);
+  return VECTOR(double2, x / whole, rounded(&sum) / whole);
 }
 
 // Where a determinant is smaller than its terms by more than this factor, as in slender triangles, all are computed
@@ -91,8 +91,8 @@ static inline double2 centre(double2 a, double2 b, double2 c) {
   const double left = ab.x * ac.y, right = ab.y * ac.x;
   const double b_lift = ab.x * ab.x + ab.y * ab.y;
   const double c_lift = ac.x * ac.x + ac.y * ac.y;
-  const double2 plus = (double2)(ac.y * b_lift, ab.x * c_lift);
-  const double2 minus = (double2)(ab.y * c_lift, ac.x * b_lift);
+  const double2 plus = VECTOR(double2, ac.y * b_lift, ab.x * c_lift);
+  const double2 minus = VECTOR(double2, ab.y * c_lift, ac.x * b_lift);
   const double area = left - right;
   const double2 lever = plus - minus;
   const double terms = fabs(plus.x) + fabs(plus.y) + fabs(minus.x) + fabs(minus.y);
@@ -107,7 +107,7 @@ kernel void circumcentres(int n, int points, global const double* restrict input
   const int t = get_global_id(0);
   if (t < n) {
     const int i = triangles[3 * t], j = triangles[3 * t + 1], k = triangles[3 * t + 2];
-    double2 at = (double2)(as_double(0x7ff8000000000000UL));
+    double2 at = VECTOR(double2, as_double(0x7ff8000000000000UL), as_double(0x7ff8000000000000UL));
     if (min(i, min(j, k)) >= 0 && max(i, max(j, k)) < points) {
       const int shift = shift_of(accounts);
       const double2 a = shifted_point(i, input, shift);
@@ -116,7 +116,7 @@ kernel void circumcentres(int n, int points, global const double* restrict input
       const int b_first = comes_before(b, a) && comes_before(b, c);
       const int c_first = comes_before(c, a) && !b_first && comes_before(c, b);
       at = centre(b_first ? b : c_first ? c : a, b_first ? c : c_first ? a : b, b_first ? a : c_first ? b : c);
-      at = (double2)(shifted(at.x, -shift), shifted(at.y, -shift));
+      at = VECTOR(double2, shifted(at.x, -shift), shifted(at.y, -shift));
     }
     vstore2(at, t, centres);
   }

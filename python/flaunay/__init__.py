@@ -4,12 +4,13 @@
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``.
 
-The first call on a device builds its kernels, which takes some seconds; they are kept for later
-processes by the OpenCL implementation, and everything else for later calls.
+Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
+call builds its kernels, which takes some seconds; they are kept on disk for later processes, and
+everything else for later calls.
 
 Threads may call at the same time: the interpreter's lock is released while a device works, and one
-device does one call after the other. After a fork, no call can be made in the child if one was made
-in the parent, as OpenCL does not survive it: start processes by ``multiprocessing``'s ``spawn``.
+device does one call after the other. OpenCL does not survive a fork: in a child of a process that
+used it, calls run on the host, and calls that name a device raise ``DeviceError``.
 """
 
 from flaunay._delaunay import Delaunay

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from functools import cached_property
 from typing import Any, Optional
@@ -97,7 +98,8 @@ class Delaunay:
     def __init__(self, points: npt.ArrayLike, device: Optional[str] = None) -> None:
         self.points: FloatArray = as_points(points).copy()
         self._device = device
-        self._locator_or_none: Optional[_flaunay.Locator] = None
+        # With the process that made it.
+        self._locator_or_none: Optional[tuple[_flaunay.Locator, int]] = None
         # Two threads that ask at the same time should not both make a locator.
         self._locator_lock = threading.Lock()
         mesh = triangulate(self.points, device=device)
@@ -178,12 +180,14 @@ class Delaunay:
 
     @property
     def _locator(self) -> _flaunay.Locator:
-        _triangulators.check_process()
-        if self._locator_or_none is not None:
-            return self._locator_or_none
+        found, process = self._locator_or_none or (None, 0)
+        if process == os.getpid():
+            return found
         with self._locator_lock:
-            if self._locator_or_none is None:
-                self._locator_or_none = _flaunay.Locator(
+            if self._locator_or_none is None or self._locator_or_none[1] != os.getpid():
+                # A forked child must not use its parent's device, not even to release memory.
+                _triangulators.keep(self._locator_or_none)
+                locator = _flaunay.Locator(
                     _triangulators.of_device(self._device),
                     np.asarray(self.points, np.float64),
                     self.simplices,
@@ -191,7 +195,8 @@ class Delaunay:
                     self.hull,
                     self.representatives,
                 )
-            return self._locator_or_none
+                self._locator_or_none = locator, os.getpid()
+            return self._locator_or_none[0]
 
     def __getstate__(self) -> dict[str, Any]:
         # What is in device memory is made again where it is needed; a lock is the object's own.

@@ -85,9 +85,9 @@ def triangulate(
         Set s has the points ``segments[s]`` to ``segments[s + 1]``. Begins with 0, does not decrease
         and ends with n. Without it, there is one set.
     device : str, optional
-        A part of a device's or platform's name, or ``"#k"``, the k-th of `devices`. Without it, the
-        one that the environment variable FLAUNAY_DEVICE names, else the first GPU, else the first
-        device with fp64.
+        A part of a device's or platform's name, ``"#k"``, the k-th of `devices`, or ``"host"`` for the
+        host's cores without OpenCL. Without it, the one that the environment variable FLAUNAY_DEVICE
+        names, else the first GPU with fp64, else the host. The results are the same.
     neighbors, halfedges : bool
         Which of these to compute.
     mode : str

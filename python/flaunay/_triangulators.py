@@ -17,9 +17,13 @@ if TYPE_CHECKING:
 # that contexts made again and again do not pile up.
 _MOST_CONTEXTS = 8
 
+# The name of the host itself, which needs no OpenCL.
+_HOST = "host"
+
 _lock = threading.Lock()
 _by_name: dict[str, _flaunay.Triangulator] = {}
 _by_handles: OrderedDict[tuple[int, int], _flaunay.Triangulator] = OrderedDict()
+_inherited: list[Any] = []
 _used = False
 _forked = False
 
@@ -33,37 +37,52 @@ def _after_fork() -> None:
 os.register_at_fork(after_in_child=_after_fork)
 
 
+def _name_of(device: Optional[str]) -> str:
+    """The device that calls on host memory use; empty if flaunay may choose."""
+    if device is not None and not isinstance(device, str):
+        raise TypeError(f"device must be a string or None, not {type(device).__name__}")
+    return device or os.environ.get("FLAUNAY_DEVICE", "")
+
+
 def check_process() -> None:
-    """DeviceError in a child of a process that used OpenCL, where calls would never return."""
+    """DeviceError in a child of a process that used OpenCL, where its calls would never return."""
     global _used
     if _forked:
         raise DeviceError(
             "OpenCL was in use when this process was forked, and does not survive that: "
-            "start it by multiprocessing's 'spawn' or 'forkserver'"
+            "start it by multiprocessing's 'spawn' or 'forkserver', or name no device"
         )
     _used = True
 
 
 def of_device(device: Optional[str]) -> _flaunay.Triangulator:
-    """The triangulator of a device, as FLAUNAY_DEVICE names it."""
-    if device is not None and not isinstance(device, str):
-        raise TypeError(f"device must be a string or None, not {type(device).__name__}")
-    check_process()
-    name = device or os.environ.get("FLAUNAY_DEVICE", "")
+    """The triangulator of a device; in a forked child the host's, if flaunay may choose."""
+    name = _name_of(device)
+    if _forked and not name:
+        name = _HOST
+    if name != _HOST:
+        check_process()
     dropped: list[_flaunay.Triangulator] = []
     with _lock:
         found = _by_name.get(name)
         if found is None:
-            # Which reads the environment itself, and names it in its error.
-            found = _flaunay.Triangulator(device or "")
+            # The environment is left to the triangulator, which names it in its errors.
+            found = _flaunay.Triangulator(_HOST if name == _HOST else device or "")
             # A device has more than one name; what it holds, it should hold once.
-            for other in _by_name.values():
+            for other_name, other in _by_name.items():
+                if {name, other_name} & {"", _HOST}:
+                    continue  # not a device, or not yet
                 if other.device == found.device:
                     dropped.append(found)
                     found = other
                     break
             _by_name[name] = found
         return found
+
+
+def keep(inherited: Any) -> None:
+    """Keeps what a forked process got from its parent from being released."""
+    _inherited.append(inherited)
 
 
 def of_queue(queue: pyopencl.CommandQueue) -> _flaunay.Triangulator:

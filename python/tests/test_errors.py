@@ -153,13 +153,13 @@ def test_a_device_without_fp64():
         import flaunay
         assert not any(device["fp64"] for device in flaunay.devices())
         assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]], mode="dwyer").triangles) == 1
-        for device in None, "#0":
-            try:
-                flaunay.triangulate([[0, 0], [1, 0], [0, 1]], device=device)
-            except flaunay.DeviceError as error:
-                assert "fp64" in str(error), error
-            else:
-                raise AssertionError("no error")
+        assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]]).triangles) == 1
+        try:
+            flaunay.triangulate([[0, 0], [1, 0], [0, 1]], device="#0")
+        except flaunay.DeviceError as error:
+            assert "fp64" in str(error), error
+        else:
+            raise AssertionError("no error")
         """,
         # Python loads the module, and with it the loader of OpenCL, where a preloaded library does not look for it.
         LD_PRELOAD=f"{library} libOpenCL.so.1",
@@ -172,7 +172,7 @@ def test_without_any_platform(tmp_path):
         """
         import flaunay
         assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]], mode="dwyer").triangles) == 1
-        for call in flaunay.devices, lambda: flaunay.triangulate([[0, 0]]):
+        for call in flaunay.devices, lambda: flaunay.triangulate([[0, 0]], device="#0"):
             try:
                 call()
             except flaunay.DeviceError as error:
@@ -189,16 +189,56 @@ def test_a_child_of_a_process_that_used_opencl_gets_an_error_instead_of_waiting_
     run = run_python("""
         import os
         import flaunay
-        flaunay.triangulate([[0, 0], [1, 0], [0, 1]])
+        flaunay.triangulate([[0, 0], [1, 0], [0, 1]], device="#0")
         child = os.fork()
         if child == 0:
             try:
-                flaunay.triangulate([[0, 0], [1, 0], [0, 1]])
+                flaunay.triangulate([[0, 0], [1, 0], [0, 1]], device="#0")
             except flaunay.DeviceError as error:
                 os._exit(7 if "spawn" in str(error) else 8)
             os._exit(9)
         assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
         """)
+    assert run.returncode == 0, run.stderr
+
+
+def test_a_child_of_a_process_that_used_opencl_can_use_the_host():
+    run = run_python("""
+        import os
+        import numpy as np
+        import flaunay
+        points = np.random.default_rng(1).random((20000, 2))
+        expected = flaunay.triangulate(points, device="#0").triangles
+        assert (flaunay.triangulate(points).triangles == expected).all()
+        child = os.fork()
+        if child == 0:
+            same = (flaunay.triangulate(points).triangles == expected).all()
+            found = flaunay.Delaunay(points).find_simplex(points[:10])
+            os._exit(7 if same and (found >= 0).all() else 8)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+        """)
+    assert run.returncode == 0, run.stderr
+
+
+def test_there_need_not_be_opencl(tmp_path):
+    run = run_python(
+        """
+        import numpy as np
+        import flaunay
+        points = np.random.default_rng(1).random((20000, 2))
+        mesh = flaunay.triangulate(points)
+        assert len(mesh.triangles) > 39000 and mesh.statistics["device"] == "host"
+        assert (flaunay.Delaunay(points).find_simplex(points[:100]) >= 0).all()
+        assert len(flaunay.Voronoi(points).vertices) == len(mesh.triangles)
+        try:
+            flaunay.triangulate(points, device="#0")
+        except flaunay.DeviceError as error:
+            assert "no OpenCL platform" in str(error)
+        else:
+            raise AssertionError("no error")
+        """,
+        OCL_ICD_VENDORS=str(tmp_path),
+    )
     assert run.returncode == 0, run.stderr
 
 

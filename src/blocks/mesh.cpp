@@ -9,23 +9,6 @@
 namespace flaunay::blocks {
 namespace {
 
-// Euler's formula: d points, of which h are on the hull, have 2d - 2 - h triangles. The hull of points on one
-// line is a walk there and back, so h is 2d - 2.
-MeshSizes set_sizes(const Blocks& blocks, const Rings& rings, const std::vector<cl_int>& walked) {
-  MeshSizes sizes;
-  sizes.triangle_offsets.assign(1, 0);
-  sizes.hull_offsets.assign(1, 0);
-  for (std::size_t s = 0; s < blocks.sets; ++s) {
-    const cl_int points = std::accumulate(rings.distinct.begin() + blocks.set_blocks[s],
-                                          rings.distinct.begin() + blocks.set_blocks[s + 1], 0);
-    const cl_int triangles = points < 3 ? 0 : 2 * points - 2 - walked[s];
-    sizes.vertices += points;
-    sizes.triangle_offsets.push_back(sizes.triangle_offsets.back() + triangles);
-    sizes.hull_offsets.push_back(sizes.hull_offsets.back() + (triangles == 0 ? points : walked[s]));
-  }
-  return sizes;
-}
-
 void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
                  const Buffer<cl_int>& hull) {
   host::Runtime& runtime = work.runtime;
@@ -41,6 +24,31 @@ void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, cons
 }
 
 }  // namespace
+
+// Euler's formula: d points, of which h are on the hull, have 2d - 2 - h triangles. The hull of points on one
+// line is a walk there and back, so h is 2d - 2.
+MeshSizes mesh_sizes(const std::vector<cl_int>& set_blocks, const std::vector<cl_int>& distinct,
+                     const std::vector<cl_int>& walked, std::size_t counted) {
+  const std::size_t sets = walked.size();
+  MeshSizes sizes;
+  sizes.triangle_offsets.reserve(sets + 1);
+  sizes.hull_offsets.reserve(sets + 1);
+  sizes.triangle_offsets.push_back(0);
+  sizes.hull_offsets.push_back(0);
+  for (std::size_t s = 0; s < sets; ++s) {
+    const cl_int points =
+        std::accumulate(distinct.begin() + set_blocks[s], distinct.begin() + set_blocks[s + 1], 0);
+    const cl_int triangles = points < 3 ? 0 : 2 * points - 2 - walked[s];
+    sizes.vertices += points;
+    sizes.triangle_offsets.push_back(sizes.triangle_offsets.back() + triangles);
+    sizes.hull_offsets.push_back(sizes.hull_offsets.back() + (triangles == 0 ? points : walked[s]));
+  }
+  if (counted != sizes.triangles()) {
+    throw Error(ErrorKind::internal, fmt::format("{} triangles instead of {}; please report the input",
+                                                 counted, sizes.triangles()));
+  }
+  return sizes;
+}
 
 MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) {
   host::Runtime& runtime = work.runtime;
@@ -60,11 +68,7 @@ MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) 
 
   runtime.read_later(hull_sizes, 0, blocks.sets, walked.data());
   const cl_uint counted = runtime.read_one(rows, blocks.points);
-  MeshSizes sizes = set_sizes(blocks, rings, walked);
-  if (counted != sizes.triangles()) {
-    throw Error(ErrorKind::internal, fmt::format("{} triangles instead of {}; please report the input",
-                                                 counted, sizes.triangles()));
-  }
+  MeshSizes sizes = mesh_sizes(blocks.set_blocks, rings.distinct, walked, counted);
   sizes.first_rows = rows;
   return sizes;
 }

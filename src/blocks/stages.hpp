@@ -63,6 +63,12 @@ struct MeshSizes {
   std::size_t hull_vertices() const { return hull_offsets.back(); }
 };
 
+/// Computes the sizes of a mesh from the number of vertices of each block and from the number of steps of the
+/// walk around each set's hull. set_blocks: the first block of each set, and the number of blocks. counted:
+/// the number of triangles as the vertices count them; throws Error(internal) if it contradicts.
+MeshSizes mesh_sizes(const std::vector<cl_int>& set_blocks, const std::vector<cl_int>& distinct,
+                     const std::vector<cl_int>& walked, std::size_t counted);
+
 /// Counts triangles and hull vertices, and marks the edges on the hull in `rings`. first_rows are for
 /// write_mesh and come from the scratch arena. Waits once. Throws Error(internal) if numbers contradict each
 /// other.

@@ -68,7 +68,7 @@ flaunay_status flaunay_triangulator_create_in_context(cl_context context, cl_dev
 void flaunay_triangulator_destroy(flaunay_triangulator* triangulator) { delete triangulator; }
 
 const flaunay_device_info* flaunay_triangulator_device(const flaunay_triangulator* triangulator) {
-  return read(triangulator, [](const auto& handle) { return &handle.info_view; });
+  return read(triangulator, [](const auto& handle) { return handle.device(); });
 }
 
 cl_context flaunay_triangulator_context(const flaunay_triangulator* triangulator) {

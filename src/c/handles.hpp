@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -71,11 +72,20 @@ inline std::size_t total(const std::vector<std::size_t>& offsets) {
 }  // namespace flaunay::c
 
 struct flaunay_triangulator {
-  explicit flaunay_triangulator(flaunay::Triangulator made)
-      : cpp(std::move(made)), info(cpp.device()), info_view(flaunay::c::view_of(info)) {}
+  explicit flaunay_triangulator(flaunay::Triangulator made) : cpp(std::move(made)) {}
+  /// The device, which is looked for when it is first asked for.
+  const flaunay_device_info* device() const {
+    if (!info_) {
+      info_ = cpp.device();
+      view_ = flaunay::c::view_of(*info_);
+    }
+    return &view_;
+  }
   flaunay::Triangulator cpp;
-  flaunay::DeviceInfo info;
-  flaunay_device_info info_view;
+
+ private:
+  mutable std::optional<flaunay::DeviceInfo> info_;
+  mutable flaunay_device_info view_{};
 };
 
 struct flaunay_triangulation {

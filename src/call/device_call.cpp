@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "blocks/run.hpp"
+#include "call/engine.hpp"
 #include "call/handles.hpp"
-#include "call/implementation.hpp"
 
 namespace flaunay::call {
 
@@ -16,7 +16,7 @@ namespace {
 // Points in the caller's buffer, and results in the buffers of a DeviceTriangulation.
 class DeviceExchange : public blocks::Exchange {
  public:
-  DeviceExchange(Implementation& self, const DevicePoints& points, const Parts& parts,
+  DeviceExchange(Engine& self, const DevicePoints& points, const Parts& parts,
                  DeviceTriangulation& result)
       : self_(self), points_(points), wants_representatives_(parts.representatives) {
     const std::size_t n = points.count;
@@ -42,7 +42,7 @@ class DeviceExchange : public blocks::Exchange {
   blocks::MeshBuffers mesh(const blocks::MeshSizes&) override { return mesh_; }
 
  private:
-  Implementation& self_;
+  Engine& self_;
   const DevicePoints& points_;
   bool wants_representatives_;
   blocks::MeshBuffers mesh_;
@@ -51,7 +51,7 @@ class DeviceExchange : public blocks::Exchange {
 
 }  // namespace
 
-void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+void triangulate(Engine& self, const DevicePoints& points, DeviceTriangulation& result,
                  const Parts& parts, const Enqueue& enqueue) {
   host::Runtime& runtime = self.runtime;
   check_enqueue(runtime, enqueue);
@@ -69,7 +69,7 @@ void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangu
   DeviceExchange exchange(self, points, parts, result);
   self.provide_memory(n, sets);
   Statistics statistics;
-  statistics.device = runtime.device().name();
+  statistics.device = runtime.name();
   statistics.points = n;
   result.parts = parts;
   result.points = n;

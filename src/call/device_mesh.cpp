@@ -71,8 +71,7 @@ points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
   return mesh;
 }
 
-OwnCall::OwnCall(Implementation& self)
-    : runtime((self.use_own_memory(), self.runtime)), scope_(runtime.arena()) {
+OwnCall::OwnCall(Engine& self) : runtime((self.use_own_memory(), self.runtime)), scope_(runtime.arena()) {
   runtime.use_queue(nullptr, false);
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "call/implementation.hpp"
+#include "call/engine.hpp"
 #include "flaunay/device_memory.hpp"
 #include "points/device_mesh.hpp"
 
@@ -30,7 +30,7 @@ points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
 /// and a scope of the scratch arena.
 class OwnCall {
  public:
-  explicit OwnCall(Implementation& self);
+  explicit OwnCall(Engine& self);
   host::Runtime& runtime;
 
  private:

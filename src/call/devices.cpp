@@ -72,6 +72,32 @@ DeviceInfo describe(const boost::compute::device& device) {
   return info;
 }
 
+host::MemoryLeft usable_memory(const host::Runtime& runtime, std::size_t held) {
+  if (!runtime.is_native()) return usable_memory(runtime.device(), held);
+  const host::MemoryLeft left = host::memory_left();
+  // Nothing may be known, so that the sum could overflow.
+  return {std::max(left.bytes, left.bytes + held), left.limit};
+}
+
+DeviceInfo describe(const host::Runtime& runtime) {
+  DeviceInfo info;
+  if (runtime.is_native()) {
+    info.name = runtime.name();
+    info.platform = "without OpenCL";
+    info.version = fmt::format("flaunay {}", version());
+    info.type = "CPU";
+    info.compute_units = static_cast<unsigned>(runtime.threads());
+    info.memory_bytes = host::physical_memory();
+    info.available_bytes = usable_memory(runtime, 0).bytes;
+    info.largest_buffer_bytes = info.memory_bytes;
+    info.fp64 = true;
+  } else {
+    info = describe(runtime.device());
+  }
+  info.self_test_passed = true;
+  return info;
+}
+
 }  // namespace call
 
 std::vector<DeviceInfo> list_devices(bool self_test) {

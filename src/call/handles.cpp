@@ -182,9 +182,7 @@ void make_result(host::Runtime& runtime, DeviceBuffer& buffer, std::size_t bytes
                  std::size_t& made) {
   if (!buffer.is_callers() && buffer.bytes() < bytes) {
     DeviceBufferAccess::set(buffer, nullptr, 0);
-    const bool in_host_memory = runtime.device().type() & CL_DEVICE_TYPE_CPU;
-    DeviceBufferAccess::set(
-        buffer, host::allocate_device_memory(runtime.context().get(), in_host_memory, bytes), bytes);
+    DeviceBufferAccess::set(buffer, host::allocate_memory(runtime.memory(), bytes), bytes);
     ++made;
   }
   check_buffer(runtime, buffer.memory(), bytes, Access::write, what);

@@ -4,7 +4,12 @@
 #include <utility>
 
 #include "blocks/run.hpp"
+#include "blocks/small.hpp"
+#include "call/modes.hpp"
+#include "host/clock.hpp"
+#include "host/device.hpp"
 #include "points/inspect.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::call {
 
@@ -99,18 +104,49 @@ class HostExchange : public blocks::Exchange {
   Buffer<cl_int> representatives_{}, hull_{};
 };
 
+// Whether the sets are triangulated on the calling thread.
+bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
+  if (offsets.back() > tuning.host_points) return false;
+  for (std::size_t s = 1; s < offsets.size(); ++s) {
+    if (offsets[s] - offsets[s - 1] > tuning.block_points) return false;
+  }
+  return true;
+}
+
+Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
+                                const Options& options) {
+  Triangulation result;
+  const statistics::Phases phases(options);
+  phases.progress("triangulate", 0);
+  const double begin = host::now();
+  const std::vector<double> doubles = widened(points, offsets.back());
+  blocks::run_small(points.wide != nullptr ? points.wide : doubles.data(), offsets, options, result);
+  result.statistics.device = host::kHostName;
+  result.statistics.seconds = host::now() - begin;
+  result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
+  phases.progress("output", 1);
+  return result;
+}
+
 }  // namespace
 
-Triangulation empty_result(Implementation& self, std::size_t sets) {
+std::vector<double> widened(const HostPoints& points, std::size_t n) {
+  return points.narrow == nullptr ? std::vector<double>()
+                                  : std::vector<double>(points.narrow, points.narrow + 2 * n);
+}
+
+Triangulation empty_result(Engine& self, std::size_t sets) {
   Triangulation result;
-  result.statistics.device = self.runtime.device().name();
+  result.statistics.device = self.runtime.name();
   result.triangle_offsets.assign(sets + 1, 0);
   result.hull_offsets.assign(sets + 1, 0);
   return result;
 }
 
-Triangulation triangulate(Implementation& self, const HostPoints& points,
-                          const std::vector<std::size_t>& offsets, const Options& options) {
+namespace {
+
+Triangulation triangulate_on(Engine& self, const HostPoints& points, const std::vector<std::size_t>& offsets,
+                             const Options& options) {
   const std::size_t n = offsets.back();
   const std::size_t sets = offsets.size() - 1;
   Triangulation result = empty_result(self, sets);
@@ -133,6 +169,22 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
   phases.write(result.statistics);
   phases.progress("output", 1);
   return result;
+}
+
+}  // namespace
+
+Triangulation triangulate(TriangulatorAccess::Implementation& self, const HostPoints& points,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  const bool may_be_small = !self.is_named() && !options.profile;
+  if (may_be_small && are_small(self.host_tuning(), offsets)) {
+    return triangulate_small(points, offsets, options);
+  }
+  Engine& engine = self.for_host_memory();
+  engine.check_size(offsets.back());
+  if (may_be_small && are_small(tuning_of(engine.runtime), offsets)) {
+    return triangulate_small(points, offsets, options);
+  }
+  return triangulate_on(engine, points, offsets, options);
 }
 
 }  // namespace flaunay::call

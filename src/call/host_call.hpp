@@ -14,11 +14,15 @@ struct HostPoints {
   const float* narrow = nullptr;
 };
 
-/// Implements Triangulator::triangulate for host memory. The offsets must have been checked.
-Triangulation triangulate(Implementation& self, const HostPoints& points,
+/// Converts the points to double precision. Returns an empty vector if they already are in it.
+std::vector<double> widened(const HostPoints& points, std::size_t n);
+
+/// Implements Triangulator::triangulate for host memory: small sets on the calling thread if no device was
+/// named, others on the triangulator's engine for host memory. The offsets must have been checked.
+Triangulation triangulate(TriangulatorAccess::Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options);
 
 /// Returns a result for this many sets without any triangles.
-Triangulation empty_result(Implementation& self, std::size_t sets);
+Triangulation empty_result(Engine& self, std::size_t sets);
 
 }  // namespace flaunay::call

@@ -1,69 +1,56 @@
 #include "call/implementation.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "blocks/memory.hpp"
-#include "call/device_info.hpp"
-#include "call/self_test.hpp"
 #include "host/device.hpp"
-#include "shared/limits.h"
-#include "shared/records.h"
-#include "tuning/tuning.hpp"
 
 namespace flaunay {
-namespace {
 
-// Kernels use 32-bit indices. The longest array has up to 6 corners per point, with 3 ids each.
-constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
-// The most device memory per point that any measured input has needed, including adversarial inputs.
-constexpr std::size_t kBytesPerPoint = 320;
-// Calls that need no more memory than this are not checked, because asking the system would take a part of
-// their time that can be measured.
-constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
+using call::Engine;
 
-// The largest number of points that arrays and indices allow, whatever memory is free.
-std::size_t largest_call(const boost::compute::device& device) {
-  // An arena may have several blocks, but each array is in one buffer. The largest array has the rings'
-  // edges.
-  const std::size_t by_buffer =
-      device.max_memory_alloc_size() / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge));
-  return std::min(kMostPoints, by_buffer);
+Triangulator::Implementation::Implementation(const std::string& wanted) : host_tuning_(native_tuning()) {
+  const std::string name = host::wanted_device(wanted);
+  is_named_ = !name.empty();
+  is_host_named_ = name == host::kHostName;
+  if (is_host_named_) {
+    for_host_memory();
+  } else if (is_named_) {
+    device_ = std::make_unique<Engine>(boost::compute::context(), host::find_device(wanted));
+  }
 }
-
-boost::compute::device checked_device(const boost::compute::device& device) {
-  if (host::has_fp64(device)) return device;
-  throw host::DeviceError(fmt::format(
-      "{} has no double precision (fp64), which exactness needs; flaunay devices lists the others",
-      device.name()));
-}
-
-boost::compute::context context_of(const boost::compute::device& device) {
-  return boost::compute::context(checked_device(device));
-}
-
-}  // namespace
-
-Triangulator::Implementation::Implementation(const std::string& wanted)
-    : Implementation(boost::compute::context(), host::find_device(wanted)) {}
 
 Triangulator::Implementation::Implementation(const boost::compute::context& context,
                                              const boost::compute::device& device)
-    : runtime(context.get() == nullptr ? context_of(device) : context, checked_device(device),
-              tuning_for(device)),
-      persistent(runtime.context(), runtime.device()),
-      even(runtime.context(), runtime.device()),
-      odd(runtime.context(), runtime.device()) {
-  if (runtime.sizes().separate_buffers != 0) {
-    for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
+    : is_named_(true), host_tuning_(native_tuning()), device_(std::make_unique<Engine>(context, device)) {}
+
+Engine& Triangulator::Implementation::on_device() {
+  const std::lock_guard lock(making_);
+  if (device_ == nullptr) {
+    if (is_host_named_) {
+      throw Error(ErrorKind::usage,
+                  "the device \"host\" has no OpenCL: it runs mode blocks, Voronoi diagrams and queries on "
+                  "points in host memory; name another device");
+    }
+    device_ = std::make_unique<Engine>(boost::compute::context(), host::find_device(""));
   }
-  const std::string failure = call::self_test_failure(runtime);
-  if (!failure.empty()) {
-    throw Error(ErrorKind::device,
-                fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
-                            "another device (FLAUNAY_DEVICE)",
-                            runtime.device().name(), failure));
+  return *device_;
+}
+
+Engine& Triangulator::Implementation::for_host_memory() {
+  const std::lock_guard lock(making_);
+  if (native_ != nullptr) return *native_;
+  if (is_named_ && !is_host_named_) return on_device();
+  if (!is_host_named_ && host::find_gpu()) return on_device();
+  native_ = std::make_unique<Engine>();
+  return *native_;
+}
+
+void Triangulator::Implementation::settle() {
+  if (device_ != nullptr) device_->runtime.settle();
+}
+
+void Triangulator::Implementation::note_held_bytes() {
+  const std::lock_guard lock(making_);
+  for (Engine* engine : {device_.get(), native_.get()}) {
+    if (engine != nullptr) engine->held_at_rest = engine->held_bytes();
   }
 }
 
@@ -77,88 +64,8 @@ call::Turn::Turn(Implementation& self) : self_(self) {
 }
 
 call::Turn::~Turn() {
-  self_.held_at_rest.store(self_.held_bytes(), std::memory_order_relaxed);
+  self_.note_held_bytes();
   self_.is_busy.store(false, std::memory_order_release);
-}
-
-std::size_t Triangulator::Implementation::capacity() const {
-  return std::min(largest_call(runtime.device()),
-                  call::usable_memory(runtime.device(), held_at_rest).bytes / kBytesPerPoint);
-}
-
-void Triangulator::Implementation::check_size(std::size_t n) const {
-  const boost::compute::device& device = runtime.device();
-  const std::size_t most = largest_call(device);
-  if (n <= most && n <= std::max<std::size_t>(kNeverLacking, held_at_rest) / kBytesPerPoint) return;
-  const host::MemoryLeft memory = call::usable_memory(device, held_at_rest);
-  const std::size_t fitting = std::min(most, memory.bytes / kBytesPerPoint);
-  if (n <= fitting) return;
-  throw Error(
-      n > kMostPoints ? ErrorKind::input : ErrorKind::device,
-      fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}, {} in one piece, {} "
-                  "bytes a point)",
-                  n, fitting, device.name(), host::mebibytes(memory.bytes), memory.limit,
-                  host::mebibytes(device.max_memory_alloc_size()), kBytesPerPoint));
-}
-
-void Triangulator::Implementation::use_own_memory() {
-  persistent.lend(nullptr, 0, 0);
-  runtime.arena().lend(nullptr, 0, 0);
-}
-
-void Triangulator::Implementation::provide_memory(std::size_t n, std::size_t sets) {
-  const blocks::WorkspaceBytes needed = blocks::workspace_bytes(runtime, n, sets);
-  if (workspace == nullptr) {
-    // Enough for any n points, so that the next call on as many points allocates nothing.
-    persistent.reserve(needed.persistent);
-    runtime.arena().reserve(needed.scratch);
-    return;
-  }
-  std::size_t size = 0;
-  FLAUNAY_CL(clGetMemObjectInfo(workspace.get(), CL_MEM_SIZE, sizeof size, &size, nullptr));
-  if (size < needed.persistent + needed.scratch) {
-    throw Error(ErrorKind::usage,
-                fmt::format("the workspace is too small: it has {} bytes, {} points in {} sets "
-                            "need {}",
-                            size, n, sets, needed.persistent + needed.scratch));
-  }
-  persistent.lend(workspace, 0, needed.persistent);
-  runtime.arena().lend(workspace, needed.persistent, size - needed.persistent);
-}
-
-void Triangulator::Implementation::begin_call(bool profile) {
-  use_own_memory();
-  runtime.use_queue(nullptr, profile);
-  reset_accounts();
-}
-
-void Triangulator::Implementation::reset_accounts() {
-  runtime.reset_accounts();
-  allocations_before_ = allocations();
-}
-
-void Triangulator::Implementation::write_accounts(Statistics& statistics) {
-  statistics.device_bytes_peak = held_bytes();
-  statistics.kernel_launches = runtime.launches();
-  statistics.host_waits = runtime.waits();
-  statistics.bytes_to_device = runtime.bytes_to_device();
-  statistics.bytes_to_host = runtime.bytes_to_host();
-  statistics.device_allocations = allocations() - allocations_before_;
-  statistics.build_seconds = runtime.build_seconds();
-  for (const auto& [name, time] : runtime.kernel_times()) {
-    statistics.kernels.push_back({name, time.launches, time.seconds});
-  }
-  std::sort(statistics.kernels.begin(), statistics.kernels.end(),
-            [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
-}
-
-std::size_t Triangulator::Implementation::held_bytes() const {
-  return persistent.held_bytes() + even.held_bytes() + odd.held_bytes() + runtime.arena().held_bytes();
-}
-
-std::size_t Triangulator::Implementation::allocations() const {
-  return persistent.block_allocations() + even.block_allocations() + odd.block_allocations() +
-         runtime.arena().block_allocations() + buffer_allocations;
 }
 
 }  // namespace flaunay

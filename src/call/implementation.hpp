@@ -1,55 +1,49 @@
-// The members of a Triangulator: its device, memory, and the statistics of a call.
+// The members of a Triangulator: which engine runs a call, and that calls come one at a time.
 #pragma once
 
-#include <CL/cl.h>
-
 #include <atomic>
-#include <cstddef>
 #include <memory>
+#include <mutex>
 #include <string>
 
+#include "call/engine.hpp"
 #include "call/errors.hpp"
 #include "flaunay/flaunay.hpp"
-#include "host/runtime.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay {
 
+/// If a device is named, every call runs on it, and it is opened at once. If none is named, calls on host
+/// memory run on the first GPU or, where there is none, natively on the host; OpenCL is looked for when it is
+/// first needed.
 struct Triangulator::Implementation {
-  /// Throws Error(device) if there is no such device or if its arithmetic fails the self-test.
+  /// wanted: as in Triangulator's constructor. Throws DeviceError if it names a device that does not exist.
   explicit Implementation(const std::string& wanted);
   Implementation(const boost::compute::context& context, const boost::compute::device& device);
 
-  /// The largest number of points of one call, with the memory that is free now.
-  std::size_t capacity() const;
-  /// Throws Error if n is larger than the capacity.
-  void check_size(std::size_t n) const;
+  /// The engine of calls on device memory and of modes that need a device: the named device, or the one that
+  /// OpenCL offers first. Throws DeviceError or Error(device) if there is none that can be used.
+  call::Engine& on_device();
+  /// The engine of calls on host memory. Throws as on_device if it is a device that cannot be used.
+  call::Engine& for_host_memory();
+  /// Whether a device was named, on which all work is to be done.
+  bool is_named() const { return is_named_; }
+  /// The sizes that hold without a device.
+  const Tuning& host_tuning() const { return *host_tuning_; }
+  /// Waits for all work that was enqueued.
+  void settle();
+  /// To be called at the end of a call: notes how much memory the engines hold.
+  void note_held_bytes();
 
-  /// Makes the arenas use memory of their own instead of the caller's workspace.
-  void use_own_memory();
-  /// Makes the arenas large enough for mode blocks. They use the caller's workspace if there is one,
-  /// otherwise memory of their own. Throws Error(usage) if the workspace is too small.
-  void provide_memory(std::size_t n, std::size_t sets);
-
-  /// Begins a call on host memory: selects the triangulator's own memory and queue, and resets the accounts.
-  void begin_call(bool profile);
-  void reset_accounts();
-  /// Writes to the statistics what the device did since the accounts were reset.
-  void write_accounts(Statistics& statistics);
-
-  host::Runtime runtime;
-  host::Arena persistent;  ///< arrays that live as long as a call
-  host::Arena even, odd;   ///< the regions of even and of odd levels, in the modes that go level by level
-  std::shared_ptr<_cl_mem> workspace;  ///< the caller's workspace, or null
-  std::size_t buffer_allocations = 0;  ///< number of buffers made for DeviceBuffers
-  std::atomic<bool> is_busy{false};    ///< whether a call is running; see Turn
-  /// The device memory that was held when no call was running. Any thread may read it.
-  std::atomic<std::size_t> held_at_rest{0};
-  std::size_t held_bytes() const;
+  std::atomic<bool> is_busy{false};  ///< whether a call is running; see Turn
 
  private:
-  std::size_t allocations() const;
-
-  std::size_t allocations_before_ = 0;
+  bool is_named_ = false;
+  bool is_host_named_ = false;
+  std::shared_ptr<const Tuning> host_tuning_;
+  // Held while an engine is made or looked for.
+  std::recursive_mutex making_;
+  std::unique_ptr<call::Engine> device_, native_;
 };
 
 /// Gives functions that are not members of Triangulator access to its implementation.

@@ -15,9 +15,9 @@ using host::Arena;
 using host::Buffer;
 
 struct Locator::Implementation {
-  explicit Implementation(std::shared_ptr<Triangulator::Implementation> used)
-      : owner(std::move(used)), own(owner->runtime.context(), owner->runtime.device()) {
-    if (owner->runtime.sizes().separate_buffers) own.separate_buffers();
+  Implementation(std::shared_ptr<Triangulator::Implementation> used, call::Engine& used_engine)
+      : owner(std::move(used)), engine(used_engine), own(engine.runtime.memory()) {
+    if (engine.runtime.sizes().separate_buffers) own.separate_buffers();
   }
 
   // Kernels use 32-bit indices for the coordinates of queries.
@@ -36,7 +36,7 @@ struct Locator::Implementation {
       const std::size_t m = offsets.back();
       check_queries(m);
       call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
-      const call::OwnCall own_call(*owner);
+      const call::OwnCall own_call(engine);
       host::Runtime& runtime = own_call.runtime;
       std::vector<Result> result(m);
       const host::Runtime::Settled settled(runtime);
@@ -53,8 +53,11 @@ struct Locator::Implementation {
   void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
               const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
-      owner->use_own_memory();
-      host::Runtime& runtime = owner->runtime;
+      call::expect(!engine.runtime.is_native(),
+                   "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
+                   "make it from device memory, or name a device");
+      engine.use_own_memory();
+      host::Runtime& runtime = engine.runtime;
       call::check_enqueue(runtime, enqueue);
       call::check_points(runtime, queries, "queries");
       call::QueuedCall queued(runtime, enqueue);
@@ -62,7 +65,7 @@ struct Locator::Implementation {
       check_queries(queries.count);
       const std::vector<std::size_t> offsets = call::checked_offsets(runtime, queries);
       const auto output =
-          call::result_buffer<Result>(runtime, result, queries.count, what, owner->buffer_allocations);
+          call::result_buffer<Result>(runtime, result, queries.count, what, engine.buffer_allocations);
       call::check_distinct({queries.memory, queries.device_offsets, values, result.memory()});
       work(runtime, call::wide_points(runtime, runtime.arena(), queries), queries.count, offsets, output);
       queued.end();
@@ -70,13 +73,17 @@ struct Locator::Implementation {
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
+  call::Engine& engine;  ///< one of the owner's
   Arena own;
   locate::Locator locator;
   std::size_t points = 0;
 };
 
-std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator) {
-  return with_errors([&] { return std::make_unique<Implementation>(triangulator.implementation_); });
+std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator, bool on_device) {
+  const auto& owner = triangulator.implementation_;
+  return call::take_turn(*owner, [&] {
+    return std::make_unique<Implementation>(owner, on_device ? owner->on_device() : owner->for_host_memory());
+  });
 }
 
 Locator::Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
@@ -85,10 +92,10 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates, std::siz
 
 Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
-    : implementation_(make(triangulator)) {
+    : implementation_(make(triangulator, false)) {
   call::take_turn(*implementation_->owner, [&] {
-    implementation_->owner->check_size(offsets.empty() ? 0 : offsets.back());
-    const call::OwnCall own_call(*implementation_->owner);
+    implementation_->engine.check_size(offsets.empty() ? 0 : offsets.back());
+    const call::OwnCall own_call(implementation_->engine);
     const host::Runtime::Settled settled(own_call.runtime);
     const points::DeviceMesh mesh = call::mesh_of(own_call.runtime, coordinates, offsets, triangulation);
     implementation_->locator = locate::make_locator(own_call.runtime, implementation_->own, mesh);
@@ -99,11 +106,11 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
 
 Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
                  const DeviceTriangulation& triangulation, const Enqueue& enqueue)
-    : implementation_(make(triangulator)) {
-  Triangulator::Implementation& owner = *implementation_->owner;
-  call::take_turn(owner, enqueue, [&] {
-    owner.use_own_memory();
-    host::Runtime& runtime = owner.runtime;
+    : implementation_(make(triangulator, true)) {
+  call::take_turn(*implementation_->owner, enqueue, [&] {
+    call::Engine& engine = implementation_->engine;
+    engine.use_own_memory();
+    host::Runtime& runtime = engine.runtime;
     call::check_enqueue(runtime, enqueue);
     call::check_points(runtime, points, "points");
     call::QueuedCall queued(runtime, enqueue);

@@ -15,34 +15,36 @@ namespace {
 
 using research::Mode;
 
-research::Triangulation run_blocks(Implementation& self, const Request& request) {
+research::Triangulation run_blocks(TriangulatorAccess::Implementation& self, const Request& request) {
   research::Triangulation result;
   static_cast<Triangulation&>(result) = triangulate(self, request.points, request.offsets, request.options);
   return result;
 }
 
 // Runs the modes that go level by level on the device. solve_regions: empty except in Mode::partition.
-research::Triangulation run_levels(Implementation& self, const Request& request, int partition_levels,
-                                   const flattened::SolveRegions& solve_regions) {
+research::Triangulation run_levels(TriangulatorAccess::Implementation& self, const Request& request,
+                                   int partition_levels, const flattened::SolveRegions& solve_regions) {
   const std::size_t n = request.offsets.back();
+  Engine& engine = self.on_device();
+  engine.check_size(n);
   research::Triangulation result;
-  static_cast<Triangulation&>(result) = empty_result(self, request.offsets.size() - 1);
+  static_cast<Triangulation&>(result) = empty_result(engine, request.offsets.size() - 1);
   if (n == 0) return result;
   const std::vector<double> doubles = widened(request.points, n);
   const double* const coordinates = doubles.empty() ? request.points.wide : doubles.data();
-  self.begin_call(request.options.profile);
-  flattened::run(self.runtime, {self.persistent, self.even, self.odd}, coordinates, request.offsets,
+  engine.begin_call(request.options.profile);
+  flattened::run(engine.runtime, {engine.persistent, engine.even, engine.odd}, coordinates, request.offsets,
                  request.options, partition_levels, solve_regions, result);
-  self.write_accounts(result.statistics);
+  engine.write_accounts(result.statistics);
   return result;
 }
 
-research::Triangulation run_flattened(Implementation& self, const Request& request) {
+research::Triangulation run_flattened(TriangulatorAccess::Implementation& self, const Request& request) {
   return run_levels(self, request, 0, {});
 }
 
 // Dwyer's algorithm triangulates the regions that are left after the levels.
-research::Triangulation run_partition(Implementation& self, const Request& request) {
+research::Triangulation run_partition(TriangulatorAccess::Implementation& self, const Request& request) {
   const research::Options& options = request.options;
   const int levels = partition::levels_for(request.offsets.back(), options.partition_levels, options.threads);
   return run_levels(self, request, levels,
@@ -97,11 +99,6 @@ const std::array<ModeRow, 6> kModes = {{
 }};
 
 }  // namespace
-
-std::vector<double> widened(const HostPoints& points, std::size_t n) {
-  return points.narrow == nullptr ? std::vector<double>()
-                                  : std::vector<double>(points.narrow, points.narrow + 2 * n);
-}
 
 const ModeRow& row_of(research::Mode mode) {
   for (const ModeRow& row : kModes) {

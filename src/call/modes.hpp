@@ -18,14 +18,11 @@ struct Request {
 
 struct ModeRow {
   research::ModeInfo info;
-  /// Runs the mode on the device of a Triangulator; null for a mode that runs on the host.
-  research::Triangulation (*on_device)(Implementation& self, const Request& request);
-  /// Runs the mode on the host; null for a mode that runs on the device. coordinates: in double precision.
+  /// Runs the mode on an engine of a Triangulator; null for a mode that needs none.
+  research::Triangulation (*with_engine)(TriangulatorAccess::Implementation& self, const Request& request);
+  /// Runs the mode on the host; null for a mode that needs an engine. coordinates: in double precision.
   research::Triangulation (*on_host)(const double* coordinates, const Request& request);
 };
-
-/// Converts the points to double precision. Returns an empty vector if they already are in it.
-std::vector<double> widened(const HostPoints& points, std::size_t n);
 
 /// The row of a mode. Throws Error(usage) for an unknown mode.
 const ModeRow& row_of(research::Mode mode);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "call/errors.hpp"
+#include "call/implementation.hpp"
 #include "call/modes.hpp"
 #include "flattened/run.hpp"
 #include "geometry/magnitudes.hpp"
@@ -37,8 +38,7 @@ Triangulation checked_call(Triangulator& triangulator, const call::HostPoints& p
     check_options(options);
     call::Implementation& self = TriangulatorAccess::implementation(triangulator);
     const call::Turn turn(self);
-    self.check_size(n);
-    return row.on_device(self, request);
+    return row.with_engine(self, request);
   });
 }
 
@@ -85,12 +85,13 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     uncounted.mode = Mode::flattened;
     uncounted.count = false;
     check_options(uncounted);
-    call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-    const call::Turn turn(self);
+    call::Implementation& owner = TriangulatorAccess::implementation(triangulator);
+    const call::Turn turn(owner);
+    call::Engine& self = owner.on_device();
     self.check_size(n);
     geometry::check_coordinates(coordinates, n);
     Partition result;
-    result.statistics.device = self.runtime.device().name();
+    result.statistics.device = self.runtime.name();
     if (n == 0) return result;
     self.begin_call(options.profile);
     flattened::partition(self.runtime, {self.persistent, self.even, self.odd}, coordinates, n, levels,

@@ -38,7 +38,6 @@ Triangulation checked_call(call::Implementation& self, const call::HostPoints& p
                            const std::vector<std::size_t>& offsets, const Options& options) {
   geometry::check_offsets(offsets);
   if (points.narrow == nullptr) geometry::check_coordinates(points.wide, offsets.back());
-  self.check_size(offsets.back());
   return call::triangulate(self, points, offsets, options);
 }
 
@@ -54,26 +53,28 @@ Triangulator::Triangulator(cl_context context, cl_device_id device)
       })) {}
 
 Triangulator::~Triangulator() {
-  // Waits even if a locator keeps the runtime alive. A destructor cannot report errors, so they are ignored.
-  if (implementation_) clFinish(implementation_->runtime.queue());
+  // Waits even if a locator keeps the device's memory alive. A destructor cannot report errors, so they are ignored.
+  if (implementation_) implementation_->settle();
 }
 Triangulator::Triangulator(Triangulator&&) noexcept = default;
 Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
 
 DeviceInfo Triangulator::device() const {
-  return with_errors([&] {
-    DeviceInfo info = call::describe(implementation_->runtime.device());
-    info.self_test_passed = true;
-    return info;
-  });
+  return with_errors([&] { return call::describe(implementation_->for_host_memory().runtime); });
 }
 
-cl_context Triangulator::context() const noexcept { return implementation_->runtime.context().get(); }
-cl_device_id Triangulator::device_id() const noexcept { return implementation_->runtime.device().id(); }
-cl_command_queue Triangulator::queue() const noexcept { return implementation_->runtime.own_queue(); }
+cl_context Triangulator::context() const {
+  return with_errors([&] { return implementation_->on_device().runtime.context().get(); });
+}
+cl_device_id Triangulator::device_id() const {
+  return with_errors([&] { return implementation_->on_device().runtime.device().id(); });
+}
+cl_command_queue Triangulator::queue() const {
+  return with_errors([&] { return implementation_->on_device().runtime.own_queue(); });
+}
 
 std::size_t Triangulator::capacity() const {
-  return with_errors([&] { return implementation_->capacity(); });
+  return with_errors([&] { return implementation_->for_host_memory().capacity(); });
 }
 
 Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n, const Options& options) {
@@ -101,22 +102,23 @@ Triangulation Triangulator::triangulate(const float* coordinates, const std::vec
 void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
                                const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue,
-                  [&] { call::triangulate(*implementation_, points, result, parts, enqueue); });
+                  [&] { call::triangulate(implementation_->on_device(), points, result, parts, enqueue); });
 }
 
 std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {
   return with_errors([&] {
-    implementation_->check_size(n);
+    const call::Engine& engine = implementation_->on_device();
+    engine.check_size(n);
     // Sums with larger numbers could overflow.
     if (sets > call::kMostCountable) throw Error(ErrorKind::usage, "too many sets of points");
-    const blocks::WorkspaceBytes needed = blocks::workspace_bytes(implementation_->runtime, n, sets);
+    const blocks::WorkspaceBytes needed = blocks::workspace_bytes(engine.runtime, n, sets);
     return needed.persistent + needed.scratch;
   });
 }
 
 void Triangulator::use_workspace(cl_mem workspace) {
-  Implementation& self = *implementation_;
-  call::take_turn(self, [&] {
+  call::take_turn(*implementation_, [&] {
+    call::Engine& self = implementation_->on_device();
     std::shared_ptr<_cl_mem> lent;
     if (workspace != nullptr) {
       call::check_buffer(self.runtime, workspace, 1, call::Access::workspace, "the workspace");

@@ -11,8 +11,9 @@ using host::Arena;
 
 Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation) {
   return call::take_turn(*implementation_, [&] {
-    implementation_->check_size(n);
-    const call::OwnCall own(*implementation_);
+    call::Engine& engine = implementation_->for_host_memory();
+    engine.check_size(n);
+    const call::OwnCall own(engine);
     host::Runtime& runtime = own.runtime;
     Voronoi result;
     const host::Runtime::Settled settled(runtime);
@@ -36,9 +37,10 @@ Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Tr
 void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
                            DeviceVoronoi& result, const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue, [&] {
-    implementation_->use_own_memory();
-    host::Runtime& runtime = implementation_->runtime;
-    std::size_t& made = implementation_->buffer_allocations;
+    call::Engine& engine = implementation_->on_device();
+    engine.use_own_memory();
+    host::Runtime& runtime = engine.runtime;
+    std::size_t& made = engine.buffer_allocations;
     call::check_enqueue(runtime, enqueue);
     call::check_points(runtime, points, "points");
     call::QueuedCall queued(runtime, enqueue);

@@ -25,23 +25,29 @@ std::string self_test(const DeviceInfo& device) {
   return "failed: " + device.self_test_failure;
 }
 
-int devices() {
-  std::vector<DeviceInfo> found;
-  {
+// The OpenCL devices; none, with a note that says why, if there is no OpenCL.
+std::vector<DeviceInfo> opencl_devices() {
+  try {
     Progress progress(true);
     progress.update_slow("testing devices", "testing devices: compiling kernels, cached for next time");
-    found = list_devices(true);
+    return list_devices(true);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::device) throw;
+    fmt::print(stderr, "note: {}\n", error.what());
+    return {};
   }
-  if (found.empty()) {
-    throw Error(ErrorKind::device,
-                "no OpenCL device: the installed platforms offer none; on Debian, install pocl-opencl-icd to "
-                "compute on the CPU");
-  }
+}
+
+int devices() {
+  const DeviceInfo host = Triangulator("host").device();
+  const std::vector<DeviceInfo> found = opencl_devices();
 
   constexpr std::size_t kColumns = 11;
   using Row = std::array<std::string, kColumns>;
   std::vector<Row> rows = {{"#", "name", "type", "platform", "driver", "fp64", "memory", "available",
                             "largest buffer", "units", "self-test"}};
+  rows.push_back({"-", host.name, host.type, host.platform, host.version, "yes", gibibytes(host.memory_bytes),
+                  gibibytes(host.available_bytes), "-", std::to_string(host.compute_units), self_test(host)});
   for (std::size_t k = 0; k < found.size(); ++k) {
     const DeviceInfo& device = found[k];
     rows.push_back({fmt::format("#{}", k), device.name, device.type, device.platform, device.driver,
@@ -68,7 +74,7 @@ int devices() {
 
 void add_devices(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("devices", "List the OpenCL devices, with the result of the self-test");
+      app.add_subcommand("devices", "List the host and the OpenCL devices, with the result of the self-test");
   command->callback([&action] { action = devices; });
 }
 

@@ -86,7 +86,7 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
     counting_->add_sort(offsets);
     counting_->add_sort({distinct.begin(), distinct.end()});
   }
-  statistics.device = runtime.device().name();
+  statistics.device = runtime.name();
   statistics.points = n;
   statistics.duplicates = n - table.count;
   phases.end("sort");

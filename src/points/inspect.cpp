@@ -36,9 +36,8 @@ Scaling scaling_for(host::Runtime& runtime, const host::Buffer<cl_double>& point
   if (!can_be_exact(magnitudes, n)) {
     coordinates.resize(2 * n);
     // Copied first, because the caller's buffer may not permit the host to read it.
-    const bool in_host_memory = runtime.device().type() & CL_DEVICE_TYPE_CPU;
-    const host::Buffer<cl_double> copy(
-        host::allocate_device_memory(runtime.context().get(), in_host_memory, 2 * n * sizeof(double)), 2 * n);
+    const host::Buffer<cl_double> copy(host::allocate_memory(runtime.memory(), 2 * n * sizeof(double)),
+                                       2 * n);
     runtime.copy(points, 0, copy, 0, 2 * n);
     runtime.read(copy, 0, 2 * n, coordinates.data());
   }

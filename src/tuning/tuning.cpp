@@ -7,8 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "host/device.hpp"
 #include "host/error.hpp"
 #include "shared/limits.h"
+#include "shared/prefetch.h"
 
 namespace flaunay {
 namespace {
@@ -116,10 +118,10 @@ constexpr Row kTable[] = {
      "Memory stays proportional to the points."},
     {"fetch_ahead",
      &Tuning::fetch_ahead,
-     {6144},
+     {CPU_FETCH_AHEAD},
      {0},
      {0},
-     "3 pairs per point of a block: an edge rarely leads farther. GPUs hide waiting otherwise."},
+     "Edges lead anywhere within a block. GPUs hide waiting otherwise."},
     {"sorted_queries_least",
      &Tuning::sorted_queries_least,
      {16384},
@@ -132,6 +134,12 @@ constexpr Row kTable[] = {
      {16},
      {16},
      "A walk from the sample in a leaf takes a few steps."},
+    {"host_points",
+     &Tuning::host_points,
+     {6000},
+     {20000},
+     {0},
+     "Below, waking threads or a GPU takes longer than doing the work."},
     {"in_host_memory",
      &Tuning::in_host_memory,
      {1},
@@ -183,8 +191,15 @@ constexpr std::size_t kPointsOfASmallBlock = 6;
                   given, kLargestGroup));
 }
 
-Tuning column(Amount Row::*kind, const boost::compute::device& device) {
-  const std::size_t units = std::max<std::size_t>(1, device.compute_units());
+// What the table asks about a device.
+struct Target {
+  std::string name;
+  bool is_cpu;
+  std::size_t units;
+};
+
+Tuning column(Amount Row::*kind, const Target& target) {
+  const std::size_t units = std::max<std::size_t>(1, target.units);
   Tuning tuning;
   for (const Row& row : kTable) {
     const Amount& amount = row.*kind;
@@ -204,12 +219,12 @@ std::optional<std::size_t> number_of(const std::string& digits, std::size_t most
   return number <= most ? std::optional(number) : std::nullopt;
 }
 
-std::optional<Tuning> kind_named(const std::string& name, const boost::compute::device& device) {
-  if (name == "cpu") return column(&Row::cpu, device);
-  if (name == "gpu") return column(&Row::gpu, device);
-  if (name == "small") return column(&Row::small, device);
+std::optional<Tuning> kind_named(const std::string& name, const Target& target) {
+  if (name == "cpu") return column(&Row::cpu, target);
+  if (name == "gpu") return column(&Row::gpu, target);
+  if (name == "small") return column(&Row::small, target);
   if (name == "small-blocks") {
-    Tuning tuning = column(&Row::small, device);
+    Tuning tuning = column(&Row::small, target);
     tuning.block_points = kPointsOfASmallBlock;
     return tuning;
   }
@@ -217,7 +232,7 @@ std::optional<Tuning> kind_named(const std::string& name, const boost::compute::
   if (name.compare(0, prefix.size(), prefix) != 0) return {};
   const auto group = number_of(name.substr(prefix.size()), kLargestGroup);
   if (!group || *group == 0) return {};
-  Tuning tuning = column(&Row::gpu, device);
+  Tuning tuning = column(&Row::gpu, target);
   tuning.map_group = tuning.private_group = tuning.chunk_group = tuning.sort_group = tuning.block_group =
       *group;
   return tuning;
@@ -245,14 +260,13 @@ std::vector<std::string> parts_of(const std::string& list) {
   return parts;
 }
 
-// given: as FLAUNAY_TUNING has it; what it leaves open is as the device's kind has it.
-Tuning tuning_named(const std::string& given, const boost::compute::device& device) {
-  const bool is_cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
-  Tuning tuning = column(is_cpu ? &Row::cpu : &Row::gpu, device);
+// given: as FLAUNAY_TUNING has it; what it leaves open is as the target's kind has it.
+Tuning tuning_named(const std::string& given, const Target& target) {
+  Tuning tuning = column(target.is_cpu ? &Row::cpu : &Row::gpu, target);
   if (given.empty()) return tuning;
   bool is_first = true;
   for (const std::string& part : parts_of(given)) {
-    const auto kind = is_first ? kind_named(part, device) : std::nullopt;
+    const auto kind = is_first ? kind_named(part, target) : std::nullopt;
     if (kind) {
       tuning = *kind;
     } else if (!override_value(tuning, part)) {
@@ -263,12 +277,18 @@ Tuning tuning_named(const std::string& given, const boost::compute::device& devi
   return tuning;
 }
 
-// What is said of the device by its name; empty if nothing is.
-std::string tuning_by_name(const boost::compute::device& device) {
+// What is said of the target by its name; empty if nothing is.
+std::string tuning_by_name(const Target& target) {
   for (const NamedDevice& named : kNamedDevices) {
-    if (device.name().find(named.name) != std::string::npos) return named.tuning;
+    if (target.name.find(named.name) != std::string::npos) return named.tuning;
   }
   return "";
+}
+
+Tuning tuning_of_target(const Target& target) {
+  const char* const given = std::getenv("FLAUNAY_TUNING");
+  const bool is_given = given != nullptr && *given != '\0';
+  return tuning_named(is_given ? given : tuning_by_name(target), target);
 }
 
 }  // namespace
@@ -279,12 +299,23 @@ std::string Tuning::build_options() const {
 }
 
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
-  const char* const given = std::getenv("FLAUNAY_TUNING");
-  const bool is_given = given != nullptr && *given != '\0';
-  auto tuning = std::make_shared<Tuning>(tuning_named(is_given ? given : tuning_by_name(device), device));
+  const bool is_cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
+  auto tuning = std::make_shared<Tuning>(tuning_of_target({device.name(), is_cpu, device.compute_units()}));
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   tuning->block_group = std::min(tuning->block_group, std::max<std::size_t>(1, limits.work_group));
+  return tuning;
+}
+
+std::shared_ptr<const Tuning> native_tuning() {
+  const Target host{host::kHostName, true, host::usable_cores()};
+  auto tuning = std::make_shared<Tuning>(tuning_of_target(host));
+  // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory.
+  const Tuning compiled = column(&Row::cpu, host);
+  tuning->sort_bits = compiled.sort_bits;
+  tuning->sort_group = compiled.sort_group;
+  tuning->fetch_ahead = compiled.fetch_ahead;
+  tuning->in_host_memory = 1;
   return tuning;
 }
 

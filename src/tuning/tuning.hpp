@@ -29,6 +29,10 @@ struct Tuning : host::Sizes {
   /// The smallest number of vertices per leaf of a locator's tree.
   std::size_t vertices_per_leaf = 1;
 
+  /// Sets of at most a block's points each, and of at most this many together, are triangulated on the
+  /// calling thread if no device is named; 0: none.
+  std::size_t host_points = 0;
+
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.
 
@@ -48,6 +52,10 @@ struct Tuning : host::Sizes {
 /// 1024, "small", "small-blocks"), or values by name ("block_group=64"), or both, separated by commas. Throws
 /// DeviceError, which says what is allowed, if FLAUNAY_TUNING is not valid.
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device);
+
+/// The sizes for kernels that run natively on the host. FLAUNAY_TUNING overrides them, too, except what the
+/// kernels are compiled for.
+std::shared_ptr<const Tuning> native_tuning();
 
 /// The sizes of a runtime, which must be a Tuning.
 const Tuning& tuning_of(const host::Runtime& runtime);

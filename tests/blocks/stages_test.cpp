@@ -266,7 +266,7 @@ TEST(Stages, ResultsDoNotDependOnTuning) {
       tuning.block_workers = std::array<std::size_t, 4>{1, 3, 64, 5000}[static_cast<std::size_t>(variant)];
       tuning.chunk_least = std::array<std::size_t, 4>{2, 7, 100, 2000}[static_cast<std::size_t>(variant)];
       tuning.chunks_most = variant == 2 ? 3 : 0;
-      if (runtime.device().type() & CL_DEVICE_TYPE_CPU) tuning.in_host_memory = variant % 2;
+      if (runtime.memory().in_host_memory) tuning.in_host_memory = variant % 2;
       tuning.separate_buffers = variant == 3;
       runtime.set_sizes(std::make_shared<Tuning>(tuning));
       Met met;

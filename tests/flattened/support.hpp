@@ -93,8 +93,8 @@ class Call {
  public:
   explicit Call(Runtime& used)
       : runtime(used),
-        persistent_(used.context(), used.device()),
-        state_(used.context(), used.device()),
+        persistent_(used.memory()),
+        state_(used.memory()),
         scope_(used.arena()),
         work{used, persistent_, levels_} {
     work.children = &state_;

@@ -35,7 +35,7 @@ class SmallArena : public ::testing::Test {
   SmallArena() : runtime_(find_device(""), tuning_for(find_device(""))) {}
   Runtime runtime_;
   // Not the runtime's, which may be told to keep buffers apart.
-  Arena arena_{runtime_.context(), runtime_.device()};
+  Arena arena_{runtime_.memory()};
 };
 
 TEST_F(SmallArena, GivesAlignedBuffersThatDoNotOverlap) {

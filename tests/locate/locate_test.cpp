@@ -31,7 +31,7 @@ struct Answers {
 };
 
 Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& values) {
-  Arena own(runtime.context(), runtime.device());
+  Arena own(runtime.memory());
   if (runtime.sizes().separate_buffers) own.separate_buffers();
   Arena::Scope scope(runtime.arena());
   const Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));

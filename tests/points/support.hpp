@@ -68,7 +68,7 @@ inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
     tuning.block_workers = 1000;
     tuning.chunk_least = 3;
     tuning.chunks_most = 11;
-    if (runtime->device().type() & CL_DEVICE_TYPE_CPU) tuning.in_host_memory = !tuning.in_host_memory;
+    if (runtime->memory().in_host_memory) tuning.in_host_memory = !tuning.in_host_memory;
   }
   runtime->set_sizes(std::make_shared<Tuning>(tuning));
   return runtime;
@@ -92,10 +92,7 @@ void under_each_tuning(const Check& check) {
 class Call {
  public:
   explicit Call(Runtime& used)
-      : runtime(used),
-        persistent_(used.context(), used.device()),
-        scope_(used.arena()),
-        work{used, persistent_} {
+      : runtime(used), persistent_(used.memory()), scope_(used.arena()), work{used, persistent_} {
     if (used.sizes().separate_buffers) persistent_.separate_buffers();
   }
 

@@ -15,10 +15,17 @@
 
 namespace flaunay::testing {
 
+/// Whether tests run kernels natively, on the host, and not on a device.
+inline bool tests_native() {
+  const char* const device = std::getenv("FLAUNAY_TEST_DEVICE");
+  return device != nullptr && device == std::string(host::kHostName);
+}
+
 /// "own": the tuning that the environment names, or else the device's.
 inline std::unique_ptr<host::Runtime> make_tuned_runtime(const std::string& tuning) {
   const char* const before = std::getenv("FLAUNAY_TUNING");
   const ScopedEnvironment kind("FLAUNAY_TUNING", tuning == "own" ? before : tuning.c_str());
+  if (tests_native()) return std::make_unique<host::Runtime>(native_tuning());
   const auto device = host::find_device("");
   return std::make_unique<host::Runtime>(device, tuning_for(device));
 }

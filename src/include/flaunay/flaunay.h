@@ -253,11 +253,14 @@ FLAUNAY_API const flaunay_device_info* flaunay_device_list_at(const flaunay_devi
 
 // ---- Triangulators
 
-/// Makes a triangulator on one device. device: NULL or "" (FLAUNAY_DEVICE if set, else the first GPU, else
-/// the first device with fp64), "#k" (the k-th device of the list, from 0), or a part of a device's or
+/// Makes a triangulator. device: NULL or "" (what FLAUNAY_DEVICE names if it is set; otherwise calls on
+/// points in host memory use the first GPU with fp64 or, if there is none, the host's cores without OpenCL),
+/// "host" (the host without OpenCL), "#k" (the k-th device of the list, from 0), or a part of a device's or
 /// platform's name in upper or lower case.
-/// Compiles kernels, so keep the triangulator for the next call. FLAUNAY_ERROR_DEVICE if there is no such
-/// device, if it lacks fp64, or if its arithmetic fails the self test.
+/// A named device does all the work; otherwise small sets are triangulated on the calling thread, and OpenCL
+/// is loaded when it is first needed. Using a device for the first time compiles kernels, so keep the
+/// triangulator for the next call. FLAUNAY_ERROR_DEVICE if there is no such device, if it lacks fp64, or if
+/// its arithmetic fails the self test.
 FLAUNAY_API flaunay_status flaunay_triangulator_create(const char* device,
                                                        flaunay_triangulator** triangulator);
 /// Makes a triangulator in the caller's context, which is retained. FLAUNAY_ERROR_USAGE if the device does
@@ -266,13 +269,17 @@ FLAUNAY_API flaunay_status flaunay_triangulator_create_in_context(cl_context con
                                                                   flaunay_triangulator** triangulator);
 /// Waits for the work that was enqueued. Locators and results of the triangulator stay valid.
 FLAUNAY_API void flaunay_triangulator_destroy(flaunay_triangulator* triangulator);
-/// The device, which passed the self test.
+/// What calls on host memory use, which passed the self test; NULL if it cannot be used. The host's name is
+/// "host".
 FLAUNAY_API const flaunay_device_info* flaunay_triangulator_device(const flaunay_triangulator* triangulator);
-/// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator.
+/// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator. This and other
+/// functions for device memory use the device that was named, or else the first GPU, or else the first device
+/// with fp64; NULL if there is none or if "host" was named.
 FLAUNAY_API cl_context flaunay_triangulator_context(const flaunay_triangulator* triangulator);
-/// The OpenCL handle of the device. Owned by the triangulator.
+/// The OpenCL handle of the device; see flaunay_triangulator_context. Owned by the triangulator.
 FLAUNAY_API cl_device_id flaunay_triangulator_device_id(const flaunay_triangulator* triangulator);
-/// The triangulator's own queue, which is in order. Owned by the triangulator.
+/// The triangulator's own queue, which is in order; see flaunay_triangulator_context. Owned by the
+/// triangulator.
 FLAUNAY_API cl_command_queue flaunay_triangulator_queue(const flaunay_triangulator* triangulator);
 /// The largest number of points that one call can take on this device.
 FLAUNAY_API size_t flaunay_triangulator_capacity(const flaunay_triangulator* triangulator);

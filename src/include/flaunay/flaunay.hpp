@@ -117,7 +117,7 @@ struct Triangulation {
   Statistics statistics;  ///< what the call did and how long it took
 };
 
-/// An OpenCL device.
+/// An OpenCL device, or the host, for which most members are empty.
 struct DeviceInfo {
   std::string name;              ///< CL_DEVICE_NAME; FLAUNAY_DEVICE may name a part of it
   std::string platform;          ///< CL_PLATFORM_NAME
@@ -174,14 +174,20 @@ struct Voronoi {
   std::vector<std::uint8_t> unbounded;
 };
 
-/// Computes triangulations on one device. It owns the compiled kernels, the working memory and a queue; the
-/// context is its own or the caller's. Making one compiles kernels, so keep it for the next call. It and its
-/// locators do one call at a time: a call during another one, on another thread or from a progress callback,
-/// throws Error(usage). Triangulators on several threads may share a context and a device.
+/// Computes triangulations, on one device or on the host. It owns the compiled kernels, the working memory
+/// and a queue; the context is its own or the caller's. Using a device for the first time compiles kernels,
+/// so keep the triangulator for the next call. It and its locators do one call at a time: a call during
+/// another one, on another thread or from a progress callback, throws Error(usage). Triangulators on several
+/// threads may share a context and a device.
+///
+/// If no device is named, calls on points in host memory use the first GPU with fp64 or, if there is none,
+/// the host's cores without OpenCL; small sets are triangulated on the calling thread in either case. OpenCL
+/// is loaded when it is first needed. Results do not depend on any of this.
 class FLAUNAY_API Triangulator {
  public:
-  /// device: "" (FLAUNAY_DEVICE if set, else the first GPU, else the first device with fp64), "#k" (the k-th
-  /// device of list_devices, from 0), or a part of a device's or platform's name in upper or lower case.
+  /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
+  /// (the k-th device of list_devices, from 0), a part of a device's or platform's name in upper or lower
+  /// case, or "host" for the host without OpenCL. A named device does all the work, that of small sets too.
   /// Throws Error(device) if there is no such device, if it lacks fp64, or if its arithmetic fails the self
   /// test.
   explicit Triangulator(const std::string& device = "");
@@ -196,14 +202,17 @@ class FLAUNAY_API Triangulator {
   /// assigned to.
   Triangulator& operator=(Triangulator&&) noexcept;
 
-  /// The device, which passed the self test.
+  /// What calls on host memory use; it passed the self test. The host's name is "host". Throws Error(device)
+  /// if it cannot be used.
   DeviceInfo device() const;
-  /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator.
-  cl_context context() const noexcept;
+  /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator. This and other
+  /// functions for device memory use the device that was named, or else the first GPU, or else the first
+  /// device with fp64. They throw Error(device) if there is none, and Error(usage) if "host" was named.
+  cl_context context() const;
   /// The OpenCL handle of the device. Owned by the triangulator.
-  cl_device_id device_id() const noexcept;
+  cl_device_id device_id() const;
   /// The triangulator's own queue, which is in order. Owned by the triangulator.
-  cl_command_queue queue() const noexcept;
+  cl_command_queue queue() const;
 
   /// The largest number of points that one call can take on this device, with the memory that is free now.
   std::size_t capacity() const;
@@ -276,7 +285,8 @@ class FLAUNAY_API Triangulator {
 /// of queries, each for the set of the same number; their offsets are like those of points. A query that is
 /// not finite, or whose coordinates are too fine for exact arithmetic in doubles, is an Error(input) that
 /// names it. The locator shares device and memory with its triangulator, so a call during another one of
-/// either throws Error(usage); it may outlive the triangulator.
+/// either throws Error(usage); it may outlive the triangulator. A locator that was made from host memory
+/// without OpenCL answers queries in host memory only.
 class FLAUNAY_API Locator {
  public:
   /// Makes a locator for a triangulation of these n points, which must have neighbours. The locator copies
@@ -333,7 +343,7 @@ class FLAUNAY_API Locator {
 
  private:
   struct FLAUNAY_LOCAL Implementation;
-  FLAUNAY_LOCAL static std::unique_ptr<Implementation> make(Triangulator& triangulator);
+  FLAUNAY_LOCAL static std::unique_ptr<Implementation> make(Triangulator& triangulator, bool on_device);
   std::unique_ptr<Implementation> implementation_;
 };
 

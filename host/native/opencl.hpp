@@ -1,0 +1,105 @@
+// What kernel files use of OpenCL C beyond the text that kernels and host share (kernels/shared/language.h),
+// for kernel files that are compiled as C++.
+#pragma once
+
+#include <climits>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "host/native/function.hpp"
+#include "shared/language.h"
+
+namespace flaunay::kernel {
+
+struct float2 {
+  float x, y;
+};
+struct uint8 {
+  uint s[8];
+};
+
+inline double2 operator+(double2 a, double2 b) { return {a.x + b.x, a.y + b.y}; }
+inline double2 operator*(double2 a, double2 b) { return {a.x * b.x, a.y * b.y}; }
+inline double2 operator*(double a, double2 b) { return {a * b.x, a * b.y}; }
+inline double2 operator*(double2 a, double b) { return {a.x * b, a.y * b}; }
+inline double2 operator/(double2 a, double b) { return {a.x / b, a.y / b}; }
+inline uint2& operator+=(uint2& a, uint2 b) {
+  a.x += b.x;
+  a.y += b.y;
+  return a;
+}
+inline uint8& operator+=(uint8& a, uint8 b) {
+  for (int k = 0; k < 8; ++k) a.s[k] += b.s[k];
+  return a;
+}
+
+inline float2 vload2(std::size_t i, const float* from) { return {from[2 * i], from[2 * i + 1]}; }
+inline void vstore2(double2 value, std::size_t i, double* to) {
+  to[2 * i] = value.x;
+  to[2 * i + 1] = value.y;
+}
+inline double2 convert_double2(float2 value) { return {value.x, value.y}; }
+inline double min(double a, double b) { return b < a ? b : a; }
+inline double max(double a, double b) { return a < b ? b : a; }
+inline int popcount(ulong x) { return __builtin_popcountl(x); }
+inline bool isfinite(double x) { return std::isfinite(x); }
+
+// Atomic operations; as in OpenCL C 1.2, they order nothing else.
+inline int atomic_inc(volatile int* at) { return __atomic_fetch_add(at, 1, __ATOMIC_RELAXED); }
+inline uint atomic_inc(volatile uint* at) { return __atomic_fetch_add(at, 1u, __ATOMIC_RELAXED); }
+inline uint atomic_add(volatile uint* at, uint value) {
+  return __atomic_fetch_add(at, value, __ATOMIC_RELAXED);
+}
+inline uint atomic_or(volatile uint* at, uint value) {
+  return __atomic_fetch_or(at, value, __ATOMIC_RELAXED);
+}
+// Replaces the value by another one while that is better.
+template <typename T, typename IsBetter>
+T atomic_improve(volatile T* at, T value, const IsBetter& is_better) {
+  T old = __atomic_load_n(at, __ATOMIC_RELAXED);
+  while (is_better(value, old) &&
+         !__atomic_compare_exchange_n(at, &old, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+  return old;
+}
+inline int atomic_min(volatile int* at, int value) {
+  return atomic_improve(at, value, [](int a, int b) { return a < b; });
+}
+inline int atomic_max(volatile int* at, int value) {
+  return atomic_improve(at, value, [](int a, int b) { return a > b; });
+}
+
+/// The work-item that this thread runs, and how many there are.
+struct WorkItem {
+  std::size_t number = 0, total = 0;
+};
+inline thread_local WorkItem work_item [[gnu::tls_model("initial-exec")]];
+inline std::size_t get_global_id(int) { return work_item.number; }
+// Every work-group has one work-item.
+inline std::size_t get_local_id(int) { return 0; }
+inline std::size_t get_group_id(int) { return work_item.number; }
+inline std::size_t get_num_groups(int) { return work_item.total; }
+
+/// Runs work-items of a kernel; see host::NativeFunction.
+template <auto Kernel>
+void run_work_items(host::WorkItems items, void* const* arguments) {
+  const auto run = [&]<typename... Parameters, std::size_t... I>(void (*)(Parameters...),
+                                                                 std::index_sequence<I...>) {
+    std::tuple<std::remove_const_t<Parameters>...> values;
+    (std::memcpy(&std::get<I>(values), arguments[I], sizeof(Parameters)), ...);
+    for (std::size_t item = items.begin; item < items.end; ++item) {
+      work_item = {item, items.total};
+      Kernel(std::get<I>(values)...);
+    }
+  };
+  const auto with_indices = [&]<typename... Parameters>(void (*function)(Parameters...)) {
+    run(function, std::index_sequence_for<Parameters...>());
+  };
+  with_indices(Kernel);
+}
+
+}  // namespace flaunay::kernel

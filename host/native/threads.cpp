@@ -1,0 +1,105 @@
+#include "host/native/threads.hpp"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace flaunay::host {
+std::size_t usable_cores() {
+#ifdef __linux__
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof cores, &cores) == 0) return static_cast<std::size_t>(CPU_COUNT(&cores));
+#endif
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+struct Threads::Pool {
+  // One call of share.
+  struct Job {
+    const Work& work;
+    std::size_t n, part;
+    std::atomic<std::size_t> next{0};
+
+    void run() {
+      for (std::size_t begin = next.fetch_add(part); begin < n; begin = next.fetch_add(part)) {
+        work(begin, std::min(n, begin + part));
+      }
+    }
+  };
+
+  explicit Pool(std::size_t helpers) : process(getpid()) {
+    for (std::size_t k = 0; k < helpers; ++k) threads.emplace_back([this] { serve(); });
+  }
+  ~Pool() {
+    {
+      const std::lock_guard lock(mutex);
+      is_over = true;
+    }
+    wake.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  }
+
+  void serve() {
+    std::unique_lock lock(mutex);
+    for (std::size_t seen = 0;;) {
+      wake.wait(lock, [&] { return is_over || jobs != seen; });
+      if (is_over) return;
+      seen = jobs;
+      // A thread that wakes up late may find that the job is done.
+      if (job == nullptr) continue;
+      Job& own = *job;
+      ++busy;
+      lock.unlock();
+      own.run();
+      lock.lock();
+      if (--busy == 0) done.notify_one();
+    }
+  }
+
+  void share(Job& own) {
+    {
+      const std::lock_guard lock(mutex);
+      job = &own;
+      ++jobs;
+    }
+    wake.notify_all();
+    own.run();
+    std::unique_lock lock(mutex);
+    job = nullptr;
+    done.wait(lock, [&] { return busy == 0; });
+  }
+
+  const pid_t process;
+  std::mutex mutex;
+  std::condition_variable wake, done;
+  Job* job = nullptr;
+  std::size_t jobs = 0;  // number of jobs so far
+  std::size_t busy = 0;  // threads at work on the job
+  bool is_over = false;
+  std::vector<std::thread> threads;
+};
+
+Threads::Threads(std::size_t count) : count_(count > 0 ? count : usable_cores()) {}
+
+Threads::~Threads() {
+  if (pool_ && pool_->process != getpid()) pool_.release();
+}
+
+void Threads::share(std::size_t n, std::size_t part, const Work& work) {
+  if (n == 0) return;
+  if (count_ == 1 || n <= part) return work(0, n);
+  // The threads of a forked process's parent do not exist here and cannot be joined, so their pool is given
+  // up.
+  if (pool_ && pool_->process != getpid()) pool_.release();
+  if (!pool_) pool_ = std::make_unique<Pool>(count_ - 1);
+  Pool::Job job{work, n, part};
+  pool_->share(job);
+}
+
+}  // namespace flaunay::host

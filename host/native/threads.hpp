@@ -1,0 +1,37 @@
+// Threads of the host that share the work-items of a launch.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace flaunay::host {
+
+/// The number of cores that this process may use; at least 1.
+std::size_t usable_cores();
+
+/// Threads that wait for work, and do it together with the thread that has it. Must be used by one thread at
+/// a time. They are started when there is work for several; a forked process starts its own.
+class Threads {
+ public:
+  using Work = std::function<void(std::size_t begin, std::size_t end)>;
+
+  /// count: the number of threads including the caller's; 0: usable_cores().
+  explicit Threads(std::size_t count = 0);
+  ~Threads();
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  std::size_t count() const { return count_; }
+  /// Calls work(begin, end) on all threads, for parts of [0, n) with `part` elements each, or fewer at the
+  /// end. Returns when all is done. work must not throw. Throws std::system_error if threads cannot be
+  /// started.
+  void share(std::size_t n, std::size_t part, const Work& work);
+
+ private:
+  struct Pool;
+  std::size_t count_;
+  std::unique_ptr<Pool> pool_;
+};
+
+}  // namespace flaunay::host

@@ -1,0 +1,38 @@
+// Compiled programs on disk, so that later processes need not compile kernels.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace flaunay::host {
+
+/// A folder of compiled programs, each in a file that is named by the hash of its key. Several processes may
+/// use a folder at the same time. Nothing here throws: a folder that cannot be used and a file that is
+/// damaged are as if they were not there.
+class ProgramCache {
+ public:
+  /// folder: made when a program is stored; empty: nothing is kept. most_bytes: when programs take more,
+  /// those that were stored first are removed.
+  explicit ProgramCache(std::string folder, std::size_t most_bytes = std::size_t{64} << 20);
+
+  /// The program that was stored with this key; nothing if there is none.
+  std::optional<std::string> load(const std::string& key) const;
+  /// Stores a program, in one step as seen by other processes.
+  void store(const std::string& key, const std::string& program) const;
+
+  const std::string& folder() const { return folder_; }
+
+ private:
+  std::string path_of(const std::string& key) const;
+  void remove_oldest() const;
+
+  std::string folder_;
+  std::size_t most_bytes_;
+};
+
+/// The folder of the cache: the environment variable FLAUNAY_CACHE_DIR if it is set ("" for no cache), else
+/// flaunay in XDG_CACHE_HOME or in ~/.cache; empty if none of them is set.
+std::string default_cache_folder();
+
+}  // namespace flaunay::host

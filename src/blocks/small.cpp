@@ -1,0 +1,147 @@
+#include "blocks/small.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "blocks/run.hpp"
+#include "blocks/stages.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/native/opencl.hpp"
+#include "shared/codes.h"
+#include "shared/coordinates.h"
+#include "shared/cut_tree.h"
+#include "shared/halfedges.h"
+#include "shared/prefetch.h"
+#include "shared/rings.h"
+
+namespace flaunay::kernel {
+#include "host/native/words.h"
+//
+#include "blocks/divide.cl"
+#include "blocks/mesh.cl"
+#include "points/inspect.cl"
+//
+#include "host/native/end_of_words.h"
+}  // namespace flaunay::kernel
+
+namespace flaunay::blocks {
+namespace {
+
+// The arrays of a call, as the stages of mode blocks describe them; they are used by the next call of the
+// thread.
+struct Scratch {
+  std::vector<int> offsets, set_blocks;
+  std::vector<kernel::double2> vertices;
+  std::vector<int> source;
+  std::vector<kernel::ring_edge> edges;
+  std::vector<int> vertex_edge;
+  std::vector<kernel::solved_block> solved;
+  std::vector<int> distinct;
+  // Of the largest block.
+  std::vector<kernel::double2> points;
+  std::vector<int> point_source;
+  std::vector<kernel::int2> ranks;
+  std::vector<kernel::uchar> axes;
+  std::vector<kernel::uint> first_rows;
+  std::vector<int> walked, hull_offsets, corner_of_edge;
+};
+
+// Returns an array of this size, whose elements may have any value.
+template <typename T>
+T* sized(std::vector<T>& array, std::size_t size) {
+  if (array.size() < size) array.resize(size);
+  return array.data();
+}
+
+// Runs a kernel with n work-items.
+template <typename Work>
+void for_each_item(std::size_t n, const Work& work) {
+  kernel::work_item = {0, n};
+  for (; kernel::work_item.number < n; ++kernel::work_item.number) work();
+}
+
+geometry::Scaling inspected_scaling(const double* coordinates, std::size_t n) {
+  geometry::Magnitudes magnitudes;
+  const auto count = static_cast<int>(n);
+  for_each_item(1, [&] { kernel::inspect(count, count, coordinates, &magnitudes.largest); });
+  return geometry::scaling_for(coordinates, n, magnitudes);
+}
+
+}  // namespace
+
+void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
+               Triangulation& result) {
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  const auto point_count = static_cast<int>(n), set_count = static_cast<int>(sets);
+  const geometry::Scaling scaling = inspected_scaling(coordinates, n);
+  const kernel::scaling scale = scaling.powers();
+
+  static thread_local Scratch s;
+  s.offsets.assign(offsets.begin(), offsets.end());
+  s.set_blocks.resize(sets + 1);
+  std::iota(s.set_blocks.begin(), s.set_blocks.end(), 0);
+  std::size_t largest = 0;
+  for (std::size_t b = 0; b < sets; ++b) largest = std::max(largest, offsets[b + 1] - offsets[b]);
+
+  result.representatives.resize(n);
+  std::iota(result.representatives.begin(), result.representatives.end(), 0);
+  int* const source = sized(s.source, n);
+  std::iota(source, source + n, 0);
+  kernel::double2* const vertices = sized(s.vertices, n);
+  for (int i = 0; i < point_count; ++i) vertices[i] = kernel::scaled_point(i, coordinates, scale);
+
+  kernel::ring_edge* const edges = sized(s.edges, kernel::EDGES_PER_VERTEX * n);
+  int* const vertex_edge = sized(s.vertex_edge, n);
+  kernel::solved_block* const solved = sized(s.solved, sets);
+  s.distinct.resize(sets);
+  int next = 0;
+  kernel::uint undecided = 0;
+  for_each_item(1, [&] {
+    kernel::solve_blocks(1, set_count, static_cast<int>(largest), -1, s.offsets.data(), scaling.bounds, &next,
+                         vertices, source, result.representatives.data(), edges, vertex_edge, solved,
+                         s.distinct.data(), &undecided, sized(s.points, largest),
+                         sized(s.point_source, largest), sized(s.ranks, 3 * largest), sized(s.axes, largest));
+  });
+
+  kernel::uint* const first_rows = sized(s.first_rows, n + 1);
+  for_each_item(n, [&] { kernel::vertex_triangles(point_count, vertex_edge, first_rows); });
+  s.walked.resize(sets);
+  for_each_item(sets, [&] {
+    kernel::mark_outside(set_count, s.set_blocks.data(), solved, vertex_edge, edges, first_rows,
+                         s.walked.data());
+  });
+  first_rows[n] = 0;
+  std::exclusive_scan(first_rows, first_rows + n + 1, first_rows, kernel::uint{0});
+  MeshSizes sizes = mesh_sizes(s.set_blocks, s.distinct, s.walked, first_rows[n]);
+
+  const int pairs = kernel::EDGES_PER_VERTEX / 2 * point_count;
+  const bool with_corners = options.neighbors || options.halfedges;
+  int* const corner_of_edge = with_corners ? sized(s.corner_of_edge, kernel::EDGES_PER_VERTEX * n) : nullptr;
+  result.triangles.resize(3 * sizes.triangles());
+  for_each_item(1, [&] {
+    kernel::write_triangles(pairs, pairs, with_corners, vertices, source, edges, first_rows,
+                            result.triangles.data(), corner_of_edge);
+  });
+  if (options.neighbors) {
+    result.neighbors.resize(3 * sizes.triangles());
+    for_each_item(static_cast<std::size_t>(pairs),
+                  [&] { kernel::write_neighbors(pairs, edges, corner_of_edge, result.neighbors.data()); });
+  }
+  if (options.halfedges) {
+    result.halfedges.resize(3 * sizes.triangles());
+    for_each_item(static_cast<std::size_t>(pairs),
+                  [&] { kernel::write_halfedges(pairs, edges, corner_of_edge, result.halfedges.data()); });
+  }
+  result.hull.resize(sizes.hull_vertices());
+  s.hull_offsets.assign(sizes.hull_offsets.begin(), sizes.hull_offsets.end());
+  for_each_item(sets, [&] {
+    kernel::write_hulls(set_count, s.set_blocks.data(), solved, vertex_edge, edges, source,
+                        s.hull_offsets.data(), result.hull.data());
+  });
+  Outcome outcome{std::move(sizes), undecided};
+  outcome.write(n, result.statistics);
+  result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
+  result.hull_offsets = std::move(outcome.sizes.hull_offsets);
+}
+
+}  // namespace flaunay::blocks

@@ -1,0 +1,19 @@
+// Mode blocks for sets of at most a block's points each, on the calling thread: the kernels' text, compiled
+// as C++, without a runtime around it. What a launch costs would be most of the time of such a call.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::blocks {
+
+/// Triangulates sets, each of which is one block; the results and the errors are those of run(). Writes all
+/// of `result` but times and the name of the device. coordinates: x0 y0 x1 y1 ...; offsets: those of
+/// Triangulator::triangulate. Scratch memory of some 140 bytes per point is kept for the thread's next call.
+/// O(n log n).
+void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
+               Triangulation& result);
+
+}  // namespace flaunay::blocks

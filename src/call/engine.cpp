@@ -1,0 +1,153 @@
+#include "call/engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "blocks/memory.hpp"
+#include "call/device_info.hpp"
+#include "call/self_test.hpp"
+#include "host/device.hpp"
+#include "shared/limits.h"
+#include "shared/records.h"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::call {
+namespace {
+
+// Kernels use 32-bit indices. The longest array has up to 6 corners per point, with 3 ids each.
+constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
+// The most device memory per point that any measured input has needed, including adversarial inputs.
+constexpr std::size_t kBytesPerPoint = 320;
+
+// Calls that need no more memory than this are not checked, because asking the system would take a part of
+// their time that can be measured.
+constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
+
+// The largest number of points that arrays and indices allow, whatever memory is free.
+std::size_t largest_call(const host::MemorySource& memory) {
+  // An arena may have several blocks, but each array is in one buffer. The largest array has the rings'
+  // edges.
+  return std::min(kMostPoints, memory.largest / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge)));
+}
+
+boost::compute::device checked_device(const boost::compute::device& device) {
+  if (host::has_fp64(device)) return device;
+  throw host::DeviceError(fmt::format(
+      "{} has no double precision (fp64), which exactness needs; flaunay devices lists the others",
+      device.name()));
+}
+
+boost::compute::context context_of(const boost::compute::device& device) {
+  return boost::compute::context(checked_device(device));
+}
+
+}  // namespace
+
+Engine::Engine()
+    : runtime(native_tuning()), persistent(runtime.memory()), even(runtime.memory()), odd(runtime.memory()) {
+  check_arithmetic();
+}
+
+Engine::Engine(const boost::compute::context& context, const boost::compute::device& device)
+    : runtime(context.get() == nullptr ? context_of(device) : context, checked_device(device),
+              tuning_for(device)),
+      persistent(runtime.memory()),
+      even(runtime.memory()),
+      odd(runtime.memory()) {
+  check_arithmetic();
+}
+
+void Engine::check_arithmetic() {
+  if (runtime.sizes().separate_buffers != 0) {
+    for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
+  }
+  const std::string failure = self_test_failure(runtime);
+  if (!failure.empty()) {
+    throw Error(ErrorKind::device,
+                fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "
+                            "another device (FLAUNAY_DEVICE)",
+                            runtime.name(), failure));
+  }
+}
+
+std::size_t Engine::capacity() const {
+  return std::min(largest_call(runtime.memory()), usable_memory(runtime, held_at_rest).bytes / kBytesPerPoint);
+}
+
+void Engine::check_size(std::size_t n) const {
+  const host::MemorySource source = runtime.memory();
+  const std::size_t most = largest_call(source);
+  if (n <= most && n <= std::max<std::size_t>(kNeverLacking, held_at_rest) / kBytesPerPoint) return;
+  const host::MemoryLeft memory = usable_memory(runtime, held_at_rest);
+  const std::size_t fitting = std::min(most, memory.bytes / kBytesPerPoint);
+  if (n <= fitting) return;
+  const std::string in_one_piece =
+      runtime.is_native() ? "" : fmt::format(", {} in one piece", host::mebibytes(source.largest));
+  throw Error(n > kMostPoints ? ErrorKind::input : ErrorKind::device,
+              fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point)",
+                          n, fitting, runtime.name(), host::mebibytes(memory.bytes), memory.limit,
+                          in_one_piece, kBytesPerPoint));
+}
+
+void Engine::use_own_memory() {
+  persistent.lend(nullptr, 0, 0);
+  runtime.arena().lend(nullptr, 0, 0);
+}
+
+void Engine::provide_memory(std::size_t n, std::size_t sets) {
+  const blocks::WorkspaceBytes needed = blocks::workspace_bytes(runtime, n, sets);
+  if (workspace == nullptr) {
+    // Enough for any n points, so that the next call on as many points allocates nothing.
+    persistent.reserve(needed.persistent);
+    runtime.arena().reserve(needed.scratch);
+    return;
+  }
+  std::size_t size = 0;
+  FLAUNAY_CL(clGetMemObjectInfo(workspace.get(), CL_MEM_SIZE, sizeof size, &size, nullptr));
+  if (size < needed.persistent + needed.scratch) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the workspace is too small: it has {} bytes, {} points in {} sets "
+                            "need {}",
+                            size, n, sets, needed.persistent + needed.scratch));
+  }
+  persistent.lend(workspace, 0, needed.persistent);
+  runtime.arena().lend(workspace, needed.persistent, size - needed.persistent);
+}
+
+void Engine::begin_call(bool profile) {
+  use_own_memory();
+  runtime.use_queue(nullptr, profile);
+  reset_accounts();
+}
+
+void Engine::reset_accounts() {
+  runtime.reset_accounts();
+  allocations_before_ = allocations();
+}
+
+void Engine::write_accounts(Statistics& statistics) {
+  statistics.device_bytes_peak = held_bytes();
+  statistics.kernel_launches = runtime.launches();
+  statistics.host_waits = runtime.waits();
+  statistics.bytes_to_device = runtime.bytes_to_device();
+  statistics.bytes_to_host = runtime.bytes_to_host();
+  statistics.device_allocations = allocations() - allocations_before_;
+  statistics.build_seconds = runtime.build_seconds();
+  for (const auto& [name, time] : runtime.kernel_times()) {
+    statistics.kernels.push_back({name, time.launches, time.seconds});
+  }
+  std::sort(statistics.kernels.begin(), statistics.kernels.end(),
+            [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
+}
+
+std::size_t Engine::held_bytes() const {
+  return persistent.held_bytes() + even.held_bytes() + odd.held_bytes() + runtime.arena().held_bytes();
+}
+
+std::size_t Engine::allocations() const {
+  return persistent.block_allocations() + even.block_allocations() + odd.block_allocations() +
+         runtime.arena().block_allocations() + buffer_allocations;
+}
+
+}  // namespace flaunay::call

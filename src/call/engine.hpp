@@ -1,0 +1,56 @@
+// What runs calls: a device or the host itself, memory, and the statistics of a call.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "flaunay/flaunay.hpp"
+#include "host/runtime.hpp"
+
+namespace flaunay::call {
+
+struct Engine {
+  /// Runs kernels natively on threads of the host, without OpenCL.
+  Engine();
+  /// Runs them on a device, in the given context or, if that is null, in one of its own. Throws Error(device)
+  /// if the device lacks fp64 or if its arithmetic fails the self-test.
+  Engine(const boost::compute::context& context, const boost::compute::device& device);
+
+  /// The largest number of points of one call, with the memory that is free now.
+  std::size_t capacity() const;
+  /// Throws Error if n is larger than the capacity.
+  void check_size(std::size_t n) const;
+
+  /// Makes the arenas use memory of their own instead of the caller's workspace.
+  void use_own_memory();
+  /// Makes the arenas large enough for mode blocks. They use the caller's workspace if there is one,
+  /// otherwise memory of their own. Throws Error(usage) if the workspace is too small.
+  void provide_memory(std::size_t n, std::size_t sets);
+
+  /// Begins a call on host memory: selects the triangulator's own memory and queue, and resets the accounts.
+  void begin_call(bool profile);
+  void reset_accounts();
+  /// Writes to the statistics what the device did since the accounts were reset.
+  void write_accounts(Statistics& statistics);
+
+  host::Runtime runtime;
+  host::Arena persistent;  ///< arrays that live as long as a call
+  host::Arena even, odd;   ///< the regions of even and of odd levels, in the modes that go level by level
+  std::shared_ptr<_cl_mem> workspace;  ///< the caller's workspace, or null
+  std::size_t buffer_allocations = 0;  ///< number of buffers made for DeviceBuffers
+  /// The memory that was held when no call was running. Any thread may read it.
+  std::atomic<std::size_t> held_at_rest{0};
+  std::size_t held_bytes() const;
+
+ private:
+  void check_arithmetic();
+  std::size_t allocations() const;
+
+  std::size_t allocations_before_ = 0;
+};
+
+}  // namespace flaunay::call

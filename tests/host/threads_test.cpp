@@ -1,0 +1,63 @@
+// Threads that share work: every element once, also in a process that was forked.
+#include "host/native/threads.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+namespace flaunay::host {
+namespace {
+
+// Whether [0, n) was taken in parts of the right size, each element once.
+bool shares_well(Threads& threads, std::size_t n, std::size_t part) {
+  std::vector<std::atomic<int>> taken(n);
+  std::atomic<bool> fits{true};
+  threads.share(n, part, [&](std::size_t begin, std::size_t end) {
+    const bool is_whole = begin == 0 && end == n;
+    if (!is_whole && (begin % part != 0 || end - begin > part || begin >= end)) fits = false;
+    for (std::size_t i = begin; i < end; ++i) ++taken[i];
+  });
+  for (const std::atomic<int>& times : taken) fits = fits && times == 1;
+  return fits;
+}
+
+TEST(SmallThreads, TakeEveryElementOnce) {
+  for (const std::size_t count : {1, 2, 5}) {
+    Threads threads(count);
+    EXPECT_EQ(threads.count(), count);
+    for (const std::size_t n : {0, 1, 2, 3, 7, 64, 1000, 12345}) {
+      for (const std::size_t part : {1, 2, 3, 64, 5000}) {
+        EXPECT_TRUE(shares_well(threads, n, part)) << count << " threads, " << n << " in parts of " << part;
+      }
+    }
+  }
+}
+
+TEST(SmallThreads, OneAfterTheOtherWithoutLosingAny) {
+  Threads threads(3);
+  for (int round = 0; round < 3000; ++round) ASSERT_TRUE(shares_well(threads, 5, 1)) << "round " << round;
+}
+
+TEST(SmallThreads, AreOnePerCoreUnlessGiven) { EXPECT_EQ(Threads().count(), usable_cores()); }
+
+TEST(SmallThreads, ForkedProcessesHaveTheirOwn) {
+  Threads threads(3);
+  ASSERT_TRUE(shares_well(threads, 100, 1));
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    alarm(60);
+    _exit(shares_well(threads, 100, 1) ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
+  EXPECT_TRUE(shares_well(threads, 100, 1));
+}
+
+}  // namespace
+}  // namespace flaunay::host
