@@ -46,6 +46,7 @@ Function* find(const char* name) {
     return function(__VA_ARGS__);                              \
   }
 #define PARAMETERS_1(name) PARAMETER(name, 0)
+#define PARAMETERS_2(name) PARAMETERS_1(name), PARAMETER(name, 1)
 #define PARAMETERS_3(name) PARAMETERS_1(name), PARAMETER(name, 1), PARAMETER(name, 2)
 #define PARAMETERS_4(name) PARAMETERS_3(name), PARAMETER(name, 3)
 #define PARAMETERS_5(name) PARAMETERS_4(name), PARAMETER(name, 4)
@@ -54,6 +55,7 @@ Function* find(const char* name) {
 #define PARAMETERS_9(name) PARAMETERS_7(name), PARAMETER(name, 7), PARAMETER(name, 8)
 #define PARAMETERS_10(name) PARAMETERS_9(name), PARAMETER(name, 9)
 #define FUNCTION_1(name) RESULT(name) name(PARAMETERS_1(name)) PASS_ON(name, p0)
+#define FUNCTION_2(name) RESULT(name) name(PARAMETERS_2(name)) PASS_ON(name, p0, p1)
 #define FUNCTION_3(name) RESULT(name) name(PARAMETERS_3(name)) PASS_ON(name, p0, p1, p2)
 #define FUNCTION_4(name) RESULT(name) name(PARAMETERS_4(name)) PASS_ON(name, p0, p1, p2, p3)
 #define FUNCTION_5(name) RESULT(name) name(PARAMETERS_5(name)) PASS_ON(name, p0, p1, p2, p3, p4)
@@ -82,6 +84,7 @@ FUNCTION_1(clRetainEvent)
 FUNCTION_1(clRetainKernel)
 FUNCTION_1(clRetainMemObject)
 FUNCTION_1(clRetainProgram)
+FUNCTION_2(clWaitForEvents)
 FUNCTION_3(clCreateKernel)
 FUNCTION_3(clGetPlatformIDs)
 FUNCTION_3(clSetMemObjectDestructorCallback)

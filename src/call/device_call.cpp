@@ -16,8 +16,7 @@ namespace {
 // Points in the caller's buffer, and results in the buffers of a DeviceTriangulation.
 class DeviceExchange : public blocks::Exchange {
  public:
-  DeviceExchange(Engine& self, const DevicePoints& points, const Parts& parts,
-                 DeviceTriangulation& result)
+  DeviceExchange(Engine& self, const DevicePoints& points, const Parts& parts, DeviceTriangulation& result)
       : self_(self), points_(points), wants_representatives_(parts.representatives) {
     const std::size_t n = points.count;
     const auto make = [&](bool is_wanted, DeviceBuffer& buffer, std::size_t count, const char* what) {
@@ -51,8 +50,8 @@ class DeviceExchange : public blocks::Exchange {
 
 }  // namespace
 
-void triangulate(Engine& self, const DevicePoints& points, DeviceTriangulation& result,
-                 const Parts& parts, const Enqueue& enqueue) {
+void triangulate(Engine& self, const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
+                 const Enqueue& enqueue) {
   host::Runtime& runtime = self.runtime;
   check_enqueue(runtime, enqueue);
   if ((parts.neighbors || parts.halfedges) && !parts.triangles) {

@@ -72,7 +72,8 @@ void Engine::check_arithmetic() {
 }
 
 std::size_t Engine::capacity() const {
-  return std::min(largest_call(runtime.memory()), usable_memory(runtime, held_at_rest).bytes / kBytesPerPoint);
+  return std::min(largest_call(runtime.memory()),
+                  usable_memory(runtime, held_at_rest).bytes / kBytesPerPoint);
 }
 
 void Engine::check_size(std::size_t n) const {
@@ -84,10 +85,11 @@ void Engine::check_size(std::size_t n) const {
   if (n <= fitting) return;
   const std::string in_one_piece =
       runtime.is_native() ? "" : fmt::format(", {} in one piece", host::mebibytes(source.largest));
-  throw Error(n > kMostPoints ? ErrorKind::input : ErrorKind::device,
-              fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point)",
-                          n, fitting, runtime.name(), host::mebibytes(memory.bytes), memory.limit,
-                          in_one_piece, kBytesPerPoint));
+  throw Error(
+      n > kMostPoints ? ErrorKind::input : ErrorKind::device,
+      fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point)", n,
+                  fitting, runtime.name(), host::mebibytes(memory.bytes), memory.limit, in_one_piece,
+                  kBytesPerPoint));
 }
 
 void Engine::use_own_memory() {

@@ -53,9 +53,10 @@ struct Locator::Implementation {
   void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
               const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
-      call::expect(!engine.runtime.is_native(),
-                   "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
-                   "make it from device memory, or name a device");
+      call::expect(
+          !engine.runtime.is_native(),
+          "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
+          "make it from device memory, or name a device");
       engine.use_own_memory();
       host::Runtime& runtime = engine.runtime;
       call::check_enqueue(runtime, enqueue);

@@ -53,7 +53,8 @@ Triangulator::Triangulator(cl_context context, cl_device_id device)
       })) {}
 
 Triangulator::~Triangulator() {
-  // Waits even if a locator keeps the device's memory alive. A destructor cannot report errors, so they are ignored.
+  // Waits even if a locator keeps the device's memory alive. A destructor cannot report errors, so they are
+  // ignored.
   if (implementation_) implementation_->settle();
 }
 Triangulator::Triangulator(Triangulator&&) noexcept = default;

@@ -48,8 +48,10 @@ std::string phase_times(const Statistics& statistics, const RunFacts& facts) {
 
 // The end of every final line.
 std::string times_and_speed(const Statistics& statistics, const RunFacts& facts) {
-  return fmt::format("{}; {} in {:.3f} s, {:.0f} points per second\n", phase_times(statistics, facts),
-                     facts.what_was_done, statistics.seconds, points_per_second(statistics));
+  // Says so when no device was used, since one may have been expected.
+  return fmt::format("{}; {}{} in {:.3f} s, {:.0f} points per second\n", phase_times(statistics, facts),
+                     facts.what_was_done, statistics.device == "host" ? " on the host" : "",
+                     statistics.seconds, points_per_second(statistics));
 }
 
 OperationCounts sum_over_levels(const Work& work, std::size_t component) {
