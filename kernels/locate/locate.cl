@@ -20,13 +20,12 @@
 // 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query.
 
 #include "shared/cut_tree.h"
+#include "shared/halfedges.h"
 #include "shared/nearness.h"
 #include "shared/prefetch.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
-static inline int next_corner(int k) { return k == 2 ? 0 : k + 1; }
-static inline int corner_before(int k) { return k == 0 ? 2 : k - 1; }
 static inline int corner_at(face f, int vertex) { return f.corner[0] == vertex ? 0 : f.corner[1] == vertex ? 1 : 2; }
 static inline int corner_opposite(face f, int neighbor) {
   return f.neighbor[0] == neighbor ? 0 : f.neighbor[1] == neighbor ? 1 : 2;

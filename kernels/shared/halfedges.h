@@ -10,6 +10,10 @@ BEGIN_SHARED
 static inline int next_halfedge(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
 static inline int previous_halfedge(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
+// The corners of a triangle by their numbers in it: 0, 1 and 2.
+static inline int next_corner(int k) { return k == 2 ? 0 : k + 1; }
+static inline int corner_before(int k) { return k == 0 ? 2 : k - 1; }
+
 // A corner and the half-edge of its triangle that does not touch it.
 static inline int opposite_halfedge(int corner) { return next_halfedge(corner); }
 static inline int opposite_corner(int h) { return previous_halfedge(h); }

@@ -1,13 +1,23 @@
 // The dual of a triangulation: circumcentres, and for each vertex its triangles in their order around it.
 //
-// circumcentres is one pass over the triangles. count_corners, another one, counts the corners at each vertex and finds
-// where the walk around it begins. The host scans the counts. walk_cells, with one work-item per vertex, then writes
-// each cell to its place. mark_hull marks the cells that are unbounded. Indices that are out of range are skipped.
+// circumcentres is one pass over the triangles. measure_cells, another one, finds the triangle in which each cell
+// begins and the size of the cell, by walks around vertices. The host scans the sizes. write_cells, a third pass over
+// the triangles, writes the cells that begin in each to their places. Triangles that follow each other mostly are near
+// each other, whatever the order of the points is, so walks read what is in the cache. mark_hull marks the cells that
+// are unbounded. Indices that are out of range are skipped.
 
 #include "shared/bounds.h"
 #include "shared/codes.h"
 #include "shared/coordinates.h"
+#include "shared/halfedges.h"
 #include "shared/planar.h"
+#include "shared/prefetch.h"
+
+// How many triangles ahead a pass fetches the points or cells that it will need.
+#define TRIANGLES_AHEAD 32
+// And the triangles themselves: walks leave the order of memory, but mostly stay within a block of blocks/divide.cl,
+// whose edges are FETCH_AHEAD pairs, three for two triangles.
+#define WALKS_AHEAD (FETCH_AHEAD / 3 * 2)
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Circumcentres
@@ -101,11 +111,18 @@ static inline double2 centre(double2 a, double2 b, double2 c) {
   return a + lever / (2.0 * area);
 }
 
+static inline void fetch_points(int corner, int end, global const int* triangles, global const double* input) {
+#if FETCH_AHEAD
+  for (int c = corner; c < min(corner + 3, end); ++c) fetch(&input[2 * triangles[c]]);
+#endif
+}
+
 // Relative to the lexicographically first corner: that is the same one for all triangles of a cocircular fan.
 kernel void circumcentres(int n, int points, global const double* restrict input, global const int* restrict accounts,
                           global const int* restrict triangles, global double* restrict centres) {
   const int t = get_global_id(0);
   if (t < n) {
+    fetch_points(3 * (t + TRIANGLES_AHEAD), 3 * n, triangles, input);
     const int i = triangles[3 * t], j = triangles[3 * t + 1], k = triangles[3 * t + 2];
     double2 at = VECTOR(double2, as_double(0x7ff8000000000000UL), as_double(0x7ff8000000000000UL));
     if (min(i, min(j, k)) >= 0 && max(i, max(j, k)) < points) {
@@ -125,35 +142,110 @@ kernel void circumcentres(int n, int points, global const double* restrict input
 // ---------------------------------------------------------------------------------------------------------------------
 // Cells
 
-// counts: 0 throughout; gets each vertex' number of triangles. firsts: INT_MAX throughout; gets the smallest triangle
-// of a vertex inside, and of one on the hull the triangle of the hull edge that leaves it, with the sign bit.
-kernel void count_corners(int n, int points, global const int* restrict triangles, global const int* restrict neighbors,
-                          global volatile uint* restrict counts, global volatile int* restrict firsts) {
-  const int c = get_global_id(0);
-  if (c < n) {
-    const int t = c / 3, k = c % 3;
-    const int vertex = triangles[c];
-    if (vertex >= 0 && vertex < points) {
-      const int leaves_along_hull = neighbors[3 * t + (k + 2) % 3] == -1;
-      atomic_inc(&counts[vertex]);
-      atomic_min(&firsts[vertex], leaves_along_hull ? t | INT_MIN : t);
+// A corner of a triangle; no corner if the triangle is -1.
+typedef struct {
+  int triangle, corner;
+} place;
+
+static inline int number_of(place at) { return 3 * at.triangle + at.corner; }
+
+// The number of the corner opposite to a neighbour, which is one of three. Without branches, since they could not be
+// predicted.
+static inline int corner_towards(int neighbor, global const int* three) {
+  const int is_one = three[1] == neighbor, is_two = three[2] == neighbor;
+  return is_one + 2 * (is_two & !is_one);
+}
+
+// The same vertex in the next triangle around it, counter-clockwise or clockwise. No corner behind the hull, and where
+// neighbours are not mutual: so no two corners have the same next one, and walks end whatever the arrays contain.
+static inline place beside(place from, int is_clockwise, int triangle_count, global const int* neighbors) {
+  const place none = {-1, 0};
+  global const int* const here = neighbors + 3 * from.triangle;
+  const int opposite = is_clockwise ? corner_before(from.corner) : next_corner(from.corner);
+  const int u = here[opposite];
+  if (u < 0 || u >= triangle_count) return none;
+  global const int* const there = neighbors + 3 * u;
+  const int back = corner_towards(from.triangle, there);
+  if (there[back] != from.triangle || corner_towards(u, here) != opposite) return none;
+  const place to = {u, is_clockwise ? corner_before(back) : next_corner(back)};
+  return to;
+}
+
+// The cell of a vertex on the hull begins at the hull edge that leaves the vertex.
+static inline uint unbounded_cell_size(place first, int triangle_count, global const int* neighbors) {
+  uint size = 0;
+  for (place at = first; at.triangle >= 0; at = beside(at, 0, triangle_count, neighbors)) ++size;
+  return size;
+}
+
+// The cell of any other vertex begins with the smallest triangle. 0 if there is a smaller one, or if the vertex is on
+// the hull. Walks in both directions take turns: then all corners of a vertex with d triangles take O(d log d) steps,
+// in whatever order the triangles are.
+static inline uint bounded_cell_size(place first, int triangle_count, global const int* neighbors) {
+  place ahead = beside(first, 0, triangle_count, neighbors), behind = first;
+  uint size = 1;
+  while (number_of(ahead) != number_of(behind)) {
+    if (number_of(ahead) < number_of(first)) return 0;
+    ++size;
+    behind = beside(behind, 1, triangle_count, neighbors);
+    if (number_of(behind) == number_of(ahead)) break;
+    if (number_of(behind) < number_of(first)) return 0;
+    ++size;
+    ahead = beside(ahead, 0, triangle_count, neighbors);
+  }
+  return size;
+}
+
+// n triangles. sizes: 0 throughout; gets the size of each vertex' cell. firsts: gets for each triangle the set of its
+// corners at which cells begin.
+kernel void measure_cells(int n, int points, global const int* restrict triangles, global const int* restrict neighbors,
+                          global uint* restrict sizes, global uchar* restrict firsts) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    fetch(&neighbors[3 * min(n - 1, t + WALKS_AHEAD)]);
+    uint begun = 0;
+    for (int k = 0; k < 3; ++k) {
+      const place first = {t, k};
+      const int ahead = neighbors[3 * t + next_corner(k)], behind = neighbors[3 * t + corner_before(k)];
+      const int vertex = triangles[3 * t + k];
+      // Most corners have a smaller triangle beside them.
+      if ((behind != -1 && min(ahead, behind) < t) || vertex < 0 || vertex >= points) continue;
+      const uint size =
+          behind == -1 ? unbounded_cell_size(first, n, neighbors) : bounded_cell_size(first, n, neighbors);
+      if (size > 0) {
+        sizes[vertex] = size;
+        begun |= 1u << k;
+      }
     }
+    firsts[t] = begun;
   }
 }
 
-// n vertices.
-kernel void walk_cells(int n, int triangle_count, global const int* restrict triangles,
-                       global const int* restrict neighbors, global const int* restrict firsts,
-                       global const uint* restrict offsets, global int* restrict cells) {
-  const int v = get_global_id(0);
-  if (v < n) {
-    int t = firsts[v] & INT_MAX;
-    for (int to = (int)offsets[v]; to < (int)offsets[v + 1]; ++to) {
-      const int is_there = t >= 0 && t < triangle_count;
-      cells[to] = is_there ? t : -1;
-      if (is_there) {
-        const int k = triangles[3 * t] == v ? 0 : triangles[3 * t + 1] == v ? 1 : 2;
-        t = neighbors[3 * t + (k + 1) % 3];
+static inline void fetch_offsets(int t, int end, global const int* triangles, global const uchar* firsts,
+                                 global const uint* offsets) {
+#if FETCH_AHEAD
+  for (int k = 0; k < 3 && t < end; ++k) {
+    if (firsts[t] >> k & 1) fetch(&offsets[triangles[3 * t + k]]);
+  }
+#endif
+}
+
+// n triangles. offsets: where cells begin; the last one is the end.
+kernel void write_cells(int n, global const int* restrict triangles, global const int* restrict neighbors,
+                        global const uchar* restrict firsts, global const uint* restrict offsets,
+                        global int* restrict cells) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    fetch(&neighbors[3 * min(n - 1, t + WALKS_AHEAD)]);
+    fetch_offsets(t + TRIANGLES_AHEAD, n, triangles, firsts, offsets);
+    for (int k = 0; k < 3; ++k) {
+      if ((firsts[t] >> k & 1) == 0) continue;
+      const int vertex = triangles[3 * t + k];
+      const uint end = offsets[vertex + 1];
+      place at = {t, k};
+      for (uint to = offsets[vertex]; to < end && at.triangle >= 0; ++to) {
+        cells[to] = at.triangle;
+        at = beside(at, 0, n, neighbors);
       }
     }
   }

@@ -27,10 +27,7 @@ class Rows {
   // Touches the memory while the device computes; otherwise page faults would take longer than writing the
   // results.
   void reserve(std::size_t triangles) {
-    if (!is_wanted_) return;
-    values_.reserve(3 * triangles);
-    host::prefer_huge_pages(values_.data(), 3 * triangles * sizeof(std::int32_t));
-    values_.resize(3 * triangles);
+    if (is_wanted_) host::resize_in_huge_pages(values_, 3 * triangles);
   }
   // The buffer to which kernels write this many triangles. If more than half of the memory is unused, it is
   // released.

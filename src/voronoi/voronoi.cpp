@@ -1,7 +1,5 @@
 #include "voronoi/voronoi.hpp"
 
-#include <limits>
-
 #include "host/vector_operations.hpp"
 #include "launchers/voronoi/voronoi.cl.hpp"
 #include "points/inspect.hpp"
@@ -22,24 +20,21 @@ void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
 
 void write_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result) {
   const std::size_t n = mesh.points();
-  const auto points = static_cast<cl_int>(n);
-  const auto firsts = runtime.arena().allocate<cl_int>(n);
-  // The prefix sums of the counts are the offsets, which replace the counts in place.
+  const auto firsts = runtime.arena().allocate<cl_uchar>(mesh.triangle_count());
+  // The prefix sums of the sizes are the offsets, which replace the sizes in place.
   const auto offsets = result.cell_offsets.as<cl_uint>();
   runtime.fill(offsets, n + 1, cl_uint{0});
-  runtime.fill(firsts, n, std::numeric_limits<cl_int>::max());
-  runtime.map(3 * mesh.triangle_count(), kernels::count_corners{.points = points,
-                                                                .triangles = mesh.triangles,
-                                                                .neighbors = mesh.neighbors,
-                                                                .counts = offsets,
-                                                                .firsts = firsts});
+  runtime.map(mesh.triangle_count(), kernels::measure_cells{.points = n,
+                                                            .triangles = mesh.triangles,
+                                                            .neighbors = mesh.neighbors,
+                                                            .sizes = offsets,
+                                                            .firsts = firsts});
   host::exclusive_scan(runtime, offsets, n, offsets);
-  runtime.map(n, kernels::walk_cells{.triangle_count = mesh.triangle_count(),
-                                     .triangles = mesh.triangles,
-                                     .neighbors = mesh.neighbors,
-                                     .firsts = firsts,
-                                     .offsets = offsets,
-                                     .cells = result.cells});
+  runtime.map(mesh.triangle_count(), kernels::write_cells{.triangles = mesh.triangles,
+                                                          .neighbors = mesh.neighbors,
+                                                          .firsts = firsts,
+                                                          .offsets = offsets,
+                                                          .cells = result.cells});
 }
 
 }  // namespace

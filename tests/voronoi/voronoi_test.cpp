@@ -6,6 +6,7 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -172,6 +173,45 @@ TEST(SmallVoronoi, WalksEndWhateverThePoints) {
   FixtureRandom random(20);
   for (double& c : input.points) c = random.unit();
   dual(Runtimes::get("own"), input);
+}
+
+/// A vertex that all triangles have, in a row order that is the worst for walks: from the middle to both
+/// sides.
+TEST(Voronoi, AFan) {
+  Case input;
+  Coordinates points{0, -1000};
+  for (int i = 0; i < 400; ++i) points.insert(points.end(), {i - 200.0, 0.0});
+  input.add(points, {});
+  input.triangulate();
+  check_dual(input);
+}
+
+/// Numbers that are no triangulation at all: cells mean nothing, but they are disjoint parts of their array.
+/// (Not for oclgrind: a vertex that has several cells then gets any of them.)
+TEST(Voronoi, CellsFitWhateverTheMesh) {
+  FixtureRandom random(21);
+  for (int round = 0; round < 30; ++round) {
+    Case input = make_case(make_fixture("uniform", 40, 22), 0, 23);
+    const auto corners = static_cast<std::int64_t>(input.mesh.triangles.size());
+    // From a few wrong numbers to nothing but such.
+    const std::int64_t rarely = random.integer(0, 60);
+    for (auto* const values : {&input.mesh.triangles, &input.mesh.neighbors}) {
+      for (std::int32_t& value : *values) {
+        if (random.integer(0, rarely) == 0)
+          value = static_cast<std::int32_t>(random.integer(-2, corners / 3));
+      }
+    }
+    for (const std::string& name : tunings()) {
+      const Voronoi found = dual(Runtimes::get(name), input);
+      EXPECT_EQ(found.cell_offsets.front(), 0);
+      EXPECT_TRUE(std::is_sorted(found.cell_offsets.begin(), found.cell_offsets.end()));
+      EXPECT_LE(found.cell_offsets.back(), corners);
+      for (std::int32_t i = 0; i < found.cell_offsets.back(); ++i) {
+        const std::int32_t cell = found.cells[static_cast<std::size_t>(i)];
+        EXPECT_TRUE(0 <= cell && cell < corners / 3) << cell;
+      }
+    }
+  }
 }
 
 }  // namespace
