@@ -6,6 +6,7 @@
 // leaves, so what a merge touches lies together. merge_blocks merges the two triangulations on either side of the cut
 // of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
 
+#include "shared/codes.h"
 #include "shared/cut_tree.h"
 #include "shared/rings.h"
 
@@ -122,12 +123,17 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
   return stack[0];
 }
 
+static inline void add_to_account(const rings* g, global volatile uint* account) {
+  if (g->undecided > 0) atomic_add(&account[RINGS_UNDECIDED], g->undecided);
+  if (g->ties > 0) atomic_add(&account[RINGS_TIES], g->ties);
+}
+
 // Solves the blocks of more than `larger` and at most `capacity` points. Each work-item's part of the scratch arrays
 // has room for `capacity` points. next: the next block to be taken; 0 at first.
 kernel void solve_blocks(int workers, int blocks, int capacity, int larger, global const int* restrict offsets,
                          filter_bounds bounds, global volatile int* next, global double2* points, global int* source,
                          global int* representatives, global ring_edge* edges, global int* vertex_edge,
-                         global solved_block* solved, global int* distinct_counts, global volatile uint* undecided,
+                         global solved_block* solved, global int* distinct_counts, global volatile uint* account,
                          global double2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
                          global uchar* scratch_axes) {
   const int w = get_global_id(0);
@@ -153,7 +159,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
       const solved_block done = {ends, free_list(&g)};
       solved[b] = done;
       distinct_counts[b] = distinct;
-      if (g.undecided > 0) atomic_add(undecided, g.undecided);
+      add_to_account(&g, account);
     }
   }
 }
@@ -162,7 +168,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
 kernel void merge_blocks(int n, int first_merge, global const block_merge* restrict merges,
                          global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
-                         global volatile uint* undecided) {
+                         global volatile uint* account) {
   const int m = get_global_id(0);
   if (m < n) {
     const block_merge merge = merges[first_merge + m];
@@ -175,6 +181,6 @@ kernel void merge_blocks(int n, int first_merge, global const block_merge* restr
     }
     solved[merge.low].ends = joined_ends(&g, low, high, axis);
     solved[merge.low].unused = free_list(&g);
-    if (g.undecided > 0) atomic_add(undecided, g.undecided);
+    add_to_account(&g, account);
   }
 }

@@ -31,15 +31,16 @@ kernel void cocircular_flags(int n, double bound, global const int* restrict tri
   }
 }
 
-kernel void cocircular_exact(global const uint* restrict count, global const int* restrict list,
+kernel void cocircular_exact(double bound, global const uint* restrict count, global const int* restrict list,
                              global const int* restrict triangles, global const int* restrict twins,
                              global const double2* restrict points, global uchar* restrict flags,
                              global volatile int* restrict broken) {
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int h = list[k];
-    const int sign = circle_exact(points[triangles[opposite_corner(h)]], points[halfedge_from(triangles, h)],
-                                  points[halfedge_to(triangles, h)], points[triangles[opposite_corner(twins[h])]]);
+    const int sign =
+        circle_undecided(points[triangles[opposite_corner(h)]], points[halfedge_from(triangles, h)],
+                         points[halfedge_to(triangles, h)], points[triangles[opposite_corner(twins[h])]], bound);
     flags[h] = sign == 0;
     if (sign > 0) atomic_or(broken, BROKEN_CIRCLE);
   }

@@ -21,6 +21,11 @@ INTEGER_CONSTANT(BROKEN_PATH, 1);    // a point on a cut line is not on its path
 INTEGER_CONSTANT(BROKEN_BORDER, 2);  // a region's border does not enclose it
 INTEGER_CONSTANT(BROKEN_CIRCLE, 4);  // an edge is not Delaunay
 
+// The account of divide: the places of its numbers.
+INTEGER_CONSTANT(RINGS_UNDECIDED, 0);  // predicates that were evaluated exactly
+INTEGER_CONSTANT(RINGS_TIES, 1);       // how many of them found cocircular points
+INTEGER_CONSTANT(RINGS_NUMBERS, 2);
+
 // The account of all coordinates: the places of its numbers, and what they are before any coordinate is seen.
 INTEGER_CONSTANT(INSPECT_LARGEST, 0);  // the largest exponent of a leading bit
 INTEGER_CONSTANT(INSPECT_LOWEST, 1);   // the lowest exponent of a set bit

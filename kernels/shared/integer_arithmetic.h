@@ -53,14 +53,21 @@ static inline integer128 widened(long x) {
 static inline integer128 product_128(long a, long b) {
   integer128 product;
   product.low = as_ulong(a) * as_ulong(b);
-  product.high = as_ulong(mul_hi(a, b));
+  product.high = as_ulong(high_product(a, b));
   return product;
 }
 
 static inline integer128 unsigned_product(ulong a, ulong b) {
   integer128 product;
   product.low = a * b;
-  product.high = mul_hi(a, b);
+  product.high = high_product(a, b);
+  return product;
+}
+
+// Modulo 2^128.
+static inline integer128 low_product(integer128 a, integer128 b) {
+  integer128 product = unsigned_product(a.low, b.low);
+  product.high += a.low * b.high + a.high * b.low;
   return product;
 }
 
@@ -99,6 +106,7 @@ static inline integer256 sum_256(integer256 a, integer256 b) {
 // A unit for differences: with `largest` the greatest magnitude of all (rounded; not 0), it makes them integers below
 // 2^bits. As a factor, a power of two.
 #define NARROW_BITS 31
+#define MIDDLE_BITS 42
 #define WIDE_BITS 62
 static inline double unit_factor(double largest, int bits) {
   const int exponent = (int)(as_ulong(largest) >> 52);  // 1023 for [1, 2)
@@ -113,6 +121,13 @@ static inline int is_integer(double2 difference, double factor, long* integer) {
   const long whole_low = convert_long(low);
   *integer = whole_high + whole_low;
   return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
+}
+
+// The same for at most 53 bits, which a double has: an integer has no rounding error.
+static inline int is_short_integer(double2 difference, double factor, long* integer) {
+  const double high = difference.x * factor;
+  *integer = convert_long(high);
+  return (convert_double(*integer) == high) & (difference.y == 0.0);
 }
 
 static inline double larger_magnitude(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }

@@ -85,8 +85,8 @@ inline long convert_long(double x) { return static_cast<long>(x); }
 inline double convert_double(long x) { return static_cast<double>(x); }
 __extension__ using WideLong = __int128;
 __extension__ using WideUlong = unsigned __int128;
-inline long mul_hi(long x, long y) { return static_cast<long>(WideLong{x} * y >> 64); }
-inline ulong mul_hi(ulong x, ulong y) { return static_cast<ulong>(WideUlong{x} * y >> 64); }
+inline long high_product(long x, long y) { return static_cast<long>(WideLong{x} * y >> 64); }
+inline ulong high_product(ulong x, ulong y) { return static_cast<ulong>(WideUlong{x} * y >> 64); }
 
 END_SHARED
 
@@ -103,6 +103,16 @@ END_SHARED
 #define INTEGER_CONSTANT(NAME, VALUE) enum { NAME = VALUE }
 #define ASSERT_SIZE(type, bytes) typedef char type##_has_its_size[sizeof(type) == (bytes) ? 1 : -1]
 #define OUT_OF_LINE
+
+// The upper half of a product. Compilers for CPUs have a type for it, which is several times as fast as their mul_hi.
+#ifdef __SIZEOF_INT128__
+static inline long __attribute__((overloadable)) high_product(long x, long y) { return (long)((__int128)x * y >> 64); }
+static inline ulong __attribute__((overloadable)) high_product(ulong x, ulong y) {
+  return (ulong)((unsigned __int128)x * y >> 64);
+}
+#else
+#define high_product mul_hi
+#endif
 
 #endif
 

@@ -113,19 +113,32 @@ static inline int angle_compared(angle seen, angle other, double bound) {
 // The bound of angle_compared where the in-circle test has the given one.
 static inline double angle_bound(double circle_bound) { return circle_bound == 0.0 ? 0.0 : ANGLE_BOUND; }
 
-// The in-circle determinant of differences from the fourth point: integers below 2^NARROW_BITS, or 2^WIDE_BITS, or what
-// two_sum gives. A term of the first is below 2^126, and their sum is less than 2^127 (docs/exactness.md); of the
-// second both factors of a term are below 2^125.
-static inline int circle_narrow(long ax, long ay, long bx, long by, long cx, long cy) {
-  const integer128 a = product_128(ax * ax + ay * ay, bx * cy - by * cx);
-  const integer128 b = product_128(bx * bx + by * by, cx * ay - cy * ax);
-  const integer128 c = product_128(cx * cx + cy * cy, ax * by - ay * bx);
+// The in-circle determinant of differences from the fourth point, which are integers below 2^SMALL_BITS, 2^MIDDLE_BITS
+// or 2^WIDE_BITS, or what two_sum gives. The first two are modulo 2^64 and 2^128, which suffices where a filter could
+// not decide: then the determinant is below 2^61 and 2^125, see docs/exactness.md. Of the third, both factors of a term
+// are below 2^125.
+#define SMALL_BITS 26
+static inline int circle_small(long ax, long ay, long bx, long by, long cx, long cy) {
+  const ulong a = as_ulong(ax * ax + ay * ay) * as_ulong(bx * cy - by * cx);
+  const ulong b = as_ulong(bx * bx + by * by) * as_ulong(cx * ay - cy * ax);
+  const ulong c = as_ulong(cx * cx + cy * cy) * as_ulong(ax * by - ay * bx);
+  return sign_of_64(as_long(a + b + c));
+}
+
+static inline integer128 sum_of_squares(long x, long y) { return sum_128(product_128(x, x), product_128(y, y)); }
+static inline integer128 cross_product(long ax, long ay, long bx, long by) {
+  return difference_128(product_128(ax, by), product_128(ay, bx));
+}
+
+static inline int circle_middle(long ax, long ay, long bx, long by, long cx, long cy) {
+  const integer128 a = low_product(sum_of_squares(ax, ay), cross_product(bx, by, cx, cy));
+  const integer128 b = low_product(sum_of_squares(bx, by), cross_product(cx, cy, ax, ay));
+  const integer128 c = low_product(sum_of_squares(cx, cy), cross_product(ax, ay, bx, by));
   return sign_of_128(sum_128(sum_128(a, b), c));
 }
 
 static inline integer256 circle_term(long ax, long ay, long bx, long by, long cx, long cy) {
-  return product_256(sum_128(product_128(ax, ax), product_128(ay, ay)),
-                     difference_128(product_128(bx, cy), product_128(by, cx)));
+  return product_256(sum_of_squares(ax, ay), cross_product(bx, by, cx, cy));
 }
 
 static inline int circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
@@ -161,27 +174,55 @@ OUT_OF_LINE static inline int circle_by_expansions(const double2* dx, const doub
   return expansion_sign(&sum);
 }
 
-OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
-  double2 dx[3], dy[3];
-  dx[0] = two_sum(a.x, -d.x);
-  dy[0] = two_sum(a.y, -d.y);
-  dx[1] = two_sum(b.x, -d.x);
-  dy[1] = two_sum(b.y, -d.y);
-  dx[2] = two_sum(c.x, -d.x);
-  dy[2] = two_sum(c.y, -d.y);
-  double largest = 0.0;
-  for (int k = 0; k < 3; ++k) largest = larger_magnitude(largest, larger_magnitude(dx[k].x, dy[k].x));
-  if (largest == 0.0) return 0;
-  long x[3], y[3];
-  for (int bits = NARROW_BITS; bits <= WIDE_BITS; bits += WIDE_BITS - NARROW_BITS) {
-    const double factor = unit_factor(largest, bits);
-    int integers = 1;
-    for (int k = 0; k < 3; ++k) integers &= is_integer(dx[k], factor, &x[k]) & is_integer(dy[k], factor, &y[k]);
-    if (integers)
-      return bits == NARROW_BITS ? circle_narrow(x[0], y[0], x[1], y[1], x[2], y[2])
-                                 : circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]);
+// What in-circle tests are made of: differences of three points from the fourth, and the largest magnitude among them.
+typedef struct {
+  double2 x[3], y[3];
+  double largest;
+} circle_differences;
+
+static inline circle_differences differences_from(double2 d, double2 a, double2 b, double2 c) {
+  circle_differences from;
+  from.x[0] = two_sum(a.x, -d.x);
+  from.y[0] = two_sum(a.y, -d.y);
+  from.x[1] = two_sum(b.x, -d.x);
+  from.y[1] = two_sum(b.y, -d.y);
+  from.x[2] = two_sum(c.x, -d.x);
+  from.y[2] = two_sum(c.y, -d.y);
+  from.largest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    from.largest = larger_magnitude(from.largest, larger_magnitude(from.x[k].x, from.y[k].x));
   }
-  return circle_by_expansions(dx, dy);
+  return from;
+}
+
+// Of any four points.
+OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
+  const circle_differences from = differences_from(d, a, b, c);
+  if (from.largest == 0.0) return 0;
+  const double factor = unit_factor(from.largest, WIDE_BITS);
+  long x[3], y[3];
+  int integers = 1;
+  for (int k = 0; k < 3; ++k) integers &= is_integer(from.x[k], factor, &x[k]) & is_integer(from.y[k], factor, &y[k]);
+  return integers ? circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]) : circle_by_expansions(from.x, from.y);
+}
+
+// The same, sooner, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
+// that is larger than theirs says nothing about the determinant.
+OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, double2 d, double bound) {
+  if (bound > ANGLE_BOUND) return circle_exact(a, b, c, d);
+  const circle_differences from = differences_from(d, a, b, c);
+  if (from.largest == 0.0) return 0;
+  const double factor = unit_factor(from.largest, MIDDLE_BITS);
+  long x[3], y[3], all = 0;
+  int integers = 1;
+  for (int k = 0; k < 3; ++k) {
+    integers &= is_short_integer(from.x[k], factor, &x[k]) & is_short_integer(from.y[k], factor, &y[k]);
+    all |= x[k] | y[k];
+  }
+  if (!integers) return circle_exact(a, b, c, d);
+  const int spare = MIDDLE_BITS - SMALL_BITS;
+  if ((all & ((1L << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
+  return circle_small(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
 }
 
 // The filter first, the exact test where it cannot decide.
@@ -192,22 +233,21 @@ static inline int orient_sign(double2 a, double2 b, double2 c, double bound) {
 
 static inline int circle_sign(double2 a, double2 b, double2 c, double2 d, double bound) {
   const int sign = circle_filtered(a, b, c, d, bound);
-  return sign != UNDECIDED ? sign : circle_exact(a, b, c, d);
+  return sign != UNDECIDED ? sign : circle_undecided(a, b, c, d, bound);
 }
 
 // The order of the canonical form: by x, then by y.
 static inline int comes_before(double2 p, double2 q) { return (p.x < q.x) | ((p.x == q.x) & (p.y < q.y)); }
 
-// circle_sign that is never 0, of four different points: on a tie it is as if the first of the four (comes_before) were
-// lowered a little below the paraboloid that all are lifted to. The Delaunay triangulation so defined is unique, and
-// makes of each polygon of cocircular points a fan from its first vertex: the canonical form.
+// For four different points on one circle, a, b, c counter-clockwise: what the in-circle test says if the first of the
+// four (comes_before) is lowered a little below the paraboloid that all are lifted to. Never 0. The Delaunay
+// triangulation so defined is unique, and makes of each polygon of cocircular points a fan from its first vertex: the
+// canonical form.
 //
 // With a the first of the triangle's vertices: if d comes before it, d is what is lowered, and lies below the plane
 // through the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now above
 // it, unless b and c separate it from a (it cannot lie on their line). See docs/exactness.md.
-static inline int circle_canonical(double2 a, double2 b, double2 c, double2 d, double bound) {
-  const int sign = circle_sign(a, b, c, d, bound);
-  if (sign != 0) return sign;
+static inline int canonical_tie(double2 a, double2 b, double2 c, double2 d, double bound) {
   while (comes_before(b, a) || comes_before(c, a)) {
     const double2 first = a;
     a = b;
@@ -216,6 +256,12 @@ static inline int circle_canonical(double2 a, double2 b, double2 c, double2 d, d
   }
   if (comes_before(d, a)) return 1;
   return orient_sign(b, c, d, bound == 0.0 ? 0.0 : ORIENT_BOUND) < 0 ? 1 : -1;
+}
+
+// circle_sign that is never 0.
+static inline int circle_canonical(double2 a, double2 b, double2 c, double2 d, double bound) {
+  const int sign = circle_sign(a, b, c, d, bound);
+  return sign != 0 ? sign : canonical_tie(a, b, c, d, bound);
 }
 
 END_SHARED

@@ -44,7 +44,7 @@ static inline int turn_of(region_cycle* g, double2 a, double2 b, double2 c) {
 static inline int in_circle(region_cycle* g, double2 a, double2 b, double2 c, double2 d) {
   TALLY(*g, circles, 1);
   const int sign = circle_filtered(a, b, c, d, g->bounds.circle);
-  return DECIDE(sign, circle_exact(a, b, c, d));
+  return DECIDE(sign, circle_undecided(a, b, c, d, g->bounds.circle));
 }
 
 // Of the vertices on the circle through base, chain i to j, and apex, one that no edge of the chain hides from the
@@ -104,7 +104,7 @@ static inline int apex_of(region_cycle* g, int i, int j) {
     if (apex >= 0) {
       TALLY(*g, arithmetic, ANGLE_OPERATIONS);
       const int sign = angle_compared(seen, widest, g->angle_bound);
-      wider = DECIDE(sign, circle_exact(a, b, on_chain(g, apex), p));
+      wider = DECIDE(sign, circle_undecided(a, b, on_chain(g, apex), p, g->angle_bound));
       if (wider == UNDECIDED) return REGION_UNDECIDED;
     }
     if (wider > 0) {

@@ -1,6 +1,5 @@
 // Delaunay triangulations as rings of edges, and Guibas and Stolfi's merge of two of them (ACM Transactions on Graphics
-// 4, 1985). RINGS_CIRCLE breaks the ties of cocircular points: by circle_canonical, so that the result is the canonical
-// one, unless it says otherwise.
+// 4, 1985). RINGS_TIE breaks the ties of cocircular points.
 #ifndef FLAUNAY_RINGS_H
 #define FLAUNAY_RINGS_H
 
@@ -15,9 +14,11 @@ BEGIN_SHARED
 
 INTEGER_CONSTANT(NO_VERTEX, -1);
 INTEGER_CONSTANT(NO_EDGE, -1);
-// Where it returns 0, edges stay as they are.
-#ifndef RINGS_CIRCLE
-#define RINGS_CIRCLE circle_canonical
+// Whether d counts as inside of the circle of a, b, c if it is on it; if not, edges stay as they are. Where coordinates
+// are so coarse that ties cost nothing, polygons are small, and merges make them canonical. Otherwise they are left to
+// blocks/fans.cl, since merges that make fans of large polygons would make most of their edges again and again.
+#ifndef RINGS_TIE
+#define RINGS_TIE(a, b, c, d, bound) ((bound) == 0.0 && canonical_tie(a, b, c, d, bound) > 0)
 #endif
 
 // What one work-item works on: its own edges, all free at first.
@@ -30,6 +31,7 @@ typedef struct {
   int free_first, free_last;  // of the list of free edges
   int unused;                 // the first that was never used
   uint undecided;             // predicates that floating point could not decide
+  uint ties;                  // how many of these found cocircular points
   TALLY_MEMBER
 } rings;
 
@@ -41,7 +43,7 @@ static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const double2* poin
   g.vertex_edge = vertex_edge;
   g.bounds = bounds;
   g.free_first = g.free_last = g.unused = NO_EDGE;
-  g.undecided = 0;
+  g.undecided = g.ties = 0;
   CLEAR_TALLY(g);
   return g;
 }
@@ -78,10 +80,13 @@ static inline int turns_left(rings* g, double2 a, double2 b, double2 c) { return
 // Is d inside of the circle through a, b, c (counter-clockwise)?
 static inline int in_circle(rings* g, double2 a, double2 b, double2 c, double2 d) {
   TALLY(*g, circles, 1);
-  const int sign = circle_filtered(a, b, c, d, g->bounds.circle);
-  if (sign == 1 || sign == -1) return sign > 0;
-  g->undecided += sign == UNDECIDED;
-  return RINGS_CIRCLE(a, b, c, d, g->bounds.circle) > 0;
+  int sign = circle_filtered(a, b, c, d, g->bounds.circle);
+  if (sign == UNDECIDED) {
+    ++g->undecided;
+    sign = circle_undecided(a, b, c, d, g->bounds.circle);
+    g->ties += sign == 0;
+  }
+  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, g->bounds.circle);
 }
 
 static inline void put_edge(rings* g, int e, int to, int next, int previous) {
@@ -140,12 +145,16 @@ static inline void insert_after(rings* g, int e, int f) {
 }
 static inline void insert_before(rings* g, int e, int f) { insert_after(g, e, g->edges[f].previous); }
 
-// Takes edge e out of the ring of its origin, in which there are others.
-static inline void take_out(rings* g, int e, int origin) {
+// Takes edge e, which is not its origin's vertex_edge, out of the ring, in which there are others.
+static inline void unlink(rings* g, int e) {
   const int next = g->edges[e].next, previous = g->edges[e].previous;
   g->edges[previous].next = next;
   g->edges[next].previous = previous;
-  if (g->vertex_edge[origin] == e) g->vertex_edge[origin] = next;
+}
+
+static inline void take_out(rings* g, int e, int origin) {
+  if (g->vertex_edge[origin] == e) g->vertex_edge[origin] = g->edges[e].next;
+  unlink(g, e);
 }
 
 static inline void remove_edge(rings* g, int e) {

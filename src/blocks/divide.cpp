@@ -2,6 +2,7 @@
 
 #include "blocks/stages.hpp"
 #include "launchers/blocks/divide.cl.hpp"
+#include "shared/codes.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -46,7 +47,7 @@ void solve(Workspace& work, const Blocks& blocks, std::size_t workers, std::size
                                          .vertex_edge = rings.vertex_edge,
                                          .solved = rings.solved,
                                          .distinct_counts = rings.device_distinct,
-                                         .undecided = rings.device_undecided,
+                                         .account = rings.device_account,
                                          .scratch_points = points,
                                          .scratch_source = source,
                                          .scratch_ranks = ranks,
@@ -75,8 +76,8 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
   rings.vertex_edge = work.persistent.allocate<cl_int>(blocks.points);
   rings.solved = work.persistent.allocate<kernel::solved_block>(blocks.count);
   rings.device_distinct = work.persistent.allocate<cl_int>(blocks.count);
-  rings.device_undecided = work.persistent.allocate<cl_uint>(1);
-  runtime.fill(rings.device_undecided, 1, cl_uint{0});
+  rings.device_account = work.persistent.allocate<cl_uint>(kernel::RINGS_NUMBERS);
+  runtime.fill(rings.device_account, kernel::RINGS_NUMBERS, cl_uint{0});
 
   std::size_t largest = 1;
   for (std::size_t b = 0; b < blocks.count; ++b) {
@@ -102,7 +103,7 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
                                          .edges = rings.edges,
                                          .vertex_edge = rings.vertex_edge,
                                          .solved = rings.solved,
-                                         .undecided = rings.device_undecided});
+                                         .account = rings.device_account});
     first = end;
     if (milestones != nullptr)
       milestones->set("triangulate", kBlocksSolved + (kBlocksMerged - kBlocksSolved) *
@@ -117,7 +118,10 @@ void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {
   rings.distinct.resize(blocks.count);
   const host::Runtime::Settled settled(work.runtime);
   work.runtime.read_later(rings.device_distinct, 0, blocks.count, rings.distinct.data());
-  rings.undecided = work.runtime.read_one(rings.device_undecided, 0);
+  cl_uint account[kernel::RINGS_NUMBERS];
+  work.runtime.read(rings.device_account, 0, kernel::RINGS_NUMBERS, account);
+  rings.undecided = account[kernel::RINGS_UNDECIDED];
+  rings.ties = account[kernel::RINGS_TIES];
 }
 
 }  // namespace flaunay::blocks

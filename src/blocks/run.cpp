@@ -30,6 +30,7 @@ Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::si
   exchange.while_device_computes();
   milestones.report();
   await_rings(work, blocks, rings);
+  if (rings.ties > 0) make_fans(work, blocks, rings);
   phases.end("triangulate");
 
   phases.progress("output", kBlocksMerged);

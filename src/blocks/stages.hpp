@@ -1,6 +1,6 @@
-// The stages of mode blocks and the data between them: divide turns blocks into edge rings, mesh turns edge
-// rings into triangles. Each stage is one file with the name of its kernel file. points/distribute.hpp makes
-// the blocks.
+// The stages of mode blocks and the data between them: divide turns blocks into edge rings, fans makes these
+// canonical, mesh turns them into triangles. Each stage is one file with the name of its kernel file.
+// points/distribute.hpp makes the blocks.
 #pragma once
 
 #include <cstddef>
@@ -39,9 +39,10 @@ struct Rings {
   Buffer<cl_int> vertex_edge{};
   Buffer<kernel::solved_block> solved{};
   Buffer<cl_int> device_distinct{};
-  Buffer<cl_uint> device_undecided{};
+  Buffer<cl_uint> device_account{};
   std::vector<cl_int> distinct;  ///< number of vertices of each block
   std::size_t undecided = 0;     ///< predicates that were evaluated exactly
+  std::size_t ties = 0;          ///< how many of them found cocircular points
 };
 
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
@@ -52,6 +53,10 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
 /// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
+
+/// Makes the triangulations canonical, which they are already if there were no ties. Does not wait. Temporary
+/// memory: 6 bytes per point.
+void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings);
 
 /// The size of a mesh.
 struct MeshSizes {

@@ -15,7 +15,7 @@
 
 // Among edges of cocircular points, the merge keeps those that it meets first. geometry::finish makes the
 // canonical result.
-#define RINGS_CIRCLE circle_sign
+#define RINGS_TIE(a, b, c, d, bound) 0
 #include "shared/rings.h"
 
 namespace flaunay::dwyer {

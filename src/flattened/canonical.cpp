@@ -21,7 +21,8 @@ void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, dissolved, halfedges);
-    run_list(work, kernels::cocircular_exact{.count = work.list_length,
+    run_list(work, kernels::cocircular_exact{.bound = work.bounds.circle,
+                                             .count = work.list_length,
                                              .list = list,
                                              .triangles = triangles,
                                              .twins = twins,

@@ -39,8 +39,9 @@ struct Predicates {
   /// circle through a, b and other_point; -1 if it lies outside, 0 if it lies on the circle.
   int wider_angle(Point a, Point b, Point p, const kernel::angle& seen, Point other_point,
                   const kernel::angle& other) const {
-    const int sign = kernel::angle_compared(seen, other, kernel::angle_bound(bounds.circle));
-    return sign == UNDECIDED ? kernel::circle_exact(a, b, other_point, p) : sign;
+    const double bound = kernel::angle_bound(bounds.circle);
+    const int sign = kernel::angle_compared(seen, other, bound);
+    return sign == UNDECIDED ? kernel::circle_undecided(a, b, other_point, p, bound) : sign;
   }
   /// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 if outside, 0 if on it.
   int circle(Point a, Point b, Point c, Point d) const {

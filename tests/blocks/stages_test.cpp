@@ -36,6 +36,8 @@ Triangulation check_stages(Runtime& runtime, const Coordinates& coordinates, con
   if (exact) call.work.bounds = {2, 2, 2};
   Rings rings = divide(call.work, blocks, representatives);
   await_rings(call.work, blocks, rings);
+  if (rings.ties > 0) make_fans(call.work, blocks, rings);
+  met.ties += rings.ties;
   runtime.fetch_later(representatives, result.representatives);
   runtime.finish();
   check_rings(call, coordinates, offsets, blocks, rings, result.representatives, g, met);
@@ -289,10 +291,11 @@ TEST(Kernels, AllAreLaunched) {
   runtime.set_profiling(true);
   Met met;
   check_stages(runtime, make_fixture("uniform", 100, 22), met);
+  check_stages(runtime, make_fixture("integer-star", 200, 23), met);
   for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
   runtime.set_profiling(false);
   std::size_t kernels = 0;
-  for (const char* const file : {"points/distribute", "blocks/divide", "blocks/mesh"}) {
+  for (const char* const file : {"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"}) {
     const std::string source = host::kernel_source(file);
     const std::regex pattern("\nkernel void (\\w+)\\(");
     for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
@@ -300,7 +303,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 19u);
+  EXPECT_EQ(kernels, 23u);
 }
 
 }  // namespace

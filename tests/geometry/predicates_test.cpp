@@ -115,8 +115,8 @@ double spanning(Random& random, int bits) {
 /// Integers next to the limits of what kernels/shared/integer_arithmetic.h takes: coordinates or differences
 /// as large as they can be, a unit off, or 0.
 void fill_largest(Random& random, int count, double* c) {
-  const int all_bits[] = {29, 30, 31, 32, 33, 52, 53, 60, 61, 62, 63, 64};
-  const int bits = all_bits[random.below(12)];
+  const int all_bits[] = {24, 25, 26, 27, 29, 30, 31, 32, 33, 40, 41, 42, 43, 52, 53, 60, 61, 62, 63, 64};
+  const int bits = all_bits[random.below(std::size(all_bits))];
   for (int k = 0; k < count; ++k) {
     const double largest = std::ldexp(1, bits) - std::ldexp(random.below(3), std::max(0, bits - 53));
     c[k] = random.below(3) == 0 ? random.below(2) : random.sign() * largest;

@@ -84,12 +84,17 @@ kernel void angle_compared_cases(int n, double bound, global const double* restr
   }
 }
 
+// The exact sign; WRONG if circle_undecided has another one of a case that a filter leaves to it.
+#define WRONG 3
 kernel void circle_exact_cases(int n, global const double* restrict cases, global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
-    global const double* c = cases + 8 * i;
-    signs[i] = circle_exact((double2)(c[0], c[1]), (double2)(c[2], c[3]), (double2)(c[4], c[5]),
-                            (double2)(c[6], c[7]));
+    const double2 a = vload2(4 * i, cases), b = vload2(4 * i + 1, cases);
+    const double2 c = vload2(4 * i + 2, cases), d = vload2(4 * i + 3, cases);
+    const int sign = circle_exact(a, b, c, d);
+    const int is_undecided = circle_filtered(a, b, c, d, CIRCLE_BOUND) == UNDECIDED ||
+                             angle_compared(angle_at(d, a, b), angle_at(c, a, b), ANGLE_BOUND) == UNDECIDED;
+    signs[i] = is_undecided && circle_undecided(a, b, c, d, CIRCLE_BOUND) != sign ? WRONG : sign;
   }
 }
 

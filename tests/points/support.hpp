@@ -201,7 +201,8 @@ struct Nested {
 
 /// What the tests met.
 struct Met {
-  std::size_t merges = 0, empty_blocks = 0, large_blocks = 0, duplicates = 0, flat = 0, triangles = 0;
+  std::size_t merges = 0, empty_blocks = 0, large_blocks = 0, duplicates = 0, flat = 0, triangles = 0,
+              ties = 0;
 };
 
 /// The blocks of sets of points against their twin; see distribute_test.cpp. g: gets what the twin has.

@@ -55,7 +55,7 @@ double2 operator-(double2 a) { return {-a.x, -a.y}; }
 // For the exact tests, which are read but not counted.
 using kernel::as_long;
 using kernel::as_ulong;
-using kernel::mul_hi;
+using kernel::high_product;
 using kernel::ulong;
 inline ulong as_ulong(Counted x) { return as_ulong(x.value); }
 inline Counted as_double(ulong bits) { return kernel::as_double(bits); }

@@ -1,0 +1,97 @@
+// The stage `fans`, on sets that consist of polygons of cocircular points. RingCheck, its twin, knows the
+// edges that the canonical triangulation has.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+
+#include "tests/blocks/support.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+// Exact products, whose many bits make ties undecided.
+constexpr double kFine = 1 + 0x1p-30;
+
+void add_point(double x, double y, Coordinates& points) {
+  points.insert(points.end(), {x * kFine, y * kFine});
+}
+
+/// All integer points of the circle with this radius.
+void add_circle(int radius, double x, double y, Coordinates& points) {
+  for (int i = -radius; i <= radius; ++i) {
+    const int square = radius * radius - i * i;
+    const int j = static_cast<int>(std::lround(std::sqrt(square)));
+    if (j * j != square) continue;
+    add_point(x + i, y + j, points);
+    if (j != 0) add_point(x + i, y - j, points);
+  }
+}
+
+/// Polygons alone, around a point, around each other, and side by side with vertices and sides in common.
+Nested polygons(int radius, int count) {
+  Nested all;
+  Coordinates points;
+  add_circle(radius, 3, -2, points);
+  all.add(points);
+  add_point(4, -1, points);
+  all.add(points);
+  points.clear();
+  for (int k = 1; k <= count; ++k) add_circle(k * radius, 0, 0, points);
+  all.add(points);
+  points.clear();
+  for (int k = 0; k < count; ++k) add_circle(radius, 2 * k * radius, 0, points);
+  all.add(points);
+  points.clear();
+  for (int i = 0; i <= count; ++i) {
+    for (int j = 0; j <= count; ++j) add_point(5 * i - 3 * j, 3 * i + 5 * j, points);
+  }
+  all.add(points);
+  return all;
+}
+
+TEST(SmallFans, OfPolygons) {
+  under_each_tuning([](Runtime& runtime) {
+    const Nested sets = polygons(5, 2);
+    Met met;
+    check_stages(runtime, sets.coordinates, sets.offsets, met);
+    EXPECT_GT(met.ties, 20u);
+  });
+}
+
+TEST(Fans, OfPolygons) {
+  under_each_tuning([](Runtime& runtime) {
+    const Nested sets = polygons(65 * 17, 6);
+    Met met;
+    check_stages(runtime, sets.coordinates, sets.offsets, met);
+    EXPECT_GT(met.ties, 1000u);
+    // One set that many blocks share.
+    check_stages(runtime, make_fixture("integer-star", 4000, 1), met);
+  });
+}
+
+/// Nothing changes where no points are cocircular.
+TEST(SmallFans, OfNoPolygons) {
+  Runtime& runtime = Runtimes::get("own");
+  const Coordinates coordinates = make_fixture("uniform", 40, 2);
+  Call call(runtime);
+  Triangulation result;
+  result.representatives.resize(40);
+  const auto representatives = runtime.output(result.representatives);
+  const Blocks blocks =
+      make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()), {0, 40}, representatives);
+  Rings rings = divide(call.work, blocks, representatives);
+  await_rings(call.work, blocks, rings);
+  EXPECT_EQ(rings.ties, 0u);
+  const auto before = call.read(rings.edges, rings.edges.size());
+  make_fans(call.work, blocks, rings);
+  const auto after = call.read(rings.edges, rings.edges.size());
+  for (std::size_t e = 0; e < before.size(); ++e) {
+    EXPECT_EQ(before[e].to, after[e].to);
+    EXPECT_EQ(before[e].next, after[e].next);
+    EXPECT_EQ(before[e].previous, after[e].previous);
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::blocks
