@@ -39,7 +39,7 @@ static inline scaling scale_of(int shift) {
   return scale;
 }
 
-static inline double shifted(double x, int shift) { return scaled(x, scale_of(shift)); }
+static inline double shifted(double x, int shift) { return shift == 0 ? x : scaled(x, scale_of(shift)); }
 
 static inline double2 shifted_point(int i, global const double* input, int shift) {
   const double2 p = vload2(i, input);
@@ -242,10 +242,13 @@ kernel void write_cells(int n, global const int* restrict triangles, global cons
       if ((firsts[t] >> k & 1) == 0) continue;
       const int vertex = triangles[3 * t + k];
       const uint end = offsets[vertex + 1];
-      place at = {t, k};
-      for (uint to = offsets[vertex]; to < end && at.triangle >= 0; ++to) {
-        cells[to] = at.triangle;
-        at = beside(at, 0, n, neighbors);
+      // As beside(), which has found the way already.
+      int at = t, opposite = next_corner(k);
+      for (uint to = offsets[vertex]; to < end && at >= 0 && at < n; ++to) {
+        cells[to] = at;
+        const int next = neighbors[3 * at + opposite];
+        opposite = next < 0 || next >= n ? 0 : corner_before(corner_towards(at, neighbors + 3 * next));
+        at = next;
       }
     }
   }
