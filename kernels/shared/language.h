@@ -105,7 +105,7 @@ END_SHARED
 #define OUT_OF_LINE
 
 // The upper half of a product. Compilers for CPUs have a type for it, which is several times as fast as their mul_hi.
-#ifdef __SIZEOF_INT128__
+#if defined(__SIZEOF_INT128__) && (defined(__x86_64__) || defined(__aarch64__))
 static inline long __attribute__((overloadable)) high_product(long x, long y) { return (long)((__int128)x * y >> 64); }
 static inline ulong __attribute__((overloadable)) high_product(ulong x, ulong y) {
   return (ulong)((unsigned __int128)x * y >> 64);

@@ -18,6 +18,7 @@ namespace flaunay::kernel {
 #include "host/native/words.h"
 //
 #include "blocks/divide.cl"
+#include "blocks/fans.cl"
 #include "blocks/mesh.cl"
 #include "points/inspect.cl"
 //
@@ -42,6 +43,7 @@ struct Scratch {
   std::vector<int> point_source;
   std::vector<kernel::int2> ranks;
   std::vector<kernel::uchar> axes;
+  std::vector<kernel::uchar> inside, found;
   std::vector<kernel::uint> first_rows;
   std::vector<int> walked, hull_offsets, corner_of_edge;
 };
@@ -95,13 +97,26 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   kernel::solved_block* const solved = sized(s.solved, sets);
   s.distinct.resize(sets);
   int next = 0;
-  kernel::uint undecided = 0;
+  kernel::uint account[kernel::RINGS_NUMBERS] = {};
   for_each_item(1, [&] {
     kernel::solve_blocks(1, set_count, static_cast<int>(largest), -1, s.offsets.data(), scaling.bounds, &next,
                          vertices, source, result.representatives.data(), edges, vertex_edge, solved,
-                         s.distinct.data(), &undecided, sized(s.points, largest),
-                         sized(s.point_source, largest), sized(s.ranks, 3 * largest), sized(s.axes, largest));
+                         s.distinct.data(), account, sized(s.points, largest), sized(s.point_source, largest),
+                         sized(s.ranks, 3 * largest), sized(s.axes, largest));
   });
+
+  const int pairs = kernel::EDGES_PER_VERTEX / 2 * point_count;
+  if (account[kernel::RINGS_TIES] > 0) {
+    kernel::uchar* const inside = sized(s.inside, static_cast<std::size_t>(pairs));
+    kernel::uchar* const found = sized(s.found, static_cast<std::size_t>(pairs));
+    const auto for_each_pair = [pairs](const auto& work) {
+      for_each_item(static_cast<std::size_t>(pairs), work);
+    };
+    for_each_pair([&] { kernel::find_inside(pairs, scaling.bounds.circle, vertices, edges, inside); });
+    for_each_item(n, [&] { kernel::leave_inside(point_count, edges, inside, vertex_edge); });
+    for_each_pair([&] { kernel::find_fans(pairs, vertices, edges, inside, found); });
+    for_each_pair([&] { kernel::build_fans(pairs, inside, found, edges); });
+  }
 
   kernel::uint* const first_rows = sized(s.first_rows, n + 1);
   for_each_item(n, [&] { kernel::vertex_triangles(point_count, vertex_edge, first_rows); });
@@ -114,7 +129,6 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   std::exclusive_scan(first_rows, first_rows + n + 1, first_rows, kernel::uint{0});
   MeshSizes sizes = mesh_sizes(s.set_blocks, s.distinct, s.walked, first_rows[n]);
 
-  const int pairs = kernel::EDGES_PER_VERTEX / 2 * point_count;
   const bool with_corners = options.neighbors || options.halfedges;
   int* const corner_of_edge = with_corners ? sized(s.corner_of_edge, kernel::EDGES_PER_VERTEX * n) : nullptr;
   result.triangles.resize(3 * sizes.triangles());
@@ -138,7 +152,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
     kernel::write_hulls(set_count, s.set_blocks.data(), solved, vertex_edge, edges, source,
                         s.hull_offsets.data(), result.hull.data());
   });
-  Outcome outcome{std::move(sizes), undecided};
+  Outcome outcome{std::move(sizes), account[kernel::RINGS_UNDECIDED]};
   outcome.write(n, result.statistics);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
