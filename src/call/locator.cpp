@@ -82,7 +82,7 @@ struct Locator::Implementation {
 
 std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator, bool on_device) {
   const auto& owner = triangulator.implementation_;
-  return call::take_turn(*owner, [&] {
+  return with_errors([&] {
     return std::make_unique<Implementation>(owner, on_device ? owner->on_device() : owner->for_host_memory());
   });
 }

@@ -1108,7 +1108,12 @@ TEST(SmallEmbeddingMisuse, DevicesWithoutFp64AreRefused) {
   refused({"no OpenCL device has double precision"}, [] {
     const ScopedEnvironment unset("FLAUNAY_DEVICE", nullptr);
     Triangulator t;
+    t.context();
   });
+  // Points in host memory need no device.
+  const ScopedEnvironment unset("FLAUNAY_DEVICE", nullptr);
+  const Coordinates points = make_fixture("uniform", 10000, 5);
+  EXPECT_EQ(Triangulator().triangulate(points.data(), 10000).statistics.device, "host");
   opencl_calls().without_fp64 = false;
 }
 
