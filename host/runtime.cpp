@@ -15,6 +15,7 @@
 #include "host/device.hpp"
 #include "host/pocl.hpp"
 #include "host/program_cache.hpp"
+#include "host/system_memory.hpp"
 #include "kernels/embedded.hpp"
 
 namespace flaunay::host {
@@ -163,6 +164,9 @@ void Runtime::set_counters(const Buffer<cl_uint>& counters) {
   counting_ = counters.memory() != nullptr;
 }
 
+// What a copy of a compiled program needs at most, the driver's own work included.
+constexpr std::size_t kSpaceForBinaries = std::size_t{512} << 20;
+
 const boost::compute::program& Runtime::find_program(const std::string& file) {
   auto& programs = programs_[counting_];
   const auto found = programs.find(file);
@@ -183,7 +187,11 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   if (program.get() == nullptr) {
     if (before_compiling_) before_compiling_();
     program = compiled(file, source, options);
-    if (const std::string binary = binary_of(program); !binary.empty()) cache.store(key, binary);
+    // Some drivers end the process if there is no memory for the copy.
+    const bool is_kept = !cache.folder().empty() && address_space_left().bytes >= kSpaceForBinaries;
+    if (const std::string binary = is_kept ? binary_of(program) : ""; !binary.empty()) {
+      cache.store(key, binary);
+    }
   }
   const double seconds = now() - begin;
   build_seconds_ += seconds;

@@ -56,6 +56,11 @@ limited() { # limited OPTION KILOBYTES COMMAND...
   )
 }
 
+# PoCL is what lacks memory, or a folder for its kernels; what flaunay itself keeps is out of the way.
+on_pocl() {
+  export FLAUNAY_DEVICE='#0' FLAUNAY_CACHE_DIR=''
+}
+
 case "$1" in
   stack)
     # Skewed and degenerate points reach the exact predicates, and small and large regions.
@@ -76,6 +81,12 @@ case "$1" in
     ;;
   memory)
     input="$(points 200000 uniform)"
+    for megabytes in 20 50 100 150 200 250 300 400 500 600; do
+      attempt "$megabytes MB of address space on the host" \
+        limited -v $((1024 * megabytes)) "$FLAUNAY" triangulate "$input" --quiet
+    done
+    succeed '400 MB of address space on the host' limited -v 400000 "$FLAUNAY" triangulate "$input" --quiet
+    on_pocl
     # The kernels are compiled at the first run, with enough memory; then from too little for a driver to enough.
     export POCL_CACHE_DIR="$work/kernels"
     succeed '3000 MB of address space' limited -v 3000000 "$FLAUNAY" triangulate "$input" --quiet
@@ -95,6 +106,7 @@ case "$1" in
     ;;
   cache)
     input="$(points 5000 uniform)"
+    on_pocl
     touch "$work/file"
     refuse 'a file instead of a folder' "$work/file" \
       env POCL_CACHE_DIR="$work/file" "$FLAUNAY" triangulate "$input" --quiet
