@@ -34,9 +34,9 @@ Input make_input(const std::string& distribution, std::size_t n, std::uint64_t s
   return {distribution, n, io::generate(distribution, n, seed).coordinates, {0, n}};
 }
 
-Input equal_sets(std::size_t sets, std::size_t size) {
+Input equal_sets(std::size_t sets, std::size_t size, const std::string& distribution) {
   Input input{fmt::format("{} sets of {}", sets, size), 0, {}, {0}};
-  for (std::size_t s = 0; s < sets; ++s) append_set(input, "uniform", size);
+  for (std::size_t s = 0; s < sets; ++s) append_set(input, distribution, size);
   return input;
 }
 

@@ -23,8 +23,8 @@ struct Input {
 
 Input make_input(const std::string& distribution, std::size_t n, std::uint64_t seed = 1);
 
-/// Uniform sets of the same size.
-Input equal_sets(std::size_t sets, std::size_t size);
+/// Sets of the same size.
+Input equal_sets(std::size_t sets, std::size_t size, const std::string& distribution = "uniform");
 
 /// n points in sets whose sizes have a heavy tail, up to a tenth of all points. A ninth of the sets is empty,
 /// a quarter is degenerate: collinear, gridded, all or nearly all equal, or with many duplicates.

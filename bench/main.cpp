@@ -20,6 +20,7 @@ void add_small(CLI::App& app, Action& action);
 void add_batches(CLI::App& app, Action& action);
 void add_embedding(CLI::App& app, Action& action);
 void add_threads(CLI::App& app, Action& action);
+void add_processes(CLI::App& app, Action& action);
 void add_primitives(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
 
@@ -37,7 +38,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Action action;
   for (const auto add : {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_batches,
-                         add_embedding, add_threads, add_primitives, add_paper}) {
+                         add_embedding, add_threads, add_processes, add_primitives, add_paper}) {
     add(app, action);
   }
   try {

@@ -1,6 +1,8 @@
 // flaunay-bench scaling and small: time per point by number of points, flaunay's modes beside CGAL.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "contest.hpp"
 
 namespace flaunay::bench {
@@ -8,6 +10,7 @@ namespace {
 
 struct Request : Measurement {
   std::vector<std::size_t> sizes{32, 100, 1024, 4096};  ///< of small
+  std::size_t sets = 0;                                 ///< of small; 0: enough for a run
   int least = 10, most = 24, cgal_most = 22;            ///< of scaling, as powers of two
   std::vector<std::string> distributions{"uniform"};
   std::vector<std::string> modes{to_string(kDefaultMode)};
@@ -17,11 +20,15 @@ struct Request : Measurement {
 constexpr const char* kHelp =
     "Times are from points in memory to triangles and neighbours in memory, in whole calls with a "
     "triangulator that is kept; all implementations and inputs take turns, the first run of each is not "
-    "counted, and what is over soon is repeated within a run. The exit code is 1 if numbers of triangles "
+    "counted, and what is over soon is repeated within a run. small: each call has another set of points, so "
+    "that nothing is remembered from the call before; times are of one call. The exit code is 1 if numbers "
+    "of triangles "
     "differ from CGAL's.";
 
-Result measure_sizes(const Request& request, const std::vector<std::size_t>& sizes, double limit) {
-  const std::vector<Input> inputs = make_inputs(request.distributions, sizes);
+Result measure_scaling(const Request& request) {
+  if (request.least > request.most) throw Error(ErrorKind::usage, "--least is greater than --most");
+  const std::vector<Input> inputs =
+      make_inputs(request.distributions, powers_of_two(request.least, request.most));
   Triangulator triangulator(request.device);
   Entries entries = make_entries(modes_and_cgal(triangulator, request.modes), inputs);
   for (Entry& entry : entries) {
@@ -29,18 +36,57 @@ Result measure_sizes(const Request& request, const std::vector<std::size_t>& siz
       entry.skipped = fmt::format("more than 2^{} points", request.cgal_most);
     }
   }
-  measure(entries, request.runs, limit);
+  measure(entries, request.runs, request.limit);
   Result result{triangulator.device()};
   result.agree = check_counts(entries);
   add_entries(result.tables, entries);
   return result;
 }
 
-Result measure_small(const Request& request) { return measure_sizes(request, request.sizes, 0); }
+// A call per set, where an implementation of its own would take all sets at once.
+std::shared_ptr<const Implementation> call_per_set(Triangulator& triangulator, const std::string& mode) {
+  const research::Options options = options_of(mode);
+  const auto run = [&triangulator, options](const Input& input) {
+    Outcome outcome;
+    const Stopwatch watch;
+    for (std::size_t s = 0; s < input.sets(); ++s) {
+      const std::size_t first = input.offsets[s], count = input.offsets[s + 1] - first;
+      outcome.triangles +=
+          call(triangulator, &input.coordinates[2 * first], count, options).statistics.triangles;
+    }
+    outcome.seconds = watch.seconds();
+    return outcome;
+  };
+  return std::make_shared<Implementation>(Implementation{implementation_name(mode), run, options});
+}
 
-Result measure_scaling(const Request& request) {
-  if (request.least > request.most) throw Error(ErrorKind::usage, "--least is greater than --most");
-  return measure_sizes(request, powers_of_two(request.least, request.most), request.limit);
+Result measure_small(const Request& request) {
+  // So many that no cache and no branch prediction remembers them, and that clocks are fine enough.
+  constexpr std::size_t kPointsOfARun = std::size_t{1} << 18;
+  std::vector<Input> inputs;
+  for (const std::string& distribution : request.distributions) {
+    for (const std::size_t size : request.sizes) {
+      const std::size_t sets =
+          request.sets > 0 ? request.sets : std::max<std::size_t>(1, kPointsOfARun / size);
+      inputs.push_back(equal_sets(sets, size, distribution));
+      // For the record: it is about calls on so many points.
+      inputs.back().distribution = distribution;
+      inputs.back().n = size;
+    }
+  }
+  Triangulator triangulator(request.device);
+  Implementations implementations;
+  for (const std::string& mode : request.modes) implementations.push_back(call_per_set(triangulator, mode));
+  append(implementations, peer_implementations({kCgal}));
+  Entries entries = make_entries(implementations, inputs);
+  measure(entries, request.runs);
+  for (Entry& entry : entries) {
+    for (double& seconds : entry.seconds) seconds /= static_cast<double>(entry.input->sets());
+  }
+  Result result{triangulator.device()};
+  result.agree = check_counts(entries);
+  add_entries(result.tables, entries);
+  return result;
 }
 
 }  // namespace
@@ -49,6 +95,7 @@ void add_small(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(app, action, "small", "calls on few points", kHelp, request, measure_small);
   add_sizes_option(command, request->sizes);
+  command->add_option("--sets", request->sets, "number of different sets; default: 262144 points in all");
   add_distributions_option(command, request->distributions);
   add_modes_option(command, request->modes);
   add_runs_option(command, request->runs);

@@ -1,4 +1,4 @@
-// flaunay-bench threads: what more threads of the driver are worth.
+// flaunay-bench threads: what more threads are worth, of the host's or of the driver's.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -9,7 +9,8 @@
 namespace flaunay::bench {
 namespace {
 
-constexpr const char* kVariable = "POCL_MAX_PTHREAD_COUNT";
+// The host reads the first, PoCL the second.
+constexpr const char* kVariables[] = {"FLAUNAY_THREADS", "POCL_MAX_PTHREAD_COUNT"};
 /// The goal for k threads is this share of k.
 constexpr double kGoalEfficiency = 0.9;
 
@@ -28,7 +29,7 @@ struct Team {
 
 /// What the child process does: measures once, and tells the times in the order of the entries.
 std::string measure_here(const Request& request, const std::vector<Input>& inputs, int threads) {
-  setenv(kVariable, std::to_string(threads).c_str(), 1);
+  for (const char* const variable : kVariables) setenv(variable, std::to_string(threads).c_str(), 1);
   Triangulator triangulator(request.device);
   Entries entries = make_entries(mode_implementations(triangulator, request.modes, threads), inputs);
   measure(entries, 1);
@@ -51,7 +52,7 @@ void measure_in_child(const Request& request, const std::vector<Input>& inputs, 
   }
   const Json told = Json::parse(answer.text);
   if (told.at("compute_units") != team.threads) {
-    fmt::print(stderr, "WARNING: with {}={} the device has {} compute units\n", kVariable, team.threads,
+    fmt::print(stderr, "WARNING: with {}={} the device has {} compute units\n", kVariables[1], team.threads,
                told.at("compute_units").get<int>());
   }
   for (std::size_t e = 0; e < team.entries.size(); ++e) {
@@ -107,14 +108,14 @@ Result measure_threads(const Request& request) {
 void add_threads(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
-      app, action, "threads", "what more threads of the driver are worth",
+      app, action, "threads", "what more threads of the host or of the driver are worth",
       fmt::format(
-          "{} is read when the driver is loaded, so each number of threads has processes of its own: "
+          "{} are read when work begins, so each number of threads has processes of its own: "
           "in each round one for every number, which runs everything once without counting and once "
           "that counts. Mode partition has as many host threads, too. The goal is a speedup of {:g} "
-          "for each thread. Drivers other than PoCL do not know the variable; a warning says so where "
+          "for each thread. Drivers other than PoCL do not know these variables; a warning says so where "
           "the number of compute units does not follow it.",
-          kVariable, kGoalEfficiency),
+          fmt::join(kVariables, " and "), kGoalEfficiency),
       request, measure_threads);
   add_option(command, "--counts", request->counts, "numbers of threads; speedups are over the first");
   add_sizes_option(command, request->sizes);

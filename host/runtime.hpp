@@ -245,8 +245,19 @@ class Runtime {
     int exceptions_;
   };
 
-  /// Sets what is called before a program is compiled from its source, which takes some time. Empty: nothing.
-  void set_before_compiling(std::function<void()> call) { before_compiling_ = std::move(call); }
+  /// As long as this lives, calls a function before a program is compiled from its source, which takes time.
+  class BeforeCompiling {
+   public:
+    BeforeCompiling(Runtime& runtime, std::function<void()> call) : runtime_(runtime) {
+      runtime.before_compiling_ = std::move(call);
+    }
+    ~BeforeCompiling() { runtime_.before_compiling_ = nullptr; }
+    BeforeCompiling(const BeforeCompiling&) = delete;
+    BeforeCompiling& operator=(const BeforeCompiling&) = delete;
+
+   private:
+    Runtime& runtime_;
+  };
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
   /// counters as their last argument; see kernels/shared/counting.h. An empty buffer ends this.

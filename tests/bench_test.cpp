@@ -295,10 +295,21 @@ TEST_F(BenchTest, SlowInputsEnd) {
 }
 
 TEST_F(BenchTest, SmallCallsAreRecorded) {
-  const auto record = run_well("small --sizes 32,100 --modes flattened");
+  const auto record = run_well("small --sizes 32,100 --sets 3 --modes flattened");
   const std::size_t implementations = expect_entries(record);
   EXPECT_EQ(record["results"].size(), 2 * implementations);
   expect_drawn({"Few points in a call", "flaunay-flattened"});
+}
+
+TEST_F(BenchTest, WholeProcessesAreTimed) {
+  const auto record = run_well("processes --sizes 50 --options default,mode=dwyer");
+  ASSERT_EQ(record["results"].size(), 2u);
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"option", "distribution", "n", "seconds_median", "seconds_min", "seconds_max"});
+    EXPECT_GT(row.value("seconds_median", 0.0), 0);
+  }
+  EXPECT_EQ(record["results"][1].value("option", ""), "mode=dwyer");
+  EXPECT_NE(run("processes --sizes 50 --program " + path("none")), 0);
 }
 
 TEST_F(BenchTest, BatchesAreBesideLoops) {

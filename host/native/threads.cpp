@@ -1,22 +1,47 @@
 #include "host/native/threads.hpp"
 
+#include <fmt/format.h>
 #include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <condition_variable>
+#include <cstdlib>
+#include <cstring>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "host/error.hpp"
+
 namespace flaunay::host {
+namespace {
+
+constexpr std::size_t kMostThreads = 1024;
+
 std::size_t usable_cores() {
 #ifdef __linux__
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof cores, &cores) == 0) return static_cast<std::size_t>(CPU_COUNT(&cores));
 #endif
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+}  // namespace
+
+std::size_t native_threads() {
+  const char* const given = std::getenv("FLAUNAY_THREADS");
+  if (given == nullptr || *given == '\0') return std::min(usable_cores(), kMostThreads);
+  std::size_t count = 0;
+  const char* const end = given + std::strlen(given);
+  const auto [stop, error] = std::from_chars(given, end, count);
+  if (error != std::errc() || stop != end || count < 1 || count > kMostThreads) {
+    throw DeviceError(fmt::format("FLAUNAY_THREADS is '{}'; expected a number of threads from 1 to {}", given,
+                                  kMostThreads));
+  }
+  return count;
 }
 
 struct Threads::Pool {
@@ -85,7 +110,7 @@ struct Threads::Pool {
   std::vector<std::thread> threads;
 };
 
-Threads::Threads(std::size_t count) : count_(count > 0 ? count : usable_cores()) {}
+Threads::Threads(std::size_t count) : count_(count > 0 ? count : native_threads()) {}
 
 Threads::~Threads() {
   if (pool_ && pool_->process != getpid()) pool_.release();

@@ -7,8 +7,9 @@
 
 namespace flaunay::host {
 
-/// The number of cores that this process may use; at least 1.
-std::size_t usable_cores();
+/// The number of threads that run native kernels: what the environment variable FLAUNAY_THREADS says, or one
+/// per core that this process may use. Throws DeviceError if FLAUNAY_THREADS is not a number from 1 to 1024.
+std::size_t native_threads();
 
 /// Threads that wait for work, and do it together with the thread that has it. Must be used by one thread at
 /// a time. They are started when there is work for several; a forked process starts its own.
@@ -16,7 +17,7 @@ class Threads {
  public:
   using Work = std::function<void(std::size_t begin, std::size_t end)>;
 
-  /// count: the number of threads including the caller's; 0: usable_cores().
+  /// count: the number of threads including the caller's; 0: native_threads().
   explicit Threads(std::size_t count = 0);
   ~Threads();
   Threads(const Threads&) = delete;

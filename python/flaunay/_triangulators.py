@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import threading
 from collections import OrderedDict
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 # Contexts of the caller whose triangulators are kept: enough for a machine's devices, few enough
 # that contexts made again and again do not pile up.
 _MOST_CONTEXTS = 8
+
+_log = logging.getLogger("flaunay")
 
 # The name of the host itself, which needs no OpenCL.
 _HOST = "host"
@@ -66,6 +69,8 @@ def of_device(device: Optional[str]) -> _flaunay.Triangulator:
     with _lock:
         found = _by_name.get(name)
         if found is None:
+            if name not in ("", _HOST):
+                _log.info("opening %s: kernels that it has not compiled before take seconds, once", name)
             # The environment is left to the triangulator, which names it in its errors.
             found = _flaunay.Triangulator(_HOST if name == _HOST else device or "")
             # A device has more than one name; what it holds, it should hold once.

@@ -149,6 +149,7 @@ Triangulation triangulate_on(Engine& self, const HostPoints& points, const std::
   Triangulation result = empty_result(self, sets);
   if (n == 0) return result;
   statistics::Phases phases(options, [&self] { return self.runtime.working_clock(); });
+  const host::Runtime::BeforeCompiling announce(self.runtime, [&] { phases.interrupt("compiling kernels"); });
   self.begin_call(options.profile);
   if (self.workspace != nullptr) self.provide_memory(n, sets);
   Arena::Scope scope(self.persistent), scratch_scope(self.runtime.arena());

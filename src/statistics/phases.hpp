@@ -25,8 +25,12 @@ class Phases {
   /// Whether the caller wants progress.
   bool are_heard() const { return options_.progress != nullptr; }
   void progress(const char* stage, double done) const {
-    if (are_heard()) options_.progress(stage, -1, done);
+    if (!are_heard()) return;
+    done_ = done;
+    options_.progress(stage, -1, done);
   }
+  /// Says that something else has to be done first.
+  void interrupt(const char* stage) const { progress(stage, done_); }
   void end(const char* name) {
     const double now = clock_();
     phases_.push_back({name, now - last_});
@@ -46,6 +50,7 @@ class Phases {
   const Clock clock_;
   const double begin_ = clock_();
   double last_ = begin_;
+  mutable double done_ = 0;  // as last reported
   std::vector<PhaseStatistics> phases_;
 };
 

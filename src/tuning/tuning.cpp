@@ -308,7 +308,7 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
 }
 
 std::shared_ptr<const Tuning> native_tuning() {
-  const Target host{host::kHostName, true, host::usable_cores()};
+  const Target host{host::kHostName, true, host::native_threads()};
   auto tuning = std::make_shared<Tuning>(tuning_of_target(host));
   // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory.
   const Tuning compiled = column(&Row::cpu, host);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -280,6 +281,26 @@ TEST_F(SmallNative, ProgressComesToItsEnd) {
     };
     free_to_choose().triangulate(points.data(), n, options);
     EXPECT_EQ(last, 1);
+  }
+}
+
+// With an empty cache, the device's kernels are compiled within the call, and its caller is told.
+TEST_F(SmallNative, CompilingIsAnnounced) {
+  const TemporaryFolder folder;
+  const ScopedEnvironment cache("FLAUNAY_CACHE_DIR", folder.path().c_str());
+  FixtureRandom random(20);
+  const Coordinates points = reals(3000, random);
+  for (const bool is_expected : {true, false}) {
+    Triangulator fresh(device_under_test());
+    bool is_announced = false;
+    Options options;
+    options.progress = [&](const std::string& stage, int, double) {
+      is_announced = is_announced || stage == "compiling kernels";
+    };
+    fresh.triangulate(points.data(), 3000, options);
+    if (is_expected || !std::filesystem::is_empty(folder.path())) {
+      EXPECT_EQ(is_announced, is_expected);
+    }
   }
 }
 

@@ -156,7 +156,7 @@ std::vector<cl_uint> sums_of_a_new_runtime(bool& compiled) {
   const auto device = find_device("");
   Runtime runtime(device, tuning_for(device));
   compiled = false;
-  runtime.set_before_compiling([&compiled] { compiled = true; });
+  const Runtime::BeforeCompiling watch(runtime, [&compiled] { compiled = true; });
   const Arena::Scope scope(runtime.arena());
   const auto values = testing::upload(runtime, std::vector<cl_uint>{1, 2, 3, 0});
   exclusive_scan(runtime, values, 3, values);

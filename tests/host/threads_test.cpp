@@ -7,7 +7,12 @@
 
 #include <atomic>
 #include <cstddef>
+#include <string>
+#include <thread>
 #include <vector>
+
+#include "host/error.hpp"
+#include "tests/support/device.hpp"
 
 namespace flaunay::host {
 namespace {
@@ -42,7 +47,24 @@ TEST(SmallThreads, OneAfterTheOtherWithoutLosingAny) {
   for (int round = 0; round < 3000; ++round) ASSERT_TRUE(shares_well(threads, 5, 1)) << "round " << round;
 }
 
-TEST(SmallThreads, AreOnePerCoreUnlessGiven) { EXPECT_EQ(Threads().count(), usable_cores()); }
+TEST(SmallThreads, AreCountedByTheEnvironment) {
+  const testing::ScopedEnvironment three("FLAUNAY_THREADS", "3");
+  EXPECT_EQ(Threads().count(), 3u);
+  {
+    const testing::ScopedEnvironment unset("FLAUNAY_THREADS", nullptr);
+    EXPECT_GE(Threads().count(), 1u);
+    EXPECT_LE(Threads().count(), std::thread::hardware_concurrency());
+  }
+  for (const char* const wrong : {"0", "-1", "x", "2x", "1025", "99999999999999999999"}) {
+    const testing::ScopedEnvironment given("FLAUNAY_THREADS", wrong);
+    try {
+      Threads();
+      ADD_FAILURE() << wrong;
+    } catch (const DeviceError& error) {
+      EXPECT_NE(std::string(error.what()).find(wrong), std::string::npos) << error.what();
+    }
+  }
+}
 
 TEST(SmallThreads, ForkedProcessesHaveTheirOwn) {
   Threads threads(3);

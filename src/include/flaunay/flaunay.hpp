@@ -56,8 +56,9 @@ struct Options {
   bool neighbors = true;   ///< compute Triangulation::neighbors
   bool halfedges = false;  ///< compute Triangulation::halfedges
   bool profile = false;    ///< measure the time of every kernel with OpenCL events; this costs a little time
-  /// If not empty, called from time to time on the calling thread. stage: the name of the stage that begins;
-  /// level: the level of the recursion, or -1 if there is none; done: the finished share of the work, 0 to 1.
+  /// If not empty, called from time to time on the calling thread. stage: the name of the stage that begins,
+  /// which is "compiling kernels" whenever a device needs some that are not in the cache; level: the level of
+  /// the recursion, or -1 if there is none; done: the finished share of the work, 0 to 1.
   std::function<void(const std::string& stage, int level, double done)> progress;
 };
 

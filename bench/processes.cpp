@@ -1,0 +1,133 @@
+// flaunay-bench processes: the command as a whole process, from its start to its end.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "cli/errors.hpp"
+#include "command.hpp"
+#include "inputs.hpp"
+#include "io/output.hpp"
+#include "io/points.hpp"
+#include "timing.hpp"
+
+extern char** environ;
+
+namespace flaunay::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoOption = "default";
+
+struct Request : Measurement {
+  std::string program;
+  std::vector<std::size_t> sizes{1000, 1000000};
+  std::vector<std::string> choices{kNoOption, "device=host", "device=#0", "mode=dwyer"};
+};
+
+// A folder that is removed at the end.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "flaunay-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw Error(ErrorKind::input, fmt::format("cannot make a folder such as {}", name));
+    }
+    path_ = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+// Runs a program with its output thrown away, and returns the seconds that passed.
+double run_program(std::vector<std::string> words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  const Stopwatch watch;
+  pid_t child = 0;
+  const int code = posix_spawn(&child, pointers.front(), &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  if (code != 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    throw Error(ErrorKind::device, fmt::format("{} could not be run, or failed", fmt::join(words, " ")));
+  }
+  return watch.seconds();
+}
+
+Result measure_processes(const Request& request) {
+  const std::string program = request.program.empty()
+                                  ? (fs::read_symlink("/proc/self/exe").parent_path() / "flaunay").string()
+                                  : request.program;
+  const Folder folder;
+  std::vector<Job> jobs;
+  Result result;
+  result.tables["results"] = Json::array();
+  std::vector<Json> rows;
+  for (const std::size_t n : request.sizes) {
+    const std::string points = folder.file(fmt::format("{}.npy", n));
+    io::Outputs outputs;
+    io::write_points(outputs, points, {make_input("uniform", n).coordinates});
+    outputs.commit();
+    for (const std::string& choice : request.choices) {
+      std::vector<std::string> words = {program, "triangulate", points};
+      if (choice != kNoOption) {
+        const std::size_t equals = std::min(choice.find('='), choice.size());
+        words.push_back("--" + choice.substr(0, equals));
+        if (equals < choice.size()) words.push_back(choice.substr(equals + 1));
+      }
+      for (const char* word : {"--triangles", "t.npy", "--neighbors", "n.npy"}) {
+        words.push_back(*word == '-' ? word : folder.file(word));
+      }
+      jobs.push_back(
+          {fmt::format("flaunay {}, {} points", choice, n), [words] { return run_program(words); }});
+      rows.push_back({{"option", choice}, {"distribution", "uniform"}, {"n", n}});
+    }
+  }
+  run_interleaved(jobs, request.runs);
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    if (!jobs[k].skipped.empty()) {
+      rows[k]["skipped"] = jobs[k].skipped;
+      result.agree = false;
+    } else {
+      add_seconds(rows[k], jobs[k].seconds);
+    }
+    result.tables["results"].push_back(rows[k]);
+  }
+  result.device = Triangulator(request.device).device();
+  return result;
+}
+
+}  // namespace
+
+void add_processes(CLI::App& app, Action& action) {
+  const auto request = std::make_shared<Request>();
+  request->runs = 11;
+  CLI::App* command = add_command(
+      app, action, "processes", "the command as whole processes, from start to end",
+      "Times are wall times of flaunay triangulate from .npy to .npy, triangles and neighbours, with the "
+      "operating system's and the drivers' caches filled by a first run that is not counted. All take turns.",
+      request, measure_processes);
+  command->add_option("--program", request->program, "the command; default: flaunay beside this program");
+  add_sizes_option(command, request->sizes);
+  add_option(command, "--options", request->choices, "options of the command to compare, such as mode=dwyer");
+  add_runs_option(command, request->runs);
+}
+
+}  // namespace flaunay::bench
