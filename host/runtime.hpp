@@ -358,7 +358,7 @@ class Runtime {
 
   std::unique_ptr<Threads> threads_;  // null unless kernels run natively
   boost::compute::device device_;
-  bool on_pocl_;
+  bool on_pocl_ = false;
   std::shared_ptr<const Sizes> sizes_;
   boost::compute::context context_;
   boost::compute::command_queue own_queues_[2];  // the second one times kernels, and is made on first use
