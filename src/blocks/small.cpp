@@ -46,6 +46,14 @@ struct Scratch {
   std::vector<kernel::uchar> inside, found;
   std::vector<kernel::uint> first_rows;
   std::vector<int> walked, hull_offsets, corner_of_edge;
+
+  std::size_t bytes() const {
+    const auto sum = [](const auto&... arrays) {
+      return (... + (arrays.capacity() * sizeof(*arrays.data())));
+    };
+    return sum(offsets, set_blocks, vertices, source, edges, vertex_edge, solved, distinct, points,
+               point_source, ranks, axes, inside, found, first_rows, walked, hull_offsets, corner_of_edge);
+  }
 };
 
 // Returns an array of this size, whose elements may have any value.
@@ -152,6 +160,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
     kernel::write_hulls(set_count, s.set_blocks.data(), solved, vertex_edge, edges, source,
                         s.hull_offsets.data(), result.hull.data());
   });
+  result.statistics.device_bytes_peak = s.bytes();
   Outcome outcome{std::move(sizes), account[kernel::RINGS_UNDECIDED]};
   outcome.write(n, result.statistics);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
