@@ -1,10 +1,12 @@
 // The account of the coordinates: the range of their bits, and whether they are finite.
 //
-// inspect reads every coordinate once, with one work-item per chunk of points. widen_points converts floats to doubles,
-// with one work-item per point.
+// inspect reads every coordinate once, with one work-item per chunk of points. If the magnitudes of sets differ too
+// much for one scaling, inspect_sets makes an account per set, and scale_sets scales each set by its own; the latter
+// has one work-item per point. widen_points converts floats to doubles, with one work-item per point.
 
 #include "shared/codes.h"
 #include "shared/coordinates.h"
+#include "shared/search.h"
 
 // Exponents of the leading and of the lowest set bit of a finite x other than 0.
 static inline int2 bit_range(double x) {
@@ -26,31 +28,53 @@ kernel void widen_points(int n, ulong first, global const float* restrict narrow
   if (i < n) vstore2(convert_double2(vload2(first + i, narrow)), i, points);
 }
 
-kernel void inspect(int n, int chunk, global const double* restrict input, global volatile int* restrict accounts) {
+// Adds the points [low, high) to an account.
+static inline void inspect_points(int low, int high, global const double* input, global volatile int* account) {
+  int largest = NO_LARGEST, lowest = NO_LOWEST, bad = NO_BAD;
+  for (int i = low; i < high; ++i) {
+    const double2 p = vload2(i, input);  // which need not be aligned as pairs
+    if (!isfinite(p.x) || !isfinite(p.y)) {
+      bad = min(bad, i);
+      continue;
+    }
+    if (p.x != 0.0) {
+      const int2 range = bit_range(p.x);
+      largest = max(largest, range.x);
+      lowest = min(lowest, range.y);
+    }
+    if (p.y != 0.0) {
+      const int2 range = bit_range(p.y);
+      largest = max(largest, range.x);
+      lowest = min(lowest, range.y);
+    }
+  }
+  atomic_max(&account[INSPECT_LARGEST], largest);
+  atomic_min(&account[INSPECT_LOWEST], lowest);
+  atomic_min(&account[INSPECT_BAD], bad);
+}
+
+kernel void inspect(int n, int chunk, global const double* restrict input, global volatile int* restrict account) {
+  const int c = get_global_id(0);
+  const int low = c * chunk;
+  if (low < n) inspect_points(low, min(n, low + chunk), input, account);
+}
+
+// accounts: one per set.
+kernel void inspect_sets(int n, int chunk, int sets, global const int* restrict offsets,
+                         global const double* restrict input, global volatile int* restrict accounts) {
   const int c = get_global_id(0);
   const int low = c * chunk;
   if (low < n) {
     const int high = min(n, low + chunk);
-    int largest = NO_LARGEST, lowest = NO_LOWEST, bad = NO_BAD;
-    for (int i = low; i < high; ++i) {
-      const double2 p = vload2(i, input);  // which need not be aligned as pairs
-      if (!isfinite(p.x) || !isfinite(p.y)) {
-        bad = min(bad, i);
-        continue;
-      }
-      if (p.x != 0.0) {
-        const int2 range = bit_range(p.x);
-        largest = max(largest, range.x);
-        lowest = min(lowest, range.y);
-      }
-      if (p.y != 0.0) {
-        const int2 range = bit_range(p.y);
-        largest = max(largest, range.x);
-        lowest = min(lowest, range.y);
-      }
+    for (int s = segment_of(low, sets, offsets); s < sets && offsets[s] < high; ++s) {
+      inspect_points(max(low, offsets[s]), min(high, offsets[s + 1]), input, accounts + INSPECT_NUMBERS * s);
     }
-    atomic_max(&accounts[INSPECT_LARGEST], largest);
-    atomic_min(&accounts[INSPECT_LOWEST], lowest);
-    atomic_min(&accounts[INSPECT_BAD], bad);
   }
+}
+
+// shifts: by set.
+kernel void scale_sets(int n, int sets, global const int* restrict offsets, global const int* restrict shifts,
+                       global const double* restrict input, global double* restrict scaled_input) {
+  const int i = get_global_id(0);
+  if (i < n) vstore2(scaled_point(i, input, scale_of(shifts[segment_of(i, sets, offsets)])), i, scaled_input);
 }

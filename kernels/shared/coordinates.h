@@ -13,6 +13,17 @@ static inline ulong orderable(double x) {
   return bits >> 63 ? ~bits : bits | 0x8000000000000000UL;
 }
 
+INTEGER_CONSTANT(DOUBLE_BITS, 53);  // of a normal number
+
+static inline double power_of_two(int exponent) { return as_double((ulong)(1023 + exponent) << 52); }
+
+// The scale 2^shift, by factors that are doubles.
+static inline scaling scale_of(int shift) {
+  const int first = shift / 3, second = (shift - first) / 2;
+  const scaling scale = {power_of_two(first), power_of_two(second), power_of_two(shift - first - second)};
+  return scale;
+}
+
 // Exact by the host's choice of the scale.
 static inline double scaled(double x, scaling scale) { return ((x * scale.s0) * scale.s1) * scale.s2; }
 

@@ -7,7 +7,6 @@
 // are unbounded. Indices that are out of range are skipped.
 
 #include "shared/bounds.h"
-#include "shared/codes.h"
 #include "shared/coordinates.h"
 #include "shared/halfedges.h"
 #include "shared/planar.h"
@@ -22,28 +21,27 @@
 // ---------------------------------------------------------------------------------------------------------------------
 // Circumcentres
 
-// Brings the coordinates to the range in which predicates are exact, as the host does for the triangulation; here the
-// host need not wait for it. accounts: as inspect (points/inspect.cl) leaves them.
-static inline int shift_of(global const int* accounts) {
-  const int largest = accounts[INSPECT_LARGEST], lowest = accounts[INSPECT_LOWEST];
-  if (lowest > largest) return 0;
-  return lowest < LOWEST_EXPONENT ? LOWEST_EXPONENT - lowest : min(0, LARGEST_EXPONENT - largest);
+// Whether a coordinate is in the range in which predicates are exact, whatever its bits are: as nearly all are.
+static inline int is_in_range(double x) {
+  const double magnitude = fabs(x);
+  return (magnitude == 0.0) | ((magnitude >= power_of_two(LOWEST_EXPONENT + DOUBLE_BITS - 1)) &
+                               (magnitude < power_of_two(LARGEST_EXPONENT + 1)));
 }
 
-static inline double power_of_two(int exponent) { return as_double((ulong)(1023 + exponent) << 52); }
-
-// The scale 2^shift, by factors that are doubles.
-static inline scaling scale_of(int shift) {
-  const int first = shift / 3, second = (shift - first) / 2;
-  const scaling scale = {power_of_two(first), power_of_two(second), power_of_two(shift - first - second)};
-  return scale;
+// The shift that brings a triangle to that range. The triangulation is known to be exact, so the bits of the
+// coordinates span at most MOST_BITS.
+static inline int shift_of(double2 a, double2 b, double2 c) {
+  if (is_in_range(a.x) & is_in_range(a.y) & is_in_range(b.x) & is_in_range(b.y) & is_in_range(c.x) & is_in_range(c.y))
+    return 0;
+  const double largest_a = fmax(fabs(a.x), fabs(a.y));
+  const double largest_b = fmax(fabs(b.x), fabs(b.y));
+  const double largest_c = fmax(fabs(c.x), fabs(c.y));
+  return LARGEST_EXPONENT - ilogb(fmax(largest_a, fmax(largest_b, largest_c)));
 }
 
-static inline double shifted(double x, int shift) { return shift == 0 ? x : scaled(x, scale_of(shift)); }
-
-static inline double2 shifted_point(int i, global const double* input, int shift) {
-  const double2 p = vload2(i, input);
-  return VECTOR(double2, shifted(p.x, shift), shifted(p.y, shift));
+static inline double2 shifted(double2 p, int shift) {
+  const scaling scale = scale_of(shift);
+  return VECTOR(double2, scaled(p.x, scale), scaled(p.y, scale));
 }
 
 // sum += sign * f * (gx^2 + gy^2), differences as two_sum gives them.
@@ -118,22 +116,27 @@ static inline void fetch_points(int corner, int end, global const int* triangles
 }
 
 // Relative to the lexicographically first corner: that is the same one for all triangles of a cocircular fan.
-kernel void circumcentres(int n, int points, global const double* restrict input, global const int* restrict accounts,
-                          global const int* restrict triangles, global double* restrict centres) {
+static inline double2 centre_from_first(double2 a, double2 b, double2 c) {
+  const int b_first = comes_before(b, a) && comes_before(b, c);
+  const int c_first = comes_before(c, a) && !b_first && comes_before(c, b);
+  return centre(b_first ? b : c_first ? c : a, b_first ? c : c_first ? a : b, b_first ? a : c_first ? b : c);
+}
+
+kernel void circumcentres(int n, int points, global const double* restrict input, global const int* restrict triangles,
+                          global double* restrict centres) {
   const int t = get_global_id(0);
   if (t < n) {
     fetch_points(3 * (t + TRIANGLES_AHEAD), 3 * n, triangles, input);
     const int i = triangles[3 * t], j = triangles[3 * t + 1], k = triangles[3 * t + 2];
     double2 at = VECTOR(double2, as_double(0x7ff8000000000000UL), as_double(0x7ff8000000000000UL));
     if (min(i, min(j, k)) >= 0 && max(i, max(j, k)) < points) {
-      const int shift = shift_of(accounts);
-      const double2 a = shifted_point(i, input, shift);
-      const double2 b = shifted_point(j, input, shift);
-      const double2 c = shifted_point(k, input, shift);
-      const int b_first = comes_before(b, a) && comes_before(b, c);
-      const int c_first = comes_before(c, a) && !b_first && comes_before(c, b);
-      at = centre(b_first ? b : c_first ? c : a, b_first ? c : c_first ? a : b, b_first ? a : c_first ? b : c);
-      at = VECTOR(double2, shifted(at.x, -shift), shifted(at.y, -shift));
+      const double2 a = vload2(i, input), b = vload2(j, input), c = vload2(k, input);
+      const int shift = shift_of(a, b, c);
+      if (shift == 0) {
+        at = centre_from_first(a, b, c);
+      } else {
+        at = shifted(centre_from_first(shifted(a, shift), shifted(b, shift), shifted(c, shift)), -shift);
+      }
     }
     vstore2(at, t, centres);
   }

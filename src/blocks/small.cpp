@@ -13,6 +13,7 @@
 #include "shared/halfedges.h"
 #include "shared/prefetch.h"
 #include "shared/rings.h"
+#include "shared/search.h"
 
 namespace flaunay::kernel {
 #include "host/native/words.h"
@@ -70,11 +71,10 @@ void for_each_item(std::size_t n, const Work& work) {
   for (; kernel::work_item.number < n; ++kernel::work_item.number) work();
 }
 
-geometry::Scaling inspected_scaling(const double* coordinates, std::size_t n) {
+geometry::Magnitudes inspected(const double* coordinates, std::size_t first, std::size_t last) {
   geometry::Magnitudes magnitudes;
-  const auto count = static_cast<int>(n);
-  for_each_item(1, [&] { kernel::inspect(count, count, coordinates, &magnitudes.largest); });
-  return geometry::scaling_for(coordinates, n, magnitudes);
+  kernel::inspect_points(static_cast<int>(first), static_cast<int>(last), coordinates, &magnitudes.largest);
+  return magnitudes;
 }
 
 }  // namespace
@@ -83,8 +83,9 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                Triangulation& result) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   const auto point_count = static_cast<int>(n), set_count = static_cast<int>(sets);
-  const geometry::Scaling scaling = inspected_scaling(coordinates, n);
-  const kernel::scaling scale = scaling.powers();
+  const geometry::SetScalings scalings = geometry::set_scalings(
+      coordinates, offsets,
+      [coordinates](std::size_t first, std::size_t last) { return inspected(coordinates, first, last); });
 
   static thread_local Scratch s;
   s.offsets.assign(offsets.begin(), offsets.end());
@@ -98,7 +99,12 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   int* const source = sized(s.source, n);
   std::iota(source, source + n, 0);
   kernel::double2* const vertices = sized(s.vertices, n);
-  for (int i = 0; i < point_count; ++i) vertices[i] = kernel::scaled_point(i, coordinates, scale);
+  for (std::size_t set = 0; set < sets; ++set) {
+    const kernel::scaling scale = kernel::scale_of(scalings.shift(set));
+    for (int i = s.offsets[set]; i < s.offsets[set + 1]; ++i) {
+      vertices[i] = kernel::scaled_point(i, coordinates, scale);
+    }
+  }
 
   kernel::ring_edge* const edges = sized(s.edges, kernel::EDGES_PER_VERTEX * n);
   int* const vertex_edge = sized(s.vertex_edge, n);
@@ -107,8 +113,8 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   int next = 0;
   kernel::uint account[kernel::RINGS_NUMBERS] = {};
   for_each_item(1, [&] {
-    kernel::solve_blocks(1, set_count, static_cast<int>(largest), -1, s.offsets.data(), scaling.bounds, &next,
-                         vertices, source, result.representatives.data(), edges, vertex_edge, solved,
+    kernel::solve_blocks(1, set_count, static_cast<int>(largest), -1, s.offsets.data(), scalings.bounds,
+                         &next, vertices, source, result.representatives.data(), edges, vertex_edge, solved,
                          s.distinct.data(), account, sized(s.points, largest), sized(s.point_source, largest),
                          sized(s.ranks, 3 * largest), sized(s.axes, largest));
   });
@@ -120,7 +126,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
     const auto for_each_pair = [pairs](const auto& work) {
       for_each_item(static_cast<std::size_t>(pairs), work);
     };
-    for_each_pair([&] { kernel::find_inside(pairs, scaling.bounds.circle, vertices, edges, inside); });
+    for_each_pair([&] { kernel::find_inside(pairs, scalings.bounds.circle, vertices, edges, inside); });
     for_each_item(n, [&] { kernel::leave_inside(point_count, edges, inside, vertex_edge); });
     for_each_pair([&] { kernel::find_fans(pairs, vertices, edges, inside, found); });
     for_each_pair([&] { kernel::build_fans(pairs, inside, found, edges); });

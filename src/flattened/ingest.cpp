@@ -15,14 +15,14 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   Arena::Scope scope(work.scratch());
   Arena& scratch = work.scratch();
 
-  const auto input = scratch.allocate<cl_double>(2 * n);
-  const auto pairs = input.as<cl_double2>();
-  runtime.write(input, 0, 2 * n, coordinates);
+  const auto given = scratch.allocate<cl_double>(2 * n);
+  runtime.write(given, 0, 2 * n, coordinates);
   std::vector<cl_int> input_offsets(offsets.begin(), offsets.end());
   const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
   runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
 
-  const Scaling scaling = points::scaling_for(runtime, input, n, points::inspect(runtime, input, n));
+  const auto [input, scaling] = points::make_uniform(runtime, given, offsets);
+  const auto pairs = input.as<cl_double2>();
   work.bounds = scaling.bounds;
   const kernel::scaling scale = scaling.powers();
 

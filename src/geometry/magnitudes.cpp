@@ -17,9 +17,10 @@ int bits_of(const Magnitudes& magnitudes) {
   return magnitudes.lowest <= magnitudes.largest ? magnitudes.largest - magnitudes.lowest + 1 : 0;
 }
 
-[[noreturn]] void throw_range(const double* coordinates, std::size_t n, const Magnitudes& magnitudes) {
+[[noreturn]] void throw_range(const double* coordinates, std::size_t first, std::size_t last,
+                              const Magnitudes& magnitudes) {
   std::size_t largest = 0, finest = 0;
-  for (std::size_t i = 0; i < 2 * n; ++i) {
+  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
     const double x = coordinates[i];
     if (x == 0) continue;
     if (std::ilogb(x) == magnitudes.largest) largest = i;
@@ -48,19 +49,20 @@ int lowest_bit(double x) {
   return low;
 }
 
-bool can_be_exact(const Magnitudes& magnitudes, std::size_t n) {
-  return magnitudes.bad >= static_cast<int>(n) && bits_of(magnitudes) <= kernel::MOST_BITS;
+bool differ_too_much(const Magnitudes& magnitudes) {
+  return magnitudes.bad == kernel::NO_BAD && bits_of(magnitudes) > kernel::MOST_BITS;
 }
 
-Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& magnitudes) {
-  if (magnitudes.bad < static_cast<int>(n)) {
+Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t last,
+                    const Magnitudes& magnitudes) {
+  if (magnitudes.bad != kernel::NO_BAD) {
     const double x = coordinates[2 * magnitudes.bad];
     const double y = coordinates[2 * magnitudes.bad + 1];
     throw Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", magnitudes.bad, x, y));
   }
   Scaling scaling;
   const int bits = bits_of(magnitudes);
-  if (bits > kernel::MOST_BITS) throw_range(coordinates, n, magnitudes);
+  if (bits > kernel::MOST_BITS) throw_range(coordinates, first, last, magnitudes);
   if (bits > 0) {
     if (magnitudes.largest > kernel::LARGEST_EXPONENT)
       scaling.shift = kernel::LARGEST_EXPONENT - magnitudes.largest;
@@ -73,9 +75,18 @@ Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& 
   return scaling;
 }
 
-kernel::scaling Scaling::powers() const {
-  const int first = shift / 3, second = (shift - first) / 2;
-  return {std::ldexp(1.0, first), std::ldexp(1.0, second), std::ldexp(1.0, shift - first - second)};
+SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,
+                         const std::vector<Magnitudes>& by_set) {
+  SetScalings scalings;
+  scalings.shifts.reserve(by_set.size());
+  for (std::size_t s = 0; s < by_set.size(); ++s) {
+    const Scaling scaling = scaling_for(coordinates, offsets[s], offsets[s + 1], by_set[s]);
+    scalings.shifts.push_back(scaling.shift);
+    scalings.bounds.hull = std::max(scalings.bounds.hull, scaling.bounds.hull);
+    scalings.bounds.orient = std::max(scalings.bounds.orient, scaling.bounds.orient);
+    scalings.bounds.circle = std::max(scalings.bounds.circle, scaling.bounds.circle);
+  }
+  return scalings;
 }
 
 void check_offsets(const std::vector<std::size_t>& offsets) {

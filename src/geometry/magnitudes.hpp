@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shared/codes.h"
+#include "shared/coordinates.h"
 #include "shared/records.h"
 
 namespace flaunay::geometry {
@@ -26,18 +27,49 @@ struct Scaling {
   Bounds bounds{};
 
   /// Factors whose product is 2^shift, because 2^shift itself may be beyond the range of doubles.
-  kernel::scaling powers() const;
+  kernel::scaling powers() const { return kernel::scale_of(shift); }
 };
 
 /// The exponent of the lowest set bit of x, which must be finite and not 0.
 int lowest_bit(double x);
 
-/// Whether n points of these magnitudes are accepted.
-bool can_be_exact(const Magnitudes& magnitudes, std::size_t n);
+/// Whether the magnitudes of finite points differ too much for one scaling.
+bool differ_too_much(const Magnitudes& magnitudes);
 
-/// Chooses the scaling of n points. Throws Error(input), which names a point, if the magnitudes are not
+/// Chooses the scaling of the points [first, last). Throws Error(input), which names a point, if the
+/// magnitudes are not accepted; the coordinates are read in that case only.
+Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t last,
+                    const Magnitudes& magnitudes);
+
+/// The scaling of several sets of points: the same for all, or if their magnitudes differ too much, one for
+/// each.
+struct SetScalings {
+  Bounds bounds{};          ///< for all sets
+  std::vector<int> shifts;  ///< one for all, or one per set
+
+  int shift(std::size_t set) const { return shifts[shifts.size() > 1 ? set : 0]; }
+};
+
+/// Chooses the scalings of sets. by_set: their magnitudes. Throws Error(input) if those of a set are not
 /// accepted; the coordinates are read in that case only.
-Scaling scaling_for(const double* coordinates, std::size_t n, const Magnitudes& magnitudes);
+SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,
+                         const std::vector<Magnitudes>& by_set);
+
+/// Chooses the scalings of sets. inspect(first, last) returns the magnitudes of these points.
+template <typename Inspect>
+SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,
+                         const Inspect& inspect) {
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  const Magnitudes all = inspect(0, n);
+  if (sets < 2 || !differ_too_much(all)) {
+    const Scaling scaling = scaling_for(coordinates, 0, n, all);
+    return {scaling.bounds, {scaling.shift}};
+  }
+  std::vector<Magnitudes> by_set;
+  by_set.reserve(sets);
+  for (std::size_t s = 0; s < sets; ++s) by_set.push_back(inspect(offsets[s], offsets[s + 1]));
+  return set_scalings(coordinates, offsets, by_set);
+}
 
 /// Throws Error(usage) unless offsets begin with 0 and do not decrease.
 void check_offsets(const std::vector<std::size_t>& offsets);

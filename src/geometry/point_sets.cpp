@@ -31,9 +31,9 @@ void check_size(std::size_t n) {
 
 int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
 
-Magnitudes inspect(const double* coordinates, std::size_t n) {
+Magnitudes inspect(const double* coordinates, std::size_t first, std::size_t last) {
   Magnitudes magnitudes;
-  for (std::size_t i = 0; i < 2 * n; ++i) {
+  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
     std::uint64_t bits;
     std::memcpy(&bits, &coordinates[i], sizeof bits);
     const int exponent = static_cast<int>(bits >> kMantissaBits) & kExponentMask;
@@ -59,9 +59,11 @@ double scaled(double x, double factor) { return x * factor + 0.0; }
 // Indices of the input's points begin..end-1 in the order of (x, y, index).
 class Order {
  public:
-  Order(const double* coordinates, double factor) : coordinates_(coordinates), factor_(factor) {}
+  explicit Order(const double* coordinates) : coordinates_(coordinates) {}
 
-  const std::vector<Keyed>& sort(std::size_t begin, std::size_t end) {
+  // Their coordinates are multiplied by 2^shift.
+  const std::vector<Keyed>& sort(std::size_t begin, std::size_t end, int shift) {
+    factor_ = std::ldexp(1.0, shift);
     elements_.resize(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       elements_[i - begin] = {sort_key(x(i)), static_cast<std::int32_t>(i)};
@@ -94,7 +96,7 @@ class Order {
   }
 
   const double* coordinates_;
-  double factor_;
+  double factor_ = 1;
   std::vector<Keyed> elements_, column_;
 };
 
@@ -105,17 +107,19 @@ PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offs
   const std::size_t n = offsets.back();
   check_coordinates(coordinates, n);
   check_size(n);
-  const Scaling scaling = scaling_for(coordinates, n, inspect(coordinates, n));
+  const SetScalings scalings = set_scalings(
+      coordinates, offsets,
+      [coordinates](std::size_t first, std::size_t last) { return inspect(coordinates, first, last); });
   PointSets sets;
-  sets.predicates.bounds = scaling.bounds;
+  sets.predicates.bounds = scalings.bounds;
   sets.representatives.resize(n);
   sets.points.reserve(n);
   sets.source.reserve(n);
   sets.set_offsets.push_back(0);
-  Order order(coordinates, std::ldexp(1.0, scaling.shift));
+  Order order(coordinates);
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
     bool first = true;
-    for (const Keyed& element : order.sort(offsets[s], offsets[s + 1])) {
+    for (const Keyed& element : order.sort(offsets[s], offsets[s + 1], scalings.shift(s))) {
       const Point point = order.point(element.index);
       if (first || !(point == sets.points.back())) {
         sets.points.push_back(point);

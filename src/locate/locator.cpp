@@ -255,7 +255,7 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh)
   Locator locator;
   locator.sets = mesh.sets();
   locator.magnitudes = inspect(runtime, mesh.coordinates, n);
-  const Scaling scaling = scaling_for(runtime, mesh.coordinates, n, locator.magnitudes);
+  const Scaling scaling = make_uniform(runtime, mesh.coordinates, {0, n}).scaling;
   locator.shift = scaling.shift;
   locator.points = own.allocate<cl_double2>(n);
   locator.source = own.allocate<cl_int>(n);

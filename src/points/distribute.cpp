@@ -175,17 +175,16 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
   Arena::Scope scope(work.scratch());
   Plan plan;
   const host::Runtime::Settled settled(work.runtime);
-  const Scaling scaling =
-      scaling_for(work.runtime, input, blocks.points, inspect(work.runtime, input, blocks.points));
+  const auto [uniform, scaling] = make_uniform(work.runtime, input, offsets);
   work.bounds = scaling.bounds;
   plan = make_plan(tuning_of(work.runtime), offsets, blocks);
-  make_trees(work, plan, input, blocks);
+  make_trees(work, plan, uniform, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
   blocks.device_set_blocks = work.runtime.upload(work.persistent, blocks.set_blocks);
   blocks.device_merges = work.runtime.upload(work.persistent, blocks.merges);
-  move_to_blocks(work, plan, scaling, input, representatives, blocks);
+  move_to_blocks(work, plan, scaling, uniform, representatives, blocks);
   return blocks;
 }
 

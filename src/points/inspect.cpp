@@ -1,5 +1,7 @@
 #include "points/inspect.hpp"
 
+#include <algorithm>
+
 #include "launchers/points/inspect.cl.hpp"
 #include "shared/codes.h"
 
@@ -7,41 +9,74 @@ namespace flaunay::points {
 
 namespace {
 
-// The initial values of inspect. Static, because the device reads them after the call has returned.
-const Magnitudes kNothingInspected;
+// What set_scalings and scaling_for read if they throw.
+std::vector<double> to_host(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n) {
+  std::vector<double> coordinates(2 * n);
+  // Copied first, because the caller's buffer may not permit the host to read it.
+  const host::Buffer<cl_double> copy(host::allocate_memory(runtime.memory(), 2 * n * sizeof(double)), 2 * n);
+  runtime.copy(points, 0, copy, 0, 2 * n);
+  runtime.read(copy, 0, 2 * n, coordinates.data());
+  return coordinates;
+}
+
+std::vector<cl_int> integers(const std::vector<std::size_t>& offsets) {
+  return {offsets.begin(), offsets.end()};
+}
+
+UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                         const std::vector<std::size_t>& offsets) {
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  const std::vector<Magnitudes> by_set = inspect_sets(runtime, points, offsets);
+  std::vector<double> coordinates;
+  if (std::any_of(by_set.begin(), by_set.end(), differ_too_much)) coordinates = to_host(runtime, points, n);
+  const SetScalings scalings = set_scalings(coordinates.data(), offsets, by_set);
+  const auto scaled = runtime.arena().allocate<cl_double>(2 * n);
+  runtime.map(n, kernels::scale_sets{.sets = sets,
+                                     .offsets = runtime.upload(runtime.arena(), integers(offsets)),
+                                     .shifts = runtime.upload(runtime.arena(), scalings.shifts),
+                                     .input = points,
+                                     .scaled_input = scaled});
+  return {scaled, {0, scalings.bounds}};
+}
 
 }  // namespace
-
-host::Buffer<cl_int> inspect_later(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                                   std::size_t n) {
-  const auto accounts = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS);
-  runtime.write_later(accounts, 0, kernel::INSPECT_NUMBERS, &kNothingInspected.largest);
-  runtime.chunks(n, runtime.sizes().chunk(n), kernels::inspect{.input = points, .accounts = accounts});
-  return accounts;
-}
 
 Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n) {
   host::Arena::Scope scope(runtime.arena());
   Magnitudes magnitudes;
-  const auto accounts = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS);
-  runtime.write(accounts, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
-  runtime.chunks(n, runtime.sizes().chunk(n), kernels::inspect{.input = points, .accounts = accounts});
-  runtime.read(accounts, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
+  const auto account = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS);
+  runtime.write(account, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
+  runtime.chunks(n, runtime.sizes().chunk(n), kernels::inspect{.input = points, .account = account});
+  runtime.read(account, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
   return magnitudes;
 }
 
-Scaling scaling_for(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n,
-                    const Magnitudes& magnitudes) {
+std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                     const std::vector<std::size_t>& offsets) {
+  host::Arena::Scope scope(runtime.arena());
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  std::vector<Magnitudes> magnitudes(sets);
+  static_assert(sizeof(Magnitudes) == kernel::INSPECT_NUMBERS * sizeof(cl_int));
+  const auto accounts = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS * sets);
+  runtime.write(accounts, 0, kernel::INSPECT_NUMBERS * sets, &magnitudes.data()->largest);
+  runtime.chunks(n, runtime.sizes().chunk(n),
+                 kernels::inspect_sets{.sets = sets,
+                                       .offsets = runtime.upload(runtime.arena(), integers(offsets)),
+                                       .input = points,
+                                       .accounts = accounts});
+  runtime.read(accounts, 0, kernel::INSPECT_NUMBERS * sets, &magnitudes.data()->largest);
+  return magnitudes;
+}
+
+UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                           const std::vector<std::size_t>& offsets) {
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  const Magnitudes magnitudes = inspect(runtime, points, n);
+  const bool differ = differ_too_much(magnitudes);
+  if (differ && sets > 1) return scale_sets(runtime, points, offsets);
   std::vector<double> coordinates;
-  if (!can_be_exact(magnitudes, n)) {
-    coordinates.resize(2 * n);
-    // Copied first, because the caller's buffer may not permit the host to read it.
-    const host::Buffer<cl_double> copy(host::allocate_memory(runtime.memory(), 2 * n * sizeof(double)),
-                                       2 * n);
-    runtime.copy(points, 0, copy, 0, 2 * n);
-    runtime.read(copy, 0, 2 * n, coordinates.data());
-  }
-  return scaling_for(coordinates.data(), n, magnitudes);
+  if (differ || magnitudes.bad != kernel::NO_BAD) coordinates = to_host(runtime, points, n);
+  return {points, scaling_for(coordinates.data(), 0, n, magnitudes)};
 }
 
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,

@@ -11,15 +11,22 @@ using namespace geometry;
 /// Finds the magnitudes of n points, x0 y0 x1 y1 ... Waits once. Temporary memory: 12 bytes. O(n).
 Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n);
 
-/// Finds the magnitudes and leaves them on the device, for kernels to read, in an array of the runtime's
-/// arena. Does not wait. O(n).
-host::Buffer<cl_int> inspect_later(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                                   std::size_t n);
+/// The same for each of several sets. offsets: sets + 1. Temporary memory: 16 bytes a set.
+std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                     const std::vector<std::size_t>& offsets);
 
-/// Chooses the scaling of points with these magnitudes. Throws Error(input), which names a point, if one is
-/// not finite or if magnitudes differ too much; points are copied to the host only in that case.
-Scaling scaling_for(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n,
-                    const Magnitudes& magnitudes);
+/// Points whose sets have the same scaling.
+struct UniformPoints {
+  host::Buffer<cl_double> coordinates;
+  Scaling scaling;
+};
+
+/// Chooses the scaling of sets of points. If the magnitudes of sets differ too much for one, the points are a
+/// copy in the runtime's arena in which each set is scaled by its own; otherwise they are those given. Throws
+/// Error(input), which names a point, if one is not finite or if magnitudes differ too much in a set; points
+/// are copied to the host only in that case. Waits once, for such a copy twice. O(n).
+UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                           const std::vector<std::size_t>& offsets);
 
 /// Converts n points from `first` on to double precision, which is exact. narrow: x0 y0 x1 y1 ... Does not
 /// wait. O(n).

@@ -2,18 +2,14 @@
 
 #include "host/vector_operations.hpp"
 #include "launchers/voronoi/voronoi.cl.hpp"
-#include "points/inspect.hpp"
 
 namespace flaunay::voronoi {
 namespace {
 
 void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
                          const Buffer<cl_double>& circumcentres) {
-  const std::size_t n = mesh.points();
-  const auto accounts = inspect_later(runtime, mesh.coordinates, n);
-  runtime.map_in_small_groups(mesh.triangle_count(), kernels::circumcentres{.points = n,
+  runtime.map_in_small_groups(mesh.triangle_count(), kernels::circumcentres{.points = mesh.points(),
                                                                             .input = mesh.coordinates,
-                                                                            .accounts = accounts,
                                                                             .triangles = mesh.triangles,
                                                                             .centres = circumcentres});
 }

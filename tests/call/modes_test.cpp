@@ -167,6 +167,25 @@ TEST(Modes, ManySets) {
   expect_same(run(one_by_one), expected);
 }
 
+TEST(Modes, SetsOfEveryScale) {
+  Coordinates points;
+  std::vector<std::size_t> offsets{0};
+  for (const int exponent : {-1000, 0, 900, -400, 300}) {
+    const Coordinates set = scaled(make_fixture("kuzmin", 70, 3), std::ldexp(1.0, exponent));
+    points.insert(points.end(), set.begin(), set.end());
+    offsets.push_back(points.size() / 2);
+  }
+  const auto run = [&](const Options& options) {
+    return research::triangulate(triangulator(), points.data(), offsets, options);
+  };
+  const Triangulation expected = run({});
+  EXPECT_EQ(expected.triangle_offsets.back() % 5, 0u);
+  for (const Execution& execution : executions(true)) {
+    SCOPED_TRACE(execution.name);
+    expect_same(run(execution.options), expected);
+  }
+}
+
 TEST(Modes, NoPoints) {
   for (const Execution& execution : executions(true)) {
     SCOPED_TRACE(execution.name);

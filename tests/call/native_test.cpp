@@ -127,6 +127,20 @@ TEST_F(SmallNative, BatchesAreAsOnADevice) {
   compare({}, {0, 0, 0});
 }
 
+TEST_F(SmallNative, BatchesOfEveryScaleAreAsOnADevice) {
+  FixtureRandom random(15);
+  for (const std::size_t n : {20, 5000}) {
+    Coordinates points;
+    Offsets offsets = {0};
+    for (const int exponent : {-1000, 0, 900}) {
+      for (const double x : reals(n, random)) points.push_back(std::ldexp(x, exponent));
+      offsets.push_back(points.size() / 2);
+      offsets.push_back(points.size() / 2);
+    }
+    compare(points, offsets);
+  }
+}
+
 TEST_F(SmallNative, SinglePrecisionIsAsOnADevice) {
   FixtureRandom random(13);
   for (const std::size_t n : {3, 100, 5000}) {

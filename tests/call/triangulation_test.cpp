@@ -877,6 +877,21 @@ TEST(Nested, ManyScales) {
   check_sets(sets);
 }
 
+/// No scaling is right for all sets: a batch accepts whatever its sets alone are accepted with.
+TEST(Nested, EveryScale) {
+  Sets sets;
+  for (int s = -320; s <= 305; s += 25) {
+    const auto seed = static_cast<std::uint64_t>(s + 400);
+    sets.add(scaled(io::generate("uniform", 50, seed).coordinates, std::pow(10.0, s)));
+    sets.add(scaled(io::generate("integer-circle", 50, seed).coordinates, std::pow(10.0, std::min(s, 290))));
+    sets.add({});
+    sets.add({0, 0});
+  }
+  sets.add(scaled(io::generate("uniform", 5000, 1).coordinates, 0x1p-900));
+  sets.add(io::generate("uniform", 5000, 2).coordinates);
+  check_sets(sets);
+}
+
 // ---------------------------------------------------------------------------------------------------------------
 // Errors; after each, the triangulator works as before.
 
@@ -923,6 +938,14 @@ TEST_F(Errors, RangeOfMagnitudes) {
     EXPECT_NE(text.find("point 11 "), std::string::npos) << text;
     EXPECT_NE(text.find("point 23 "), std::string::npos) << text;
   }
+}
+
+TEST_F(Errors, RangeOfMagnitudesOfASet) {
+  const Coordinates points = {0, 0, 1, 0, 0, 1, 1e-300, 0, 1e300, 1e299, 5, 6, 0x1p-1074, 0, 1, 2};
+  const Offsets offsets{0, 3, 5, 6, 6, 7, 8};
+  const std::string text = error_text(ErrorKind::input, [&] { triangulate(points, offsets); });
+  EXPECT_NE(text.find("point 3 "), std::string::npos) << text;
+  EXPECT_NE(text.find("point 4 "), std::string::npos) << text;
 }
 
 /// The range that the error states is the range that is accepted, at any scale, and exact to its end.

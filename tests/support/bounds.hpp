@@ -33,8 +33,8 @@ inline geometry::Magnitudes beside_fine_ones(geometry::Magnitudes magnitudes) {
 
 /// Of an input that has points of these magnitudes, which are accepted.
 inline geometry::Bounds bounds_for(const geometry::Magnitudes& magnitudes) {
-  if (!geometry::can_be_exact(magnitudes, 0)) throw std::logic_error("magnitudes that the library refuses");
-  return geometry::scaling_for(nullptr, 0, magnitudes).bounds;
+  if (geometry::differ_too_much(magnitudes)) throw std::logic_error("magnitudes that the library refuses");
+  return geometry::scaling_for(nullptr, 0, 0, magnitudes).bounds;
 }
 
 /// Of an input with coordinates of 53 bits.

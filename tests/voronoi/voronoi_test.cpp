@@ -167,6 +167,17 @@ TEST(Voronoi, Magnitudes) {
   check_dual(make_case(overflowing, 0, 15));
 }
 
+/// No scaling is right for all sets.
+TEST(Voronoi, SetsOfEveryScale) {
+  Case input;
+  for (const double factor : {0x1p960, 0x1p-900, 1.0, 0x1p-300}) {
+    input.add(testing::scaled(make_fixture("uniform", 40, 16), factor), {});
+    input.add(testing::scaled(make_fixture("integer-circle", 40, 17), factor), {});
+  }
+  input.triangulate();
+  check_dual(input);
+}
+
 /// Points at wrong places: cells mean nothing, but there are some.
 TEST(SmallVoronoi, WalksEndWhateverThePoints) {
   Case input = make_case(make_fixture("uniform", 80, 18), 0, 19);
