@@ -3,23 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <utility>
 
 #include "host/error.hpp"
+#include "host/huge_pages.hpp"
 #include "host/system_memory.hpp"
-
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
 
 namespace flaunay::host {
 namespace {
 
 constexpr std::size_t kSmallestBlock = std::size_t{1} << 20;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kAlignment = 128;
 
 std::shared_ptr<_cl_mem> own(cl_mem memory) {
@@ -49,15 +44,6 @@ std::shared_ptr<_cl_mem> allocate_native(std::size_t bytes) {
 }
 
 }  // namespace
-
-void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
-#ifdef __linux__
-  const auto address = reinterpret_cast<std::uintptr_t>(begin);
-  const std::uintptr_t first = (address + kHugePage - 1) / kHugePage * kHugePage;
-  const std::uintptr_t last = (address + bytes) / kHugePage * kHugePage;
-  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
-#endif
-}
 
 MemorySource memory_of(const boost::compute::context& context, const boost::compute::device& device) {
   // At least a cache line, so that vector loads of one array never share a cache line with another array.

@@ -129,14 +129,4 @@ class Arena {
 /// throws DeviceError if the system has not enough memory.
 std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes);
 
-/// Asks the system to use huge pages for [begin, begin + bytes), memory that was not accessed before.
-void prefer_huge_pages(void* begin, std::size_t bytes);
-/// Makes a vector this long, in huge pages if its memory is new.
-template <typename T>
-void resize_in_huge_pages(std::vector<T>& values, std::size_t size) {
-  values.reserve(size);
-  prefer_huge_pages(values.data(), size * sizeof(T));
-  values.resize(size);
-}
-
 }  // namespace flaunay::host

@@ -15,6 +15,11 @@
 namespace flaunay::host {
 namespace {
 
+// What drivers of GPUs make below /dev: any of Linux's own, AMD's, NVIDIA's (on desktops and on boards), the
+// one of Linux below Windows, ARM's, Qualcomm's, Imagination's and Vivante's.
+constexpr const char* kGpuFiles[] = {"dri", "kfd",   "nvidiactl", "nvidia-caps", "nvhost-gpu", "nvgpu",
+                                     "dxg", "mali0", "kgsl-3d0",  "pvrsrvkm",    "pvr_sync",   "galcore"};
+
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
@@ -94,7 +99,22 @@ std::string wanted_device(const std::string& given) {
   return given.empty() && environment != nullptr ? environment : given;
 }
 
+bool may_have_gpu([[maybe_unused]] const std::string& folder) {
+#ifdef __linux__
+  for (const char* const drivers : {"OCL_ICD_VENDORS", "OCL_ICD_FILENAMES"}) {
+    if (std::getenv(drivers) != nullptr) return true;
+  }
+  for (const char* const file : kGpuFiles) {
+    if (::access((folder + "/" + file).c_str(), F_OK) == 0) return true;
+  }
+  return false;
+#else
+  return true;
+#endif
+}
+
 std::optional<boost::compute::device> find_gpu() {
+  if (!may_have_gpu()) return {};
   try {
     for (const auto& device : all_devices()) {
       if ((device.type() & CL_DEVICE_TYPE_GPU) && has_fp64(device)) return device;

@@ -25,6 +25,11 @@ std::string wanted_device(const std::string& given);
 /// Finds the first GPU with fp64; nothing if there is none, or no OpenCL.
 std::optional<boost::compute::device> find_gpu();
 
+/// Whether this system may have a GPU, as far as its device files in `folder` tell. Loading OpenCL to look
+/// for one takes longer than triangulating ten thousand points. Always true if the environment chooses
+/// OpenCL's drivers (OCL_ICD_VENDORS, OCL_ICD_FILENAMES).
+bool may_have_gpu(const std::string& folder = "/dev");
+
 /// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else the first GPU with fp64,
 /// else the first device with fp64), "#k" (the k-th of all_devices), or a part of a device's or platform's
 /// name in upper or lower case. Throws DeviceError, which lists the devices, if none matches.

@@ -13,6 +13,7 @@
 
 #include "host/clock.hpp"
 #include "host/device.hpp"
+#include "host/huge_pages.hpp"
 #include "host/pocl.hpp"
 #include "host/program_cache.hpp"
 #include "host/system_memory.hpp"
@@ -304,6 +305,17 @@ void Runtime::run_natively(Kernel& kernel, std::size_t work_items, std::size_t g
   KernelTime& time = times_[kernel.name];
   ++time.launches;
   time.seconds += now() - begin;
+}
+
+void Runtime::touch_new(void* begin, std::size_t bytes) {
+  prefer_huge_pages(begin, bytes);
+  // On a device, pages are touched while it computes.
+  if (!is_native()) return;
+  constexpr std::size_t kPage = 4096, kPagesPerPart = 512;
+  auto* const pages = static_cast<volatile unsigned char*>(begin);
+  threads_->share((bytes + kPage - 1) / kPage, kPagesPerPart, [&](std::size_t first, std::size_t last) {
+    for (std::size_t page = first; page < last; ++page) pages[page * kPage] = 0;
+  });
 }
 
 void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group) {

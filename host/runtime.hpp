@@ -193,6 +193,16 @@ class Runtime {
     write(copy, 0, count, values);
     return copy;
   }
+  /// Makes a vector this long, for output(). New memory is in huge pages; if kernels run natively, their
+  /// threads share the work that the system has with it.
+  template <typename T>
+  void resize(std::vector<T>& values, std::size_t size) {
+    if (size > values.capacity()) {
+      values.reserve(size);
+      touch_new(values.data() + values.size(), (size - values.size()) * sizeof(T));
+    }
+    values.resize(size);
+  }
   /// Returns a buffer in which kernels write results for `values`. On a device that works in host memory it
   /// is the vector's own memory, otherwise it comes from the arena. Call fetch_later after the kernels.
   template <typename T>
@@ -287,6 +297,8 @@ class Runtime {
     NativeFunction native = nullptr;
     std::vector<Argument> native_arguments = {};
   };
+  /// Makes the system provide memory that was not accessed before.
+  void touch_new(void* begin, std::size_t bytes);
   template <typename Launcher, typename... Leading>
   void launch_with(std::size_t work_items, std::size_t group, const Launcher& launcher,
                    const Leading&... leading) {

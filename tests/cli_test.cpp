@@ -581,7 +581,7 @@ TEST_F(CommandDeviceTest, TooManyPointsSaysHowManyWouldFit) {
 TEST_F(CommandDeviceTest, WhatWouldFitDependsOnTheLimitsOfTheProcess) {
   run_well({"generate", "uniform", "4000000", "-o", path("points.npy")}, {});
   // Enough for the driver, but not for the points, which take 1.2 GB at most. In kilobytes.
-  const std::string limited = "ulimit -v 1600000; exec '" FLAUNAY_EXECUTABLE "' triangulate '" +
+  const std::string limited = "ulimit -v 1200000; exec '" FLAUNAY_EXECUTABLE "' triangulate '" +
                               path("points.npy") + "' 2>'" + path("message") + "'";
   const int status = std::system(limited.c_str());
   EXPECT_EQ(WEXITSTATUS(status), kDevice);

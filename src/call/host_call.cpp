@@ -27,7 +27,7 @@ class Rows {
   // Touches the memory while the device computes; otherwise page faults would take longer than writing the
   // results.
   void reserve(std::size_t triangles) {
-    if (is_wanted_) host::resize_in_huge_pages(values_, 3 * triangles);
+    if (is_wanted_) runtime_.resize(values_, 3 * triangles);
   }
   // The buffer to which kernels write this many triangles. If more than half of the memory is unused, it is
   // released.
@@ -69,7 +69,7 @@ class HostExchange : public blocks::Exchange {
   }
 
   Buffer<cl_int> representatives() override {
-    result_.representatives.resize(n_);
+    runtime_.resize(result_.representatives, n_);
     representatives_ = runtime_.output(result_.representatives);
     return representatives_;
   }

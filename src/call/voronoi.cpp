@@ -18,10 +18,10 @@ Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Tr
     Voronoi result;
     const host::Runtime::Settled settled(runtime);
     const points::DeviceMesh mesh = call::mesh_of(runtime, coordinates, n, triangulation);
-    host::resize_in_huge_pages(result.circumcentres, 2 * mesh.triangle_count());
-    host::resize_in_huge_pages(result.cell_offsets, n + 1);
-    host::resize_in_huge_pages(result.cells, 3 * mesh.triangle_count());
-    result.unbounded.resize(n);
+    runtime.resize(result.circumcentres, 2 * mesh.triangle_count());
+    runtime.resize(result.cell_offsets, n + 1);
+    runtime.resize(result.cells, 3 * mesh.triangle_count());
+    runtime.resize(result.unbounded, n);
     const voronoi::Buffers buffers{runtime.output(result.circumcentres), runtime.output(result.cell_offsets),
                                    runtime.output(result.cells), runtime.output(result.unbounded)};
     voronoi::compute(runtime, mesh, buffers);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -78,7 +79,8 @@ class InputFile {
     }
     // The size of a regular file is known; room for one byte more detects the end in the same call. For pipes
     // the buffer grows.
-    whole_ = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 1 << 16;
+    if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = status.st_size;
+    whole_ = size_ >= 0 ? static_cast<std::size_t>(size_) + 1 : 1 << 16;
   }
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -88,6 +90,19 @@ class InputFile {
   std::string_view first(std::size_t count) {
     read_until(count);
     return std::string_view(bytes_.data(), std::min(count, used_));
+  }
+
+  /// The size of a regular file; unknown, -1, of a pipe.
+  std::int64_t size() const { return size_; }
+
+  /// Reads the bytes [begin, begin + count), begin being at most the count of the last call of first(),
+  /// straight to their place. Returns how many there are. Nothing can be read afterwards.
+  std::size_t read_from(std::size_t begin, std::size_t count, void* to) {
+    const std::size_t known = std::min(used_ - std::min(begin, used_), count);
+    if (known > 0) std::memcpy(to, bytes_.data() + begin, known);
+    std::size_t got = known;
+    while (got < count && !ended_) got += read_some(static_cast<char*>(to) + got, count - got);
+    return got;
   }
 
   /// All bytes. Nothing can be read afterwards.
@@ -102,13 +117,16 @@ class InputFile {
   void read_until(std::size_t count) {
     if (bytes_.size() < count) bytes_.resize(count);
     while (used_ < count && !ended_) {
-      const ssize_t got = ::read(descriptor_, &bytes_[used_], count - used_);
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) fail(name_, "cannot be read: {}", system_reason(errno));
-      ended_ = got == 0;
-      used_ += static_cast<std::size_t>(got);
+      used_ += read_some(&bytes_[used_], count - used_);
     }
     if (used_ == 0 && ended_) fail(name_, "is empty (zero bytes); expected {}", expected_);
+  }
+  std::size_t read_some(char* to, std::size_t most) {
+    const ssize_t got = ::read(descriptor_, to, most);
+    if (got < 0 && errno == EINTR) return 0;
+    if (got < 0) fail(name_, "cannot be read: {}", system_reason(errno));
+    ended_ = got == 0;
+    return static_cast<std::size_t>(got);
   }
   void close() {
     if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
@@ -117,6 +135,7 @@ class InputFile {
   std::string name_;
   std::string expected_;
   int descriptor_;
+  std::int64_t size_ = -1;
   std::size_t whole_ = 0;  // room for all bytes of a regular file
   std::string bytes_;      // the first used_ bytes were read
   std::size_t used_ = 0;

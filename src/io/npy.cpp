@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "host/huge_pages.hpp"
 #include "io/file.hpp"
 #include "io/mesh.hpp"
 
@@ -178,40 +179,55 @@ std::size_t check_header(const std::string& path, const Header& header, const La
   return header.shape[0] * row_bytes;
 }
 
-void check_size(const std::string& path, const Header& header, std::size_t promised, std::size_t found) {
-  if (found < promised) {
-    fail(path, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
-         shape_text(header.shape), header.descr, promised, found);
+/// An array whose header was checked. The values are read once.
+class Array {
+ public:
+  Array(const std::string& path, std::string_view expected, const Layout& layout)
+      : path_(path), file_(path, expected), header_(read_header(path, file_)) {
+    promised_ = check_header(path, header_, layout);
   }
-  if (found > promised) {
-    fail(path, "has {} bytes too many: shape {} of '{}' needs {} bytes after the header, found {}",
-         found - promised, shape_text(header.shape), header.descr, promised, found);
-  }
-}
 
-/// An array whose header and size were checked.
-struct Array {
-  std::string dtype;
-  std::size_t data_begin = 0;
-  std::string bytes;
+  const std::string& dtype() const { return header_.descr; }
 
   template <typename Value>
-  std::vector<Value> values() const {
-    std::vector<Value> all((bytes.size() - data_begin) / sizeof(Value));
-    if (!all.empty()) std::memcpy(all.data(), bytes.data() + data_begin, all.size() * sizeof(Value));
+  std::vector<Value> values() {
+    if (file_.size() < 0) return values_of_pipe<Value>();
+    // Before there is memory for what the header promises.
+    check(static_cast<std::size_t>(file_.size()) - header_.data_begin);
+    std::vector<Value> all;
+    all.reserve(promised_ / sizeof(Value));
+    host::prefer_huge_pages(all.data(), promised_);
+    all.resize(promised_ / sizeof(Value));
+    check(file_.read_from(header_.data_begin, promised_, all.data()));
     return all;
   }
-};
 
-/// Checks the header before it reads the rest.
-Array read_array(const std::string& path, std::string_view expected, const Layout& layout) {
-  InputFile file(path, expected);
-  const Header header = read_header(path, file);
-  const std::size_t promised = check_header(path, header, layout);
-  Array array{header.descr, header.data_begin, file.all()};
-  check_size(path, header, promised, array.bytes.size() - header.data_begin);
-  return array;
-}
+ private:
+  template <typename Value>
+  std::vector<Value> values_of_pipe() {
+    const std::string bytes = file_.all();
+    check(bytes.size() - header_.data_begin);
+    std::vector<Value> all(promised_ / sizeof(Value));
+    if (!all.empty()) std::memcpy(all.data(), bytes.data() + header_.data_begin, promised_);
+    return all;
+  }
+
+  void check(std::size_t found) const {
+    if (found < promised_) {
+      fail(path_, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
+           shape_text(header_.shape), header_.descr, promised_, found);
+    }
+    if (found > promised_) {
+      fail(path_, "has {} bytes too many: shape {} of '{}' needs {} bytes after the header, found {}",
+           found - promised_, shape_text(header_.shape), header_.descr, promised_, found);
+    }
+  }
+
+  const std::string& path_;
+  InputFile file_;
+  Header header_;
+  std::size_t promised_ = 0;
+};
 
 void write_npy(Outputs& outputs, const std::string& path, const char* descr, const std::string& shape,
                const void* data, std::size_t bytes) {
@@ -230,9 +246,9 @@ void write_npy(Outputs& outputs, const std::string& path, const char* descr, con
 }  // namespace
 
 Points read_npy_points(const std::string& path) {
-  const Array array = read_array(path, "a NumPy array of shape (n, 2)", {"n", 2, "<f8", "<f4"});
+  Array array(path, "a NumPy array of shape (n, 2)", {"n", 2, "<f8", "<f4"});
   Points points;
-  if (array.dtype == "<f8") {
+  if (array.dtype() == "<f8") {
     points.coordinates = array.values<double>();
   } else {
     const std::vector<float> values = array.values<float>();
@@ -250,7 +266,7 @@ namespace {
 
 /// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
 std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
-  const Array array = read_array(path, "a NumPy array of shape (m, 3)", {"m", 3, "<i4", "<i8"});
+  Array array(path, "a NumPy array of shape (m, 3)", {"m", 3, "<i4", "<i8"});
   std::vector<std::int32_t> triangles;
   const auto check = [&](auto value, std::size_t i) {
     if (value < lowest || value > std::numeric_limits<std::int32_t>::max()) {
@@ -258,7 +274,7 @@ std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t
            std::numeric_limits<std::int32_t>::max());
     }
   };
-  if (array.dtype == "<i4") {
+  if (array.dtype() == "<i4") {
     triangles = array.values<std::int32_t>();
     for (std::size_t i = 0; i < triangles.size(); ++i) check(triangles[i], i);
   } else {

@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <cstddef>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,21 @@ TEST_F(SmallFindDevice, ByTheEnvironment) {
   expect_listing("", "Nonesuch 9000");
   expect_listing("", "FLAUNAY_DEVICE");
   EXPECT_EQ(find_device("#0").id(), devices_.front().id());  // a name given goes first
+}
+
+TEST(SmallMayHaveGpu, IsToldByDeviceFilesOrTheEnvironment) {
+  const ScopedEnvironment vendors("OCL_ICD_VENDORS", nullptr), files("OCL_ICD_FILENAMES", nullptr);
+  const TemporaryFolder folder;
+  EXPECT_FALSE(may_have_gpu(folder.path()));
+  EXPECT_FALSE(may_have_gpu(folder.path() + "/none"));
+  {
+    const ScopedEnvironment chosen("OCL_ICD_VENDORS", "libpocl.so");
+    EXPECT_TRUE(may_have_gpu(folder.path()));
+  }
+  std::ofstream(folder.path() + "/null");
+  EXPECT_FALSE(may_have_gpu(folder.path()));
+  std::ofstream(folder.path() + "/nvidiactl");
+  EXPECT_TRUE(may_have_gpu(folder.path()));
 }
 
 }  // namespace

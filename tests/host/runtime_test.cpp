@@ -1,6 +1,7 @@
 // The runtime: copies, errors and what they say, kernel files, accounts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -31,6 +32,22 @@ TEST(SmallCopies, ReadWriteCopyAndFillPartsOfArrays) {
   runtime.fill(b, 4, cl_int{8});
   runtime.fill(b, 0, cl_int{9});
   EXPECT_EQ(download(runtime, b, 6), (std::vector<cl_int>{8, 8, 8, 8, 20, -1}));
+}
+
+TEST(SmallResults, VectorsAreResizedNativelyAsOnADevice) {
+  Runtime native(native_tuning());
+  for (Runtime* runtime : {&Runtimes::get("own"), &native}) {
+    std::vector<cl_int> values{1, 2, 3};
+    runtime->resize(values, 3'000'000);
+    ASSERT_EQ(values.size(), 3'000'000u);
+    EXPECT_EQ(values[2], 3);
+    EXPECT_EQ(std::count(values.begin() + 3, values.end(), 0), 3'000'000 - 3);
+    runtime->resize(values, 2);
+    runtime->resize(values, 5);
+    EXPECT_EQ(values, (std::vector<cl_int>{1, 2, 0, 0, 0}));
+    runtime->resize(values, 0);
+    EXPECT_TRUE(values.empty());
+  }
 }
 
 TEST(SmallError, NamesCallCodeKernelAndRemedy) {

@@ -346,6 +346,22 @@ TEST_F(IoTest, ReadsPipesLongerThanOneBuffer) {
   EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
 }
 
+TEST_F(IoTest, ReadsArraysFromPipesAsFromFiles) {
+  const std::string fifo = path("pipe.npy"), file = path("file.npy");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const Points points = generate("uniform", 300000, 1);
+  write_points(file, points);
+  const auto feed = [&](const std::string& command) {
+    ASSERT_EQ(std::system((command + " '" + file + "' > '" + fifo + "' &").c_str()), 0);
+  };
+  feed("cat");
+  EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
+  EXPECT_EQ(read_points(file).coordinates, points.coordinates);
+  feed("head -c -8");
+  expect_error(ErrorKind::input, fifo, {"truncated", "4800000 bytes", "found 4799992"},
+               [&] { read_points(fifo); });
+}
+
 TEST_F(IoTest, ReadsTheFixtures) {
   const std::string data = flaunay::test_data();
   for (const auto& [name, count] : std::vector<std::pair<const char*, std::size_t>>{{"issue43.xy", 5},
@@ -448,6 +464,8 @@ TEST_F(IoTest, NpyNamesWhatDoesNotFit) {
   expect_bad_points("f.npy", npy(npy_header("<f8", "()"), data), {"shape ()", "expected (n, 2)"});
   expect_bad_points("g.npy", good.substr(0, good.size() - 5), {"truncated", "32 bytes", "found 27"});
   expect_bad_points("h.npy", good + "abc", {"3 bytes too many", "32 bytes", "found 35"});
+  expect_bad_points("h2.npy", npy(npy_header("<f8", "(1000000000000, 2)"), data),
+                    {"truncated", "16000000000000 bytes", "found 32"});
   expect_bad_points("i.npy", good.substr(0, 40), {"truncated in the .npy header"});
   expect_bad_points("j.npy", good.substr(0, 9), {"truncated in the .npy header"});
   expect_bad_points("k.npy", good.substr(0, 7), {"truncated in the .npy header"});
