@@ -5,8 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 
 #include "cli/errors.hpp"
 #include "command.hpp"
@@ -23,11 +25,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kNoOption = "default";
+// Before an option: with no kernels that were compiled before.
+constexpr std::string_view kCold = "cold:";
 
 struct Request : Measurement {
   std::string program;
   std::vector<std::size_t> sizes{1000, 1000000};
-  std::vector<std::string> choices{kNoOption, "device=host", "device=#0", "mode=dwyer"};
+  std::vector<std::string> choices{kNoOption, "device=host", "device=#0", "cold:device=#0", "mode=dwyer"};
 };
 
 // A folder that is removed at the end.
@@ -52,17 +56,40 @@ class Folder {
   fs::path path_;
 };
 
-// Runs a program with its output thrown away, and returns the seconds that passed.
-double run_program(std::vector<std::string> words) {
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
+  for (std::string& text : texts) pointers.push_back(text.data());
   pointers.push_back(nullptr);
+  return pointers;
+}
+
+// The environment of this process, and folders without compiled kernels: flaunay's and PoCL's.
+std::vector<std::string> cold_environment(const Folder& empty) {
+  std::vector<std::string> all;
+  for (char** variable = environ; *variable != nullptr; ++variable) all.emplace_back(*variable);
+  for (const std::string name : {"FLAUNAY_CACHE_DIR=", "POCL_CACHE_DIR="}) {
+    const auto is_named = [&](const std::string& text) { return text.compare(0, name.size(), name) == 0; };
+    all.erase(std::remove_if(all.begin(), all.end(), is_named), all.end());
+    const std::string folder = empty.file(name.substr(0, name.size() - 1));
+    fs::create_directory(folder);
+    all.push_back(name + folder);
+  }
+  return all;
+}
+
+// Runs a program with its output thrown away, and returns the seconds that passed.
+double run_program(std::vector<std::string> words, bool is_cold) {
+  const Folder empty;
+  std::vector<std::string> cold;
+  if (is_cold) cold = cold_environment(empty);
+  std::vector<char*> pointers = pointers_to(words), variables = pointers_to(cold);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   const Stopwatch watch;
   pid_t child = 0;
-  const int code = posix_spawn(&child, pointers.front(), &actions, nullptr, pointers.data(), environ);
+  const int code = posix_spawn(&child, pointers.front(), &actions, nullptr, pointers.data(),
+                               is_cold ? variables.data() : environ);
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
   if (code != 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
@@ -87,16 +114,18 @@ Result measure_processes(const Request& request) {
     outputs.commit();
     for (const std::string& choice : request.choices) {
       std::vector<std::string> words = {program, "triangulate", points};
-      if (choice != kNoOption) {
-        const std::size_t equals = std::min(choice.find('='), choice.size());
-        words.push_back("--" + choice.substr(0, equals));
-        if (equals < choice.size()) words.push_back(choice.substr(equals + 1));
+      const bool is_cold = choice.compare(0, kCold.size(), kCold) == 0;
+      const std::string option = is_cold ? choice.substr(kCold.size()) : choice;
+      if (option != kNoOption) {
+        const std::size_t equals = std::min(option.find('='), option.size());
+        words.push_back("--" + option.substr(0, equals));
+        if (equals < option.size()) words.push_back(option.substr(equals + 1));
       }
       for (const char* word : {"--triangles", "t.npy", "--neighbors", "n.npy"}) {
         words.push_back(*word == '-' ? word : folder.file(word));
       }
       jobs.push_back(
-          {fmt::format("flaunay {}, {} points", choice, n), [words] { return run_program(words); }});
+          {fmt::format("flaunay {}, {} points", choice, n), [words, is_cold] { return run_program(words, is_cold); }});
       rows.push_back({{"option", choice}, {"distribution", "uniform"}, {"n", n}});
     }
   }
@@ -122,7 +151,8 @@ void add_processes(CLI::App& app, Action& action) {
   CLI::App* command = add_command(
       app, action, "processes", "the command as whole processes, from start to end",
       "Times are wall times of flaunay triangulate from .npy to .npy, triangles and neighbours, with the "
-      "operating system's and the drivers' caches filled by a first run that is not counted. All take turns.",
+      "operating system's and the drivers' caches filled by a first run that is not counted. All take turns. "
+      "Options that begin with cold: run with empty folders of compiled kernels each time.",
       request, measure_processes);
   command->add_option("--program", request->program, "the command; default: flaunay beside this program");
   add_sizes_option(command, request->sizes);
