@@ -124,8 +124,8 @@ Result measure_processes(const Request& request) {
       for (const char* word : {"--triangles", "t.npy", "--neighbors", "n.npy"}) {
         words.push_back(*word == '-' ? word : folder.file(word));
       }
-      jobs.push_back(
-          {fmt::format("flaunay {}, {} points", choice, n), [words, is_cold] { return run_program(words, is_cold); }});
+      jobs.push_back({fmt::format("flaunay {}, {} points", choice, n),
+                      [words, is_cold] { return run_program(words, is_cold); }});
       rows.push_back({{"option", choice}, {"distribution", "uniform"}, {"n", n}});
     }
   }

@@ -174,10 +174,13 @@ Batch degenerate_batch(FixtureRandom& random) {
   for (std::size_t s = 0; s < sets; ++s) batch.push_back(degenerate_set(random, any_size(random)));
   if (!once_in(random, 6)) return batch;
 
-  // All sets by the same power, since the range of magnitudes is that of the batch.
-  const auto exponent = static_cast<int>(random.integer(-1060, 1000));
+  // All sets by the same power of two, or each by its own: every set has the whole range of magnitudes.
+  const auto any_exponent = [&random] { return static_cast<int>(random.integer(-1060, 1000)); };
+  const bool is_same = random.integer(0, 1) == 0;
+  int exponent = any_exponent();
   Batch scaled = batch;
   for (Coordinates& set : scaled) {
+    if (!is_same) exponent = any_exponent();
     for (double& value : set) value = std::ldexp(value, exponent);
   }
   return std::all_of(scaled.begin(), scaled.end(), all_finite) ? scaled : batch;
