@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "command.hpp"
@@ -31,8 +32,9 @@ constexpr const char* kHelp =
     "  device, kernels: the sum of its kernels' times, by Enqueue::profile on a profiling queue\n"
     "The host's results always have the hull and the representatives.\n\n"
     "The rest, device: from the call to the completion of its event, queries and results in buffers. "
-    "locator: making a Locator, its memory included; interpolate: values of float64; voronoi: circumcentres "
-    "and cells.\n"
+    "locator: making a Locator, its memory included; nearest in a fan: points on a circle, one of them "
+    "joined "
+    "to all others, and queries inside; interpolate: values of float64; voronoi: circumcentres and cells.\n"
     "cgal: one thread, from queries in memory to indices in memory, its triangulation made before. Walks "
     "begin at the face where the last one ended, with queries as they come ('last face', of which "
     "--far-walks are measured and the time scaled) or spatially sorted, which is included; 'hierarchy': "
@@ -363,6 +365,47 @@ bool QueryRuns::agree() const {
   return all_agree;
 }
 
+/// Nearest points on a circle, or on as many as there must be, of integers: one point is joined to all others
+/// of its circle, and a walk along it would be long. Queries are anywhere inside. To stay where it is.
+class FanRuns {
+ public:
+  FanRuns(Caller& caller, std::size_t n) : caller_(caller) {
+    const std::vector<double> coordinates = make_input("integer-circle", n, 1).coordinates;
+    double reach = 0;
+    std::vector<double> queries = make_input("uniform", n, 2).coordinates;
+    for (const double c : coordinates) reach = std::max(reach, std::abs(c));
+    for (double& c : queries) c = reach * (2 * c - 1);
+    coordinates_memory_ = caller.embedder.upload(coordinates);
+    queries_memory_ = caller.embedder.upload(queries);
+    points_ = points_in(coordinates_memory_, coordinates.size() / 2, Precision::float64);
+    query_points_ = points_in(queries_memory_, n, Precision::float64);
+    caller_.seconds_to_completion([&](const Enqueue& enqueue) {
+      caller_.embedded.triangulate(points_, mesh_, {true, true, false, true, true}, enqueue);
+      locator_ = std::make_unique<Locator>(caller_.embedded, points_, mesh_, enqueue);
+    });
+  }
+  FanRuns(const FanRuns&) = delete;
+  FanRuns& operator=(const FanRuns&) = delete;
+
+  AllTimed rows() {
+    const Json row = {{"operation", "nearest in a fan"}, {"implementation", "device"},
+                      {"precision", "float64"},          {"n", points_.count},
+                      {"count", query_points_.count},    {"measured", query_points_.count}};
+    return {{row, [this] {
+               return caller_.seconds_to_completion(
+                   [&](const Enqueue& enqueue) { locator_->nearest(query_points_, nearest_, enqueue); });
+             }}};
+  }
+
+ private:
+  Caller& caller_;
+  testing::Memory coordinates_memory_, queries_memory_;
+  DevicePoints points_, query_points_;
+  DeviceTriangulation mesh_;
+  std::unique_ptr<Locator> locator_;
+  DeviceBuffer nearest_;
+};
+
 std::vector<double> rounded_to_float(std::vector<double> values) {
   for (double& value : values) value = static_cast<double>(static_cast<float>(value));
   return values;
@@ -373,10 +416,12 @@ struct Size {
   Size(Caller& caller, std::size_t n, std::size_t far_walks)
       : coordinates(rounded_to_float(make_input("uniform", n, 1).coordinates)),
         triangulation(caller, coordinates),
-        queries(caller, coordinates, make_input("uniform", n, 2).coordinates, far_walks) {}
+        queries(caller, coordinates, make_input("uniform", n, 2).coordinates, far_walks),
+        fan(caller, n) {}
   std::vector<double> coordinates;
   TriangulationRuns triangulation;
   QueryRuns queries;
+  FanRuns fan;
 };
 
 std::string name_of(const Json& row) {
@@ -448,6 +493,7 @@ Result measure_embedding(const Request& request) {
     size->triangulation.add_calls(calls);
     append(rows, size->triangulation.rows());
     append(rows, size->queries.rows());
+    append(rows, size->fan.rows());
   }
   measure_rows(rows, request.runs);
 

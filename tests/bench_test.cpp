@@ -357,7 +357,8 @@ TEST_F(BenchTest, EmbeddingIsMeasured) {
   const int ways = cgal ? 4 : 1, voronoi = cgal ? 2 : 1, sizes = 2;
   const std::map<std::string, int> expected = {{"triangulate", sizes * 3 * 6}, {"locator", sizes},
                                                {"locate", sizes * ways},       {"nearest", sizes * ways},
-                                               {"interpolate", sizes},         {"voronoi", sizes * voronoi}};
+                                               {"interpolate", sizes},         {"voronoi", sizes * voronoi},
+                                               {"nearest in a fan", sizes}};
   EXPECT_EQ(of_operation, expected);
   ASSERT_EQ(record["ratios"].size(), 2u * 3 * 2);
   for (const auto& row : record["ratios"]) {

@@ -17,16 +17,18 @@
 //    beyond it: a visibility walk (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002). In a Delaunay
 //    triangulation it ends, whichever edge is tried first: the power of the query with respect to the triangle's circle
 //    falls with each step, except within a cocircular polygon, whose triangles form a tree.
-// 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query.
+// 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query. In meshes
+// where
+//    a walk to the nearest vertex takes long, nearest_points searches through levels (shared/nearest_search.h), which
+//    are made when the first query needs them (locate/levels.cl).
 
 #include "shared/cut_tree.h"
 #include "shared/halfedges.h"
-#include "shared/nearness.h"
+#include "shared/nearest_search.h"
 #include "shared/prefetch.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
-static inline int corner_at(face f, int vertex) { return f.corner[0] == vertex ? 0 : f.corner[1] == vertex ? 1 : 2; }
 static inline int corner_opposite(face f, int neighbor) {
   return f.neighbor[0] == neighbor ? 0 : f.neighbor[1] == neighbor ? 1 : 2;
 }
@@ -113,6 +115,13 @@ kernel void number_vertices(int n, global const face* restrict faces, global con
   }
 }
 
+// n: sets + 1. The first vertex of each set, and the number of all.
+kernel void find_first_vertices(int n, global const int* restrict triangle_offsets, global const uint* restrict firsts,
+                                global int* restrict first_vertices) {
+  const int s = get_global_id(0);
+  if (s < n) first_vertices[s] = (int)firsts[triangle_offsets[s]];
+}
+
 kernel void renumber_faces(int n, global const int* restrict numbers, global face* restrict faces) {
   const int t = get_global_id(0);
   if (t < n) {
@@ -186,8 +195,9 @@ kernel void start_triangles(int n, int points, int last, global const int* restr
 // Walking
 
 // The triangle that q lies in, the smallest one of several; outside of the hull the complement of a triangle that has q
-// beyond one of its edges, on the hull. start: a triangle; most: steps that a Delaunay triangulation can need: it has
-// no triangle visited twice. points are scaled by unit more, as q is.
+// beyond one of its edges, on the hull. GIVEN_UP after `most` steps. start: a triangle. points are scaled by unit more,
+// as q is.
+#define GIVEN_UP INT_MIN
 static inline int walk(double2 q, int start, int most, double bound, double unit, global const double2* points,
                        global const face* faces, global const int* first_triangle) {
   // Triangle t, the corner k that was reached last, and the edge from a to b opposite to it, which has q on its left,
@@ -231,7 +241,7 @@ static inline int walk(double2 q, int start, int most, double bound, double unit
     k = corner_opposite(f, t);
     t = u;
   }
-  return ~t;
+  return GIVEN_UP;
 }
 
 // n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set. keys: each
@@ -270,8 +280,10 @@ kernel void place_queries(int n, global const int* restrict order, global const 
 
 // are_placed: whether there are keys, in their order, and placed queries; else queries go down the trees here, and
 // their order and places are those that they have. is_answer: whether found is by query, with -1 outside of the hull;
-// else it is by place, with what walk() says. Without triangles it is -1.
-kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer,
+// else it is by place, with what walk() says. Without triangles it is -1. Walks in sets of long_from triangles or more
+// are given up after most_steps; others after as many as a Delaunay triangulation can need, which has no triangle
+// visited twice, and they then are where they began.
+kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer, int long_from, int most_steps,
                            global const int* restrict query_offsets, global const mesh_set* restrict records,
                            global const cut_node* restrict nodes, global const int* restrict starts,
                            global const double* restrict queries, scaling scale, global const ulong* restrict keys,
@@ -305,7 +317,10 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
       for (int i = begin; i < end; ++i) {
         int at = -1;
         if (set.triangles > 0) {
-          at = walk(placed[i], start[i - begin], set.triangles, bound, unit, points, faces, first_triangle);
+          const int is_long = set.triangles >= long_from;
+          at = walk(placed[i], start[i - begin], is_long ? most_steps : set.triangles, bound, unit, points, faces,
+                    first_triangle);
+          if (at == GIVEN_UP && !is_long) at = ~start[i - begin];
         }
         found[is_answer ? order[i] : i] = is_answer ? max(at, -1) : at;
       }
@@ -317,27 +332,10 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
 // ---------------------------------------------------------------------------------------------------------------------
 // The nearest vertex
 
-// The nearest vertex known so far, a triangle that has it as a corner, and where it is.
-typedef struct {
-  int vertex, triangle;
-  double2 at;
-} nearby;
-
-// Of two vertices that are as near, the first in the order of x and y is taken.
-static inline void consider(nearby* best, int vertex, int triangle, double2 q, double bound, double unit,
-                            global const double2* points) {
-  const double2 p = unit * points[vertex];
-  const int sign = nearness_sign(best->at, p, q, bound);
-  if (sign > 0 || (sign == 0 && comes_before(p, best->at))) {
-    best->vertex = vertex;
-    best->triangle = triangle;
-    best->at = p;
-  }
-}
-
-// The best of a vertex and its neighbours: counter-clockwise around it, and on the hull then the other way.
+// The best of a vertex and its neighbours: counter-clockwise around it, and on the hull then the other way. left: how
+// many neighbours may be looked at, which is lowered; less than 0 if these are not all.
 static inline nearby best_around(nearby vertex, double2 q, double bound, double unit, global const double2* points,
-                                 global const face* faces) {
+                                 global const face* faces, int* left) {
   nearby best = vertex;
   const face first = faces[vertex.triangle];
   const int k = corner_at(first, vertex.vertex);
@@ -345,7 +343,7 @@ static inline nearby best_around(nearby vertex, double2 q, double bound, double 
   int last = first.corner[corner_before(k)];
   consider(&best, last, vertex.triangle, q, bound, unit, points);
   int t = first.neighbor[next_corner(k)];
-  while (t >= 0 && t != vertex.triangle) {
+  while (t >= 0 && t != vertex.triangle && --*left >= 0) {
     const face f = faces[t];
     const int at = corner_at(f, vertex.vertex);
     consider(&best, f.corner[corner_before(at)], t, q, bound, unit, points);
@@ -353,7 +351,7 @@ static inline nearby best_around(nearby vertex, double2 q, double bound, double 
   }
   if (t < 0) {
     t = first.neighbor[corner_before(k)];
-    while (t >= 0) {
+    while (t >= 0 && --*left >= 0) {
       const face f = faces[t];
       const int at = corner_at(f, vertex.vertex);
       consider(&best, f.corner[next_corner(at)], t, q, bound, unit, points);
@@ -363,68 +361,74 @@ static inline nearby best_around(nearby vertex, double2 q, double bound, double 
   return best;
 }
 
-// Whether q is nearer to the vertex than half its clearance: nothing is as near then. So the neighbours of a vertex
-// that has very many mostly need not be looked at. Rounding is far below the margin, as long as there is no underflow.
-#define CLEARANCE_MARGIN (1.0 + 0x1p-20)
-#define LEAST_CLEARANCE 0x1p-1000
-static inline int is_clear(nearby vertex, double2 q, double unit, global const int* clearances) {
-  const double2 away = q - vertex.at;
-  const double clearance = as_double((ulong)(uint)clearances[vertex.vertex] << 32) * unit * unit;
-  return clearance > LEAST_CLEARANCE && 4.0 * CLEARANCE_MARGIN * (away.x * away.x + away.y * away.y) < clearance;
-}
-
-// Greedy descent, from a corner of triangle t. In a Delaunay triangulation a vertex that is not nearest has a neighbour
-// that is nearer; those that are nearest with others lie on one empty circle, whose first vertex is joined to all.
-static inline int nearest_vertex(double2 q, int t, double bound, double unit, global const double2* points,
+// Greedy descent, from a corner of triangle t, over at most so many neighbours; GIVEN_UP if these do not suffice. In a
+// Delaunay triangulation a vertex that is not nearest has a neighbour that is nearer; those that are nearest with
+// others lie on one empty circle, whose first vertex is joined to all.
+static inline int nearest_vertex(double2 q, int t, int most, double bound, double unit, global const double2* points,
                                  global const face* faces, global const int* clearances) {
   nearby best, before;
   best.vertex = faces[t].corner[0];
   best.triangle = t;
   best.at = unit * points[best.vertex];
   for (int k = 1; k < 3; ++k) consider(&best, faces[t].corner[k], t, q, bound, unit, points);
+  int left = most;
   do {
     before = best;
-    if (!is_clear(before, q, unit, clearances)) best = best_around(before, q, bound, unit, points, faces);
+    if (!is_clear(before, q, unit, clearances)) best = best_around(before, q, bound, unit, points, faces, &left);
+    if (left < 0) return GIVEN_UP;
   } while (best.vertex != before.vertex);
   return best.vertex;
 }
 
-// Of points on one line, in their order: distances fall and then rise, with two equal ones at most. -1 of none.
-static inline int nearest_on_line(double2 q, int first, int end, double bound, double unit,
-                                  global const double2* hull_points) {
-  if (first == end) return -1;
-  int low = first, high = end - 1;
-  while (low < high) {
-    const int middle = low + (high - low) / 2;
-    const double2 a = unit * hull_points[middle], b = unit * hull_points[middle + 1];
-    if (nearness_sign(a, b, q, bound) > 0) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
-// found: of find_triangles, by place; the answer is by query.
-kernel void nearest_points(int n, int sets, global const int* restrict query_offsets,
-                           global const mesh_set* restrict records, global const int* restrict order,
-                           global const double2* restrict placed, double bound, double unit,
-                           global const double2* restrict points, global const int* restrict source,
+// found: of find_triangles, by place; the answer is by query. In sets of long_from triangles or more, most_neighbors
+// are looked at before the search goes through levels. If there are no levels, `levels` is 0, unanswered[0] is set to
+// 1, and the query has no answer. long_sets: of a set with levels, which of those it is. sample_...: the locator of
+// samples.
+kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, int levels, int sets_with_levels,
+                           global const int* restrict query_offsets, global const mesh_set* restrict records,
+                           global const int* restrict order, global const double2* restrict placed, double bound,
+                           double unit, global const double2* restrict points, global const int* restrict source,
                            global const int* restrict clearances, global const face* restrict faces,
                            global const double2* restrict hull_points, global const int* restrict hull,
-                           global const int* restrict found, global int* restrict nearest) {
+                           global const int* restrict starts, global const fan_part* restrict fans,
+                           global const int* restrict first_vertices, global const vertex_box* restrict boxes,
+                           global const int* restrict long_sets, global const mesh_set* restrict sample_records,
+                           global const double2* restrict sample_points, global const int* restrict sample_source,
+                           global const int* restrict sample_clearances, global const face* restrict sample_faces,
+                           global const double2* restrict sample_hull_points, global const int* restrict sample_hull,
+                           global const int* restrict sample_starts, global const fan_part* restrict sample_fans,
+                           global const int* restrict below, global const int* restrict found,
+                           global int* restrict nearest, global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
     const double2 q = placed[i];
-    const mesh_set set = records[sets > 1 ? segment_of(i, sets, query_offsets) : 0];
+    const int s = sets > 1 ? segment_of(i, sets, query_offsets) : 0;
+    const mesh_set set = records[s];
     int answer;
     if (set.triangles == 0) {
       const int at = nearest_on_line(q, set.hull, set.hull_end, bound, unit, hull_points);
       answer = at < 0 ? -1 : hull[at];
     } else {
       const int t = found[i];
-      answer = source[nearest_vertex(q, t < 0 ? ~t : t, bound, unit, points, faces, clearances)];
+      int vertex = GIVEN_UP;
+      if (t != GIVEN_UP) {
+        const int most = set.triangles >= long_from ? most_neighbors : INT_MAX;
+        vertex = nearest_vertex(q, t < 0 ? ~t : t, most, bound, unit, points, faces, clearances);
+      }
+      if (vertex == GIVEN_UP && levels == 0) {
+        atomic_max(unanswered, 1);
+      } else if (vertex == GIVEN_UP) {
+        const star_mesh mesh = {points, faces, clearances, starts, fans};
+        const level_meshes on = {
+            levels,         sets_with_levels,
+            sample_records, sample_source,
+            below,          sample_hull_points,
+            sample_hull,    {sample_points, sample_faces, sample_clearances, sample_starts, sample_fans}};
+        uint looked = 0;
+        vertex = nearest_by_levels(q, long_sets[s], first_vertices[s], first_vertices[s + 1], first_vertices[sets],
+                                   bound, unit, mesh, boxes, on, &looked);
+      }
+      answer = vertex == GIVEN_UP ? -1 : source[vertex];
     }
     nearest[order[i]] = answer;
   }

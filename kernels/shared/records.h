@@ -95,6 +95,19 @@ typedef struct {
 } mesh_set;
 ASSERT_SIZE(mesh_set, 24);
 
+// Of a triangle in the fan of a cocircular polygon, unless it is the last one, counter-clockwise about the fan's first
+// vertex: that vertex, and the last triangle. Of others: -1 and the triangle itself.
+typedef struct {
+  int vertex, last;
+} fan_part;
+ASSERT_SIZE(fan_part, 8);
+
+// A box around vertices, its sides parallel to the axes.
+typedef struct {
+  double2 low, high;
+} vertex_box;
+ASSERT_SIZE(vertex_box, 32);
+
 END_SHARED
 
 #endif

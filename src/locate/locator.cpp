@@ -21,10 +21,6 @@ constexpr int kLeastDepth = 4;
 // Each leaf holds one sample.
 constexpr std::size_t kSamplesPerLeaf = 1;
 
-std::vector<cl_int> integers(const std::vector<std::size_t>& offsets) {
-  return {offsets.begin(), offsets.end()};
-}
-
 void check_sizes(const DeviceMesh& mesh) {
   for (std::size_t s = 0; s < mesh.sets(); ++s) {
     const std::size_t points = mesh.point_offsets[s + 1] - mesh.point_offsets[s];
@@ -141,6 +137,9 @@ void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::sc
                                                   .points = locator.points,
                                                   .source = locator.source,
                                                   .first_triangle = locator.first_triangle});
+  runtime.map(mesh.sets() + 1, kernels::find_first_vertices{.triangle_offsets = offsets.triangles,
+                                                            .firsts = counts,
+                                                            .first_vertices = locator.first_vertices});
   runtime.map(triangles, kernels::renumber_faces{.numbers = numbers, .faces = locator.faces});
   runtime.fill(locator.clearances, n, std::numeric_limits<cl_int>::max());
   runtime.map(triangles,
@@ -172,6 +171,12 @@ struct Pass {
   Buffer<cl_int> order;          // per place, the number of its query
   Buffer<cl_double2> placed;     // the scaled queries
 };
+
+// How far queries walk in large sets before they give up.
+struct WalkLimits {
+  std::size_t long_from, most;  // in sets with so many triangles; so many steps
+};
+constexpr WalkLimits kNoLimits{std::numeric_limits<cl_int>::max(), 0};
 
 // Sorts queries by leaves, so that queries near each other in the plane are near each other in memory.
 void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries,
@@ -223,11 +228,14 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
 
 // Finds the triangle of each query. is_answer: see the kernel find_triangles.
 void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& pass, bool is_answer,
-                    const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found) {
+                    WalkLimits limits, const Buffer<cl_double>& queries, std::size_t m,
+                    const Buffer<cl_int>& found) {
   runtime.chunks(m, runtime.sizes().chunk(m),
                  kernels::find_triangles{.sets = pass.sets,
                                          .are_placed = pass.are_placed,
                                          .is_answer = is_answer,
+                                         .long_from = limits.long_from,
+                                         .most_steps = limits.most,
                                          .query_offsets = pass.query_offsets,
                                          .records = locator.records,
                                          .nodes = locator.nodes,
@@ -245,9 +253,9 @@ void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& 
                                          .found = found});
 }
 
-}  // namespace
-
-Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
+// vertices_per_leaf: of the trees.
+Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
+                     std::size_t vertices_per_leaf) {
   Arena& scratch = runtime.arena();
   Arena::Scope scope(scratch);
   const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
@@ -264,6 +272,11 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh)
   locator.faces = own.allocate<kernel::face>(triangles);
   locator.hull_points = own.allocate<cl_double2>(mesh.hull_offsets.back());
   locator.hull = own.allocate<cl_int>(mesh.hull_offsets.back());
+  locator.first_vertices = own.allocate<cl_int>(mesh.sets() + 1);
+  for (std::size_t s = 0; s < mesh.sets(); ++s) {
+    locator.most_triangles =
+        std::max(locator.most_triangles, mesh.triangle_offsets[s + 1] - mesh.triangle_offsets[s]);
+  }
 
   Faults faults;
   const host::Runtime::Settled settled(runtime);
@@ -280,27 +293,26 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh)
                                                 .representatives = mesh.representatives,
                                                 .bad = device_faults});
   std::vector<points::SetToCut> cut;
-  locator.records = runtime.upload(own, make_records(mesh, tuning_of(runtime).vertices_per_leaf, cut));
+  locator.records = runtime.upload(own, make_records(mesh, vertices_per_leaf, cut));
   make_trees(runtime, own, mesh, cut, incident, locator);
   runtime.read(device_faults, 0, 3, &faults.triangle);
   throw_faults(faults);
   return locator;
 }
 
-void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
-  Arena::Scope scope(runtime.arena());
-  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
-  find_triangles(runtime, locator, pass, true, queries, m, triangles);
-}
-
-void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points) {
-  Arena::Scope scope(runtime.arena());
-  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
-  const auto found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, false, queries, m, found);
+// Finds the nearest points by walks from the triangles and by the levels, if there are any; otherwise
+// unanswered[0] says whether levels are needed.
+void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& pass, WalkLimits limits,
+                    std::size_t m, const Buffer<cl_int>& found, const Buffer<cl_int>& points,
+                    const Buffer<cl_int>& unanswered) {
+  const Levels& levels = locator.levels;
+  static const Locator kNone;
+  const Locator& samples = locator.samples ? *locator.samples : kNone;
   runtime.map(m, kernels::nearest_points{.sets = pass.sets,
+                                         .long_from = limits.long_from,
+                                         .most_neighbors = limits.most,
+                                         .levels = levels.count,
+                                         .sets_with_levels = levels.sets,
                                          .query_offsets = pass.query_offsets,
                                          .records = locator.records,
                                          .order = pass.order,
@@ -313,8 +325,57 @@ void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
                                          .faces = locator.faces,
                                          .hull_points = locator.hull_points,
                                          .hull = locator.hull,
+                                         .starts = levels.stars.starts,
+                                         .fans = levels.stars.fans,
+                                         .first_vertices = locator.first_vertices,
+                                         .boxes = levels.boxes,
+                                         .long_sets = levels.long_sets,
+                                         .sample_records = samples.records,
+                                         .sample_points = samples.points,
+                                         .sample_source = samples.source,
+                                         .sample_clearances = samples.clearances,
+                                         .sample_faces = samples.faces,
+                                         .sample_hull_points = samples.hull_points,
+                                         .sample_hull = samples.hull,
+                                         .sample_starts = levels.sample_stars.starts,
+                                         .sample_fans = levels.sample_stars.fans,
+                                         .below = levels.below,
                                          .found = found,
-                                         .nearest = points});
+                                         .nearest = points,
+                                         .unanswered = unanswered});
+}
+
+}  // namespace
+
+Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
+  return make_locator(runtime, own, mesh, tuning_of(runtime).vertices_per_leaf);
+}
+
+Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
+  return make_locator(runtime, own, mesh, std::numeric_limits<std::size_t>::max());
+}
+
+void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
+  Arena::Scope scope(runtime.arena());
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  find_triangles(runtime, locator, pass, true, kNoLimits, queries, m, triangles);
+}
+
+void nearest(host::Runtime& runtime, Arena& own, Locator& locator, const Buffer<cl_double>& queries,
+             std::size_t m, const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points) {
+  Arena::Scope scope(runtime.arena());
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  const auto found = runtime.arena().allocate<cl_int>(m), unanswered = runtime.arena().allocate<cl_int>(1);
+  const Tuning& tuning = tuning_of(runtime);
+  const WalkLimits limits{tuning.levels_from, tuning.walk_most};
+  find_triangles(runtime, locator, pass, false, limits, queries, m, found);
+  runtime.fill(unanswered, 1, cl_int{0});
+  nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
+  if (m == 0 || locator.most_triangles < limits.long_from || locator.levels.count > 0) return;
+  if (runtime.read_one(unanswered, 0) == 0) return;
+  make_levels(runtime, own, locator);
+  nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
 }
 
 void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
@@ -323,7 +384,7 @@ void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl
   Arena::Scope scope(runtime.arena());
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, false, queries, m, found);
+  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
   runtime.map_in_small_groups(m, kernels::interpolate_queries{.order = pass.order,
                                                               .placed = pass.placed,
                                                               .bound = pass.scaling.orient_bound,

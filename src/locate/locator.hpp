@@ -1,6 +1,9 @@
 // Answers queries on a triangulation: the containing triangle, the nearest point, an interpolated value.
 #pragma once
 
+#include <memory>
+
+#include "locate/levels.hpp"
 #include "locate/query_range.hpp"
 #include "points/cut_tree.hpp"
 #include "points/device_mesh.hpp"
@@ -23,12 +26,20 @@ struct Locator {
   Buffer<kernel::mesh_set> records{};  ///< one per set
   Buffer<kernel::cut_node> nodes{};    ///< the nodes of all trees
   Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
+  Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
+  std::size_t most_triangles = 0;      ///< of one set
+  /// For the search of nearest points. There are none until a query needs them.
+  Levels levels{};
+  std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
 };
 
 /// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
 /// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
 /// for triangulation. Waits about 6 times. O(n log n).
 Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+
+/// The same without trees.
+Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
 
 // Queries are m points, x0 y0 x1 y1 ..., with the alignment of doubles; set s has queries [query_offsets[s],
 // query_offsets[s + 1]). Each call waits 2 times to check that all queries are finite, and neither too fine
@@ -42,11 +53,11 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles);
 
 /// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
-/// of its representative; -1 if the set is empty. A query takes some steps per neighbour of its nearest
-/// point, unless its distance to that point is less than half the distance of the point to its nearest
-/// neighbour.
-void nearest(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
+/// of its representative; -1 if the set is empty. O(log n) steps per query are expected, whatever the points.
+/// If a query is far to walk to, makes the locator's levels, whose buffers come from `own`; until there are
+/// levels, waits once more.
+void nearest(host::Runtime& runtime, Arena& own, Locator& locator, const Buffer<cl_double>& queries,
+             std::size_t m, const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
 
 /// Computes for each query the linear interpolation of the three values of its triangle; NaN outside of the
 /// hull. values: one per point.

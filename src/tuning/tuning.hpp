@@ -28,6 +28,12 @@ struct Tuning : host::Sizes {
   std::size_t sorted_queries_least = 1;
   /// The smallest number of vertices per leaf of a locator's tree.
   std::size_t vertices_per_leaf = 1;
+  /// Sets with this many triangles have levels for the search for nearest points, if a query needs them.
+  std::size_t levels_from = 1;
+  /// How many vertices a vertex of the next level stands for; at least 2.
+  std::size_t level_ratio = 2;
+  /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels.
+  std::size_t walk_most = 1;
 
   /// Sets of at most a block's points each, and of at most this many together, are triangulated on the
   /// calling thread if no device is named; 0: none.

@@ -18,7 +18,9 @@
 #include <utility>
 #include <vector>
 
+#include "locate/levels.hpp"
 #include "locate/locator.hpp"
+#include "shared/nearest_search.h"
 #include "tests/locate/support.hpp"
 #include "tuning/tuning.hpp"
 
@@ -34,13 +36,13 @@ Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& valu
   Arena own(runtime.memory());
   if (runtime.sizes().separate_buffers) own.separate_buffers();
   Arena::Scope scope(runtime.arena());
-  const Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+  Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
   const std::size_t m = input.query_count();
   const auto queries = upload(runtime, input.queries);
   const auto triangles = guarded<cl_int>(runtime, m), points = guarded<cl_int>(runtime, m);
   const auto results = guarded<cl_double>(runtime, m);
   locate(runtime, locator, queries, m, input.query_offsets, triangles);
-  nearest(runtime, locator, queries, m, input.query_offsets, points);
+  nearest(runtime, own, locator, queries, m, input.query_offsets, points);
   interpolate(runtime, locator, upload(runtime, values), queries, m, input.query_offsets, results);
   return {download(runtime, triangles, m), download(runtime, points, m), download(runtime, results, m)};
 }
@@ -207,6 +209,169 @@ TEST(Locate, EveryFixture) {
 TEST(Locate, ManySets) {
   const Case input = nested_case(100, 12);
   check_answers(input);
+}
+
+/// Queries of a circle around (0, 0) with this radius: at its centre, very near it, inside, on the line
+/// through the leftmost point, and far outside.
+Coordinates circle_queries(double radius, std::size_t m, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates queries{0, 0, -radius, 0, -radius / 3, 0, -3 * radius, 0};
+  for (const double reach : {0x1p-50, 0x1p-20, 0.7, 1.4, 1e6}) {
+    for (std::size_t i = 0; i < 2 * m; ++i) queries.push_back(radius * reach * (2 * random.unit() - 1));
+  }
+  return queries;
+}
+
+double radius_of(const Coordinates& points) { return points.empty() ? 1 : std::hypot(points[0], points[1]); }
+
+/// Sets in which some vertices have very many neighbours, or walks lead past very many points, with queries
+/// for which that matters. `n` points each, or a few.
+Case case_of_hubs(std::size_t n, std::size_t m) {
+  Case made;
+  const auto add = [&](const Coordinates& points) {
+    Coordinates queries = make_queries(points, m, made.sets());
+    const Coordinates more = circle_queries(radius_of(points), m, made.sets());
+    queries.insert(queries.end(), more.begin(), more.end());
+    made.add(points, queries);
+  };
+  add(make_fixture("integer-circle", n, 1));
+  add({});
+  add({3, 4, 0, 0});
+  add(make_fixture("circle", n, 2));
+  add(make_fixture("star", n, 3));
+  add(make_fixture("integer-star", n / 8, 4));
+  Coordinates doubled = make_fixture("integer-circle", n / 2, 5);
+  doubled.insert(doubled.end(), doubled.begin(), doubled.end());
+  add(doubled);
+  add(make_fixture("apex", n, 6));
+  add(make_fixture("collinear", n, 7));
+  Coordinates ellipse = make_fixture("circle", n, 8);
+  for (std::size_t i = 1; i < ellipse.size(); i += 2) ellipse[i] /= 2;
+  add(ellipse);
+  // The centre's neighbour is near, so that it is not clear by far.
+  Coordinates near_centre = make_fixture("star", n, 9);
+  near_centre.insert(near_centre.end(), {0x1p-10, 0});
+  add(near_centre);
+  made.triangulate();
+  return made;
+}
+
+TEST(SmallLocate, Hubs) {
+  const Case input = case_of_hubs(96, 2);
+  check_answers(input);
+}
+
+TEST(Locate, Hubs) {
+  const Case input = case_of_hubs(1200, 8);
+  check_answers(input);
+}
+
+TEST(Locate, TheOrderOfQueriesOfHubsDoesNotShow) {
+  const Case input = case_of_hubs(3000, 300);
+  check_orders(input);
+}
+
+TEST(SmallLevels, SampleSizes) {
+  const SampleSizes sizes = sample_sizes({700, 5, 90}, 4);
+  EXPECT_EQ(sizes.levels, 3u);
+  EXPECT_EQ(sizes.sets, 3u);
+  EXPECT_EQ(sizes.offsets, (Offsets{0, 175, 176, 198, 241, 241, 246, 256, 256, 257}));
+  EXPECT_EQ(sample_sizes({3}, 4).levels, 0u);
+  EXPECT_EQ(sample_sizes({4}, 4).levels, 1u);
+  EXPECT_EQ(sample_sizes({}, 4).levels, 0u);
+}
+
+template <typename T>
+std::vector<T> all_of(Runtime& runtime, const host::Buffer<T>& buffer) {
+  std::vector<T> values(buffer.size());
+  runtime.read(buffer, 0, values.size(), values.data());
+  return values;
+}
+
+/// A locator's arrays that the search through levels reads, in the test's memory.
+struct LocatorOnHost {
+  LocatorOnHost(Runtime& runtime, const Locator& locator)
+      : points(all_of(runtime, locator.points)),
+        hull_points(all_of(runtime, locator.hull_points)),
+        faces(all_of(runtime, locator.faces)),
+        clearances(all_of(runtime, locator.clearances)),
+        source(all_of(runtime, locator.source)),
+        hull(all_of(runtime, locator.hull)),
+        records(all_of(runtime, locator.records)) {}
+
+  kernel::star_mesh with(const std::vector<cl_int>& starts, const std::vector<kernel::fan_part>& fans) const {
+    return {reinterpret_cast<const kernel::double2*>(points.data()), faces.data(), clearances.data(),
+            starts.data(), fans.data()};
+  }
+
+  std::vector<cl_double2> points, hull_points;
+  std::vector<kernel::face> faces;
+  std::vector<cl_int> clearances, source, hull;
+  std::vector<kernel::mesh_set> records;
+};
+
+/// What the search through levels looks at on average, for queries of one set. Its answers must be those of
+/// nearest().
+double looked_at(const Case& input) {
+  Runtime& runtime = Runtimes::get("own");
+  Arena own(runtime.memory());
+  Arena::Scope scope(runtime.arena());
+  Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+  const std::size_t m = input.query_count();
+  const auto answers = guarded<cl_int>(runtime, m);
+  nearest(runtime, own, locator, upload(runtime, input.queries), m, input.query_offsets, answers);
+  if (locator.levels.count == 0) make_levels(runtime, own, locator);
+  const std::vector<cl_int> expected = download(runtime, answers, m);
+  const Levels& levels = locator.levels;
+  const LocatorOnHost mesh(runtime, locator), samples(runtime, *locator.samples);
+  const auto starts = all_of(runtime, levels.stars.starts);
+  const auto sample_starts = all_of(runtime, levels.sample_stars.starts);
+  const auto fans = all_of(runtime, levels.stars.fans);
+  const auto sample_fans = all_of(runtime, levels.sample_stars.fans);
+  const auto below = all_of(runtime, levels.below);
+  const auto boxes = all_of(runtime, levels.boxes);
+  const kernel::level_meshes on{static_cast<int>(levels.count),
+                                static_cast<int>(levels.sets),
+                                samples.records.data(),
+                                samples.source.data(),
+                                below.data(),
+                                reinterpret_cast<const kernel::double2*>(samples.hull_points.data()),
+                                samples.hull.data(),
+                                samples.with(sample_starts, sample_fans)};
+  const int vertices = static_cast<int>(starts.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < m; ++i) {
+    const double* const q = input.query(i);
+    kernel::uint looked = 0;
+    const int found = kernel::nearest_by_levels({q[0], q[1]}, 0, 0, vertices, vertices, NEARNESS_BOUND, 1,
+                                                mesh.with(starts, fans), boxes.data(), on, &looked);
+    EXPECT_EQ(mesh.source[static_cast<std::size_t>(found)], expected[i]) << i;
+    sum += looked;
+  }
+  return sum / static_cast<double>(m);
+}
+
+/// Of 16 times as many points, a query looks at some more, on one more level: not at 16 times as many.
+TEST(Levels, StepsGrowByTheLogarithm) {
+  for (const char* const name : {"integer-circle", "circle", "star", "apex", "uniform"}) {
+    for (const double reach : {0.0, 0x1p-30, 0.7, 1e6}) {
+      SCOPED_TRACE(fmt::format("{}, {}", name, reach));
+      double looked[2];
+      for (int k = 0; k < 2; ++k) {
+        const Coordinates points = make_fixture(name, k == 0 ? 2250 : 36000, 3);
+        FixtureRandom random(4);
+        Coordinates queries;
+        const double radius = radius_of(points);
+        for (int i = 0; i < 600; ++i) queries.push_back(reach * radius * (2 * random.unit() - 1));
+        Case input;
+        input.add(points, queries);
+        input.triangulate();
+        looked[k] = looked_at(input);
+      }
+      EXPECT_LT(looked[0], 200);
+      EXPECT_LT(looked[1], looked[0] + 100);
+    }
+  }
 }
 
 /// Three points, seen from everywhere.
@@ -401,11 +566,13 @@ TEST(Kernels, AllAreLaunched) {
   const Case input = case_of_trees(270, 500);
   ASSERT_GT(input.query_count(), tuning_for(host::find_device(""))->sorted_queries_least);
   ask(runtime, input, values_for(input.size()));
+  const Case hubs = case_of_hubs(3000, 8);
+  ask(runtime, hubs, values_for(hubs.size()));
   dual(runtime, input);
   for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
   runtime.set_profiling(false);
   std::size_t kernels = 0;
-  for (const char* const file : {"locate/locate", "voronoi/voronoi"}) {
+  for (const char* const file : {"locate/locate", "locate/levels", "voronoi/voronoi"}) {
     const std::string source = host::kernel_source(file);
     const std::regex pattern("\nkernel void (\\w+)\\(");
     for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
@@ -413,7 +580,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 17u);
+  EXPECT_EQ(kernels, 26u);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// The levels of a locator, for queries whose nearest point is far to walk to
+// (kernels/shared/nearest_search.h).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "points/device_mesh.hpp"
+#include "shared/records.h"
+
+namespace flaunay::locate {
+
+using namespace points;
+
+struct Locator;
+
+/// What begins the stars of a triangulation's vertices, and the fans in it.
+struct Stars {
+  Buffer<cl_int> starts{};
+  Buffer<kernel::fan_part> fans{};
+};
+
+/// Triangulations of samples, from the largest on, of each set that is large enough; the mesh's own stars; a
+/// tree of boxes around its vertices. About 20 bytes per triangle of the mesh.
+struct Levels {
+  std::size_t count = 0, sets = 0;  ///< levels, and sets that have them
+  Buffer<cl_int> long_sets{};       ///< per set its number among those, or -1
+  Buffer<cl_int> below{};           ///< per vertex of a sample, by its index there, the vertex below
+  Stars stars{}, sample_stars{};
+  Buffer<kernel::vertex_box> boxes{};
+};
+
+/// The same numbers, as kernels have them.
+std::vector<cl_int> integers(const std::vector<std::size_t>& values);
+
+/// The sizes of the samples: those of set s on level l are [offsets[l * sets + s], offsets[l * sets + s +
+/// 1]).
+struct SampleSizes {
+  std::size_t levels = 0, sets = 0;
+  std::vector<std::size_t> offsets{0};
+};
+
+/// Chooses the levels of sets with these numbers of vertices: each is `ratio` times smaller than the one
+/// below, and the last one has a few vertices of the largest set.
+SampleSizes sample_sizes(const std::vector<std::size_t>& vertices, std::size_t ratio);
+
+/// Makes the levels of a locator's mesh, and its samples. Their buffers come from `own`. Sets with fewer
+/// triangles than `levels_from` have none. Waits some 20 times. O(n log n), a small part of a triangulation.
+void make_levels(host::Runtime& runtime, Arena& own, Locator& locator);
+
+}  // namespace flaunay::locate
