@@ -271,11 +271,17 @@ kernel void find_query_leaves(int n, int chunk, int sets, global const int* rest
   }
 }
 
-// order: the query at a place.
-kernel void place_queries(int n, global const int* restrict order, global const double* restrict queries, scaling scale,
-                          global double2* restrict placed) {
+// The set of the query at a place; offsets are not looked at if there is one set. Sorting leaves sets as they are.
+static inline int set_of(int place, int sets, global const int* query_offsets) {
+  return sets > 1 ? segment_of(place, sets, query_offsets) : 0;
+}
+
+// order: the query at a place. frames: by set.
+kernel void place_queries(int n, int sets, global const int* restrict query_offsets,
+                          global const query_frame* restrict frames, global const int* restrict order,
+                          global const double* restrict queries, global double2* restrict placed) {
   const int i = get_global_id(0);
-  if (i < n) placed[i] = scaled_point(order[i], queries, scale);
+  if (i < n) placed[i] = scaled_point(order[i], queries, frames[set_of(i, sets, query_offsets)].scale);
 }
 
 // are_placed: whether there are keys, in their order, and placed queries; else queries go down the trees here, and
@@ -286,10 +292,11 @@ kernel void place_queries(int n, global const int* restrict order, global const 
 kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer, int long_from, int most_steps,
                            global const int* restrict query_offsets, global const mesh_set* restrict records,
                            global const cut_node* restrict nodes, global const int* restrict starts,
-                           global const double* restrict queries, scaling scale, global const ulong* restrict keys,
-                           global int* restrict order, global double2* restrict placed, double bound, double unit,
-                           global const double2* restrict points, global const face* restrict faces,
-                           global const int* restrict first_triangle, global int* restrict found) {
+                           global const query_frame* restrict frames, global const double* restrict queries,
+                           global const ulong* restrict keys, global int* restrict order,
+                           global double2* restrict placed, double bound, global const double2* restrict points,
+                           global const face* restrict faces, global const int* restrict first_triangle,
+                           global int* restrict found) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -299,6 +306,7 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
       while (sets > 1 && query_offsets[s + 1] <= begin) ++s;
       const int end = min(begin + DESCENTS, sets > 1 ? min(last, query_offsets[s + 1]) : last);
       const mesh_set set = records[s];
+      const query_frame frame = frames[s];
       int start[DESCENTS];
       if (are_placed) {
         for (int i = begin; i < end; ++i) start[i - begin] = (int)keys[i] - set.nodes - s;
@@ -306,7 +314,7 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
         find_leaves(begin, end, queries, nodes + set.nodes, set.depth, start);
         for (int i = begin; i < end; ++i) {
           order[i] = i;
-          placed[i] = scaled_point(i, queries, scale);
+          placed[i] = scaled_point(i, queries, frame.scale);
         }
       }
       for (int j = 0; j < end - begin; ++j) {
@@ -318,7 +326,7 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
         int at = -1;
         if (set.triangles > 0) {
           const int is_long = set.triangles >= long_from;
-          at = walk(placed[i], start[i - begin], is_long ? most_steps : set.triangles, bound, unit, points, faces,
+          at = walk(placed[i], start[i - begin], is_long ? most_steps : set.triangles, bound, frame.unit, points, faces,
                     first_triangle);
           if (at == GIVEN_UP && !is_long) at = ~start[i - begin];
         }
@@ -386,24 +394,26 @@ static inline int nearest_vertex(double2 q, int t, int most, double bound, doubl
 // samples.
 kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, int levels, int sets_with_levels,
                            global const int* restrict query_offsets, global const mesh_set* restrict records,
-                           global const int* restrict order, global const double2* restrict placed, double bound,
-                           double unit, global const double2* restrict points, global const int* restrict source,
-                           global const int* restrict clearances, global const face* restrict faces,
-                           global const double2* restrict hull_points, global const int* restrict hull,
-                           global const int* restrict starts, global const fan_part* restrict fans,
-                           global const int* restrict first_vertices, global const vertex_box* restrict boxes,
-                           global const int* restrict long_sets, global const mesh_set* restrict sample_records,
-                           global const double2* restrict sample_points, global const int* restrict sample_source,
-                           global const int* restrict sample_clearances, global const face* restrict sample_faces,
-                           global const double2* restrict sample_hull_points, global const int* restrict sample_hull,
-                           global const int* restrict sample_starts, global const fan_part* restrict sample_fans,
-                           global const int* restrict below, global const int* restrict found,
-                           global int* restrict nearest, global volatile int* restrict unanswered) {
+                           global const query_frame* restrict frames, global const int* restrict order,
+                           global const double2* restrict placed, double bound, global const double2* restrict points,
+                           global const int* restrict source, global const int* restrict clearances,
+                           global const face* restrict faces, global const double2* restrict hull_points,
+                           global const int* restrict hull, global const int* restrict starts,
+                           global const fan_part* restrict fans, global const int* restrict first_vertices,
+                           global const vertex_box* restrict boxes, global const int* restrict long_sets,
+                           global const mesh_set* restrict sample_records, global const double2* restrict sample_points,
+                           global const int* restrict sample_source, global const int* restrict sample_clearances,
+                           global const face* restrict sample_faces, global const double2* restrict sample_hull_points,
+                           global const int* restrict sample_hull, global const int* restrict sample_starts,
+                           global const fan_part* restrict sample_fans, global const int* restrict below,
+                           global const int* restrict found, global int* restrict nearest,
+                           global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
     const double2 q = placed[i];
-    const int s = sets > 1 ? segment_of(i, sets, query_offsets) : 0;
+    const int s = set_of(i, sets, query_offsets);
     const mesh_set set = records[s];
+    const double unit = frames[s].unit;
     int answer;
     if (set.triangles == 0) {
       const int at = nearest_on_line(q, set.hull, set.hull_end, bound, unit, hull_points);
@@ -462,17 +472,19 @@ static inline double area_exact(double2 a, double2 b, double2 q) {
 #define SLENDER 4096.0
 
 // Weights are areas by the whole. Where q lies on an edge, the opposite corner has none, not even that of a NaN.
-kernel void interpolate_queries(int n, global const int* restrict order, global const double2* restrict placed,
-                                double bound, double unit, global const double2* restrict points,
-                                global const int* restrict source, global const face* restrict faces,
-                                global const int* restrict found, global const double* restrict values,
-                                global double* restrict results) {
+kernel void interpolate_queries(int n, int sets, global const int* restrict query_offsets,
+                                global const query_frame* restrict frames, global const int* restrict order,
+                                global const double2* restrict placed, double bound,
+                                global const double2* restrict points, global const int* restrict source,
+                                global const face* restrict faces, global const int* restrict found,
+                                global const double* restrict values, global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
     const double2 q = placed[i];
     double result = as_double(0x7ff8000000000000UL);
     if (found[i] >= 0) {
       const face f = faces[found[i]];
+      const double unit = frames[set_of(i, sets, query_offsets)].unit;
       double2 p[3];
       double weight[3];
       double whole = 0.0, magnitude = 0.0;

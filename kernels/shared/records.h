@@ -88,6 +88,13 @@ typedef struct {
 } face;
 ASSERT_SIZE(face, 24);
 
+// How a set's queries are scaled, and how much more its points are, which are scaled already.
+typedef struct {
+  scaling scale;
+  double unit;
+} query_frame;
+ASSERT_SIZE(query_frame, 32);
+
 // A set of a locator: where its tree's nodes begin, the tree's depth, where its leaves' starts begin, its number of
 // triangles, and where its hull begins and ends.
 typedef struct {

@@ -21,10 +21,10 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
   runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
 
-  const auto [input, scaling] = points::make_uniform(runtime, given, offsets);
-  const auto pairs = input.as<cl_double2>();
-  work.bounds = scaling.bounds;
-  const kernel::scaling scale = scaling.powers();
+  const points::UniformPoints input = points::make_uniform(runtime, given, offsets);
+  const auto pairs = input.coordinates.as<cl_double2>();
+  work.bounds = input.scaling.bounds;
+  const kernel::scaling scale = input.scaling.powers();
 
   // Sorts by y and assigns dense ranks, then sorts stably by x, and by set.
   const auto keys = scratch.allocate<cl_ulong>(n);

@@ -108,7 +108,7 @@ struct Offsets {
 
 // Computes the faces, and the vertices in the order of their first triangles. incident: a triangle per point,
 // for `starts`.
-void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::scaling& scale,
+void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoints& input,
                 const Offsets& offsets, const Buffer<cl_int>& faults, const Buffer<cl_int>& incident,
                 Locator& locator) {
   const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
@@ -131,8 +131,8 @@ void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::sc
   runtime.map(triangles, kernels::number_vertices{.faces = locator.faces,
                                                   .incident = incident,
                                                   .firsts = counts,
-                                                  .input = mesh.coordinates,
-                                                  .scale = scale,
+                                                  .input = input.coordinates,
+                                                  .scale = input.scaling.powers(),
                                                   .numbers = numbers,
                                                   .points = locator.points,
                                                   .source = locator.source,
@@ -147,14 +147,14 @@ void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::sc
                   .faces = locator.faces, .points = locator.points, .clearances = locator.clearances});
 }
 
-void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::scaling& scale,
+void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoints& input,
                const Offsets& offsets, const Buffer<cl_int>& faults, Locator& locator) {
   runtime.map(mesh.hull_offsets.back(), kernels::place_hull{.sets = mesh.sets(),
                                                             .offsets = offsets.hull,
                                                             .point_offsets = offsets.points,
                                                             .hull = mesh.hull,
-                                                            .input = mesh.coordinates,
-                                                            .scale = scale,
+                                                            .input = input.coordinates,
+                                                            .scale = input.scaling.powers(),
                                                             .points = locator.hull_points,
                                                             .source = locator.hull,
                                                             .bad = faults});
@@ -162,9 +162,9 @@ void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const kernel::sca
 
 // The arguments that all kernels on one call's queries share.
 struct Pass {
-  QueryScaling scaling;
-  kernel::scaling scale;
+  double orient_bound, nearness_bound;
   cl_int sets;
+  Buffer<kernel::query_frame> frames;
   Buffer<cl_int> query_offsets;  // not read if there is one set
   bool are_placed;               // whether `placed` is filled; otherwise the first kernel does it
   Buffer<cl_ulong> keys;         // the leaves of placed queries
@@ -193,8 +193,12 @@ void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<c
                                             .order = pass.order});
   host::sort_by_key(runtime, pass.keys, pass.order, m);
   pass.placed = runtime.arena().allocate<cl_double2>(m);
-  runtime.map(m, kernels::place_queries{
-                     .order = pass.order, .queries = queries, .scale = pass.scale, .placed = pass.placed});
+  runtime.map(m, kernels::place_queries{.sets = pass.sets,
+                                        .query_offsets = pass.query_offsets,
+                                        .frames = pass.frames,
+                                        .order = pass.order,
+                                        .queries = queries,
+                                        .placed = pass.placed});
 }
 
 Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
@@ -207,8 +211,10 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
                     query_offsets.size() - 1, query_offsets.back(), m, locator.sets));
   }
   Pass pass{};
-  pass.scaling = query_scaling(runtime, locator.magnitudes, locator.shift, queries, m);
-  pass.scale = pass.scaling.powers();
+  QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets);
+  pass.orient_bound = scaling.orient_bound;
+  pass.nearness_bound = scaling.nearness_bound;
+  pass.frames = runtime.upload(runtime.arena(), std::move(scaling.frames));
   pass.sets = static_cast<cl_int>(locator.sets);
   pass.query_offsets = runtime.arena().allocate<cl_int>(locator.sets + 1);
   if (locator.sets > 1) {
@@ -240,13 +246,12 @@ void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& 
                                          .records = locator.records,
                                          .nodes = locator.nodes,
                                          .starts = locator.starts,
+                                         .frames = pass.frames,
                                          .queries = queries,
-                                         .scale = pass.scale,
                                          .keys = pass.keys,
                                          .order = pass.order,
                                          .placed = pass.placed,
-                                         .bound = pass.scaling.orient_bound,
-                                         .unit = pass.scaling.unit,
+                                         .bound = pass.orient_bound,
                                          .points = locator.points,
                                          .faces = locator.faces,
                                          .first_triangle = locator.first_triangle,
@@ -262,9 +267,8 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
   check_sizes(mesh);
   Locator locator;
   locator.sets = mesh.sets();
-  locator.magnitudes = inspect(runtime, mesh.coordinates, n);
-  const Scaling scaling = make_uniform(runtime, mesh.coordinates, {0, n}).scaling;
-  locator.shift = scaling.shift;
+  const UniformPoints input = make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
+  locator.range = {inspect_sets(runtime, mesh.coordinates, mesh.point_offsets), input.shifts};
   locator.points = own.allocate<cl_double2>(n);
   locator.source = own.allocate<cl_int>(n);
   locator.first_triangle = own.allocate<cl_int>(n);
@@ -286,8 +290,8 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
   const Offsets offsets{runtime.upload(scratch, integers(mesh.point_offsets)),
                         runtime.upload(scratch, integers(mesh.triangle_offsets)),
                         runtime.upload(scratch, integers(mesh.hull_offsets))};
-  fill_faces(runtime, mesh, scaling.powers(), offsets, device_faults, incident, locator);
-  fill_hull(runtime, mesh, scaling.powers(), offsets, device_faults, locator);
+  fill_faces(runtime, mesh, input, offsets, device_faults, incident, locator);
+  fill_hull(runtime, mesh, input, offsets, device_faults, locator);
   runtime.map(n, kernels::check_representatives{.sets = mesh.sets(),
                                                 .point_offsets = offsets.points,
                                                 .representatives = mesh.representatives,
@@ -315,10 +319,10 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
                                          .sets_with_levels = levels.sets,
                                          .query_offsets = pass.query_offsets,
                                          .records = locator.records,
+                                         .frames = pass.frames,
                                          .order = pass.order,
                                          .placed = pass.placed,
-                                         .bound = pass.scaling.nearness_bound,
-                                         .unit = pass.scaling.unit,
+                                         .bound = pass.nearness_bound,
                                          .points = locator.points,
                                          .source = locator.source,
                                          .clearances = locator.clearances,
@@ -385,10 +389,12 @@ void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
-  runtime.map_in_small_groups(m, kernels::interpolate_queries{.order = pass.order,
+  runtime.map_in_small_groups(m, kernels::interpolate_queries{.sets = pass.sets,
+                                                              .query_offsets = pass.query_offsets,
+                                                              .frames = pass.frames,
+                                                              .order = pass.order,
                                                               .placed = pass.placed,
-                                                              .bound = pass.scaling.orient_bound,
-                                                              .unit = pass.scaling.unit,
+                                                              .bound = pass.orient_bound,
                                                               .points = locator.points,
                                                               .source = locator.source,
                                                               .faces = locator.faces,

@@ -14,8 +14,7 @@ namespace flaunay::locate {
 /// The search structure of a triangulation in device memory, about 80 bytes per point.
 struct Locator {
   std::size_t sets = 0;
-  Magnitudes magnitudes{};  ///< the magnitudes of the points before scaling
-  int shift = 0;            ///< points are scaled by 2^shift
+  PointRange range{};
   /// The vertices of triangles, in the order of their first triangles: coordinates, indices of points, first
   /// triangles, and the squared distances to their nearest neighbours (the upper half of a double).
   Buffer<cl_double2> points{};

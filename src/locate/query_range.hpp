@@ -3,31 +3,38 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "geometry/magnitudes.hpp"
 #include "points/device_mesh.hpp"
+#include "shared/records.h"
 
 namespace flaunay::locate {
 
 using namespace geometry;
 using namespace points;
 
-/// Queries are multiplied by 2^shift, and points, which are scaled already, by `unit`.
-struct QueryScaling {
-  int shift = 0;
-  double unit = 1;
-  double orient_bound = 0, nearness_bound = 0;
+/// The points of a locator before scaling: their magnitudes, by set, and the shifts by which they are scaled.
+struct PointRange {
+  std::vector<Magnitudes> by_set;
+  std::vector<int> shifts;  ///< the same for all, or one per set
 
-  kernel::scaling powers() const { return Scaling{shift, {}}.powers(); }
+  int shift(std::size_t set) const { return shifts[shifts.size() > 1 ? set : 0]; }
 };
 
-/// Inspects m queries and chooses their scaling. points: the magnitudes of the points before scaling;
-/// point_shift: their scaling. Waits once. Throws Error(input), which names a query, if one is not finite,
-/// too fine or too far away.
-QueryScaling query_scaling(host::Runtime& runtime, const Magnitudes& points, int point_shift,
-                           const Buffer<cl_double>& queries, std::size_t m);
+/// How queries are scaled.
+struct QueryScaling {
+  std::vector<kernel::query_frame> frames;  ///< by set
+  double orient_bound = 0, nearness_bound = 0;
+};
 
-/// Chooses the scaling for accepted magnitudes of points and queries together.
+/// Inspects queries and chooses their scaling: the same for all sets, or if magnitudes differ too much, one
+/// for each. Waits once, or twice. Throws Error(input), which names a query, if one is not finite, too fine
+/// or too far away.
+QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, const Buffer<cl_double>& queries,
+                           const std::vector<std::size_t>& query_offsets);
+
+/// Chooses the scaling of one set, whose points and queries together have accepted magnitudes.
 QueryScaling query_scaling(const Magnitudes& both, int point_shift);
 
 }  // namespace flaunay::locate

@@ -114,7 +114,7 @@ void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& inpu
   trees.cut(trees.draw(input).points, blocks.device_nodes);
 }
 
-void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, const Buffer<cl_double>& input,
+void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& input,
                     const Buffer<cl_int>& representatives, Blocks& blocks) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
@@ -130,18 +130,18 @@ void move_to_blocks(Workspace& work, const Plan& plan, const Scaling& scaling, c
   if (has_trees) {
     runtime.launch(plan.chunks.size(), group, chunk_count,
                    kernels::count_blocks{.chunks = chunks,
-                                         .input = input,
+                                         .input = input.coordinates,
                                          .nodes = blocks.device_nodes,
                                          .block_of_point = block_of_point,
                                          .cursors = cursors,
                                          .counts = counts});
     host::exclusive_scan(runtime, counts, plan.counts, counts);
   }
-  const kernel::scaling scale = scaling.powers();
+  const kernel::scaling scale = input.scaling.powers();
   runtime.launch(plan.chunks.size(), group, chunk_count,
                  kernels::move_points{.chunks = chunks,
                                       .set_first = chunk_first,
-                                      .input = input,
+                                      .input = input.coordinates,
                                       .scale = scale,
                                       .block_of_point = block_of_point,
                                       .scanned = counts,
@@ -175,16 +175,16 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
   Arena::Scope scope(work.scratch());
   Plan plan;
   const host::Runtime::Settled settled(work.runtime);
-  const auto [uniform, scaling] = make_uniform(work.runtime, input, offsets);
-  work.bounds = scaling.bounds;
+  const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
+  work.bounds = uniform.scaling.bounds;
   plan = make_plan(tuning_of(work.runtime), offsets, blocks);
-  make_trees(work, plan, uniform, blocks);
+  make_trees(work, plan, uniform.coordinates, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
   blocks.device_set_blocks = work.runtime.upload(work.persistent, blocks.set_blocks);
   blocks.device_merges = work.runtime.upload(work.persistent, blocks.merges);
-  move_to_blocks(work, plan, scaling, uniform, representatives, blocks);
+  move_to_blocks(work, plan, uniform, representatives, blocks);
   return blocks;
 }
 

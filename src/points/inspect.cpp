@@ -36,7 +36,7 @@ UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& 
                                      .shifts = runtime.upload(runtime.arena(), scalings.shifts),
                                      .input = points,
                                      .scaled_input = scaled});
-  return {scaled, {0, scalings.bounds}};
+  return {scaled, {0, scalings.bounds}, scalings.shifts};
 }
 
 }  // namespace
@@ -56,6 +56,7 @@ std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<
   host::Arena::Scope scope(runtime.arena());
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   std::vector<Magnitudes> magnitudes(sets);
+  if (sets == 0) return magnitudes;
   static_assert(sizeof(Magnitudes) == kernel::INSPECT_NUMBERS * sizeof(cl_int));
   const auto accounts = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS * sets);
   runtime.write(accounts, 0, kernel::INSPECT_NUMBERS * sets, &magnitudes.data()->largest);
@@ -76,7 +77,8 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
   if (differ && sets > 1) return scale_sets(runtime, points, offsets);
   std::vector<double> coordinates;
   if (differ || magnitudes.bad != kernel::NO_BAD) coordinates = to_host(runtime, points, n);
-  return {points, scaling_for(coordinates.data(), 0, n, magnitudes)};
+  const Scaling scaling = scaling_for(coordinates.data(), 0, n, magnitudes);
+  return {points, scaling, {scaling.shift}};
 }
 
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,

@@ -19,6 +19,9 @@ std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<
 struct UniformPoints {
   host::Buffer<cl_double> coordinates;
   Scaling scaling;
+  /// What the caller's points were multiplied by, together with the scaling: one power for all, or one per
+  /// set.
+  std::vector<int> shifts;
 };
 
 /// Chooses the scaling of sets of points. If the magnitudes of sets differ too much for one, the points are a

@@ -420,6 +420,31 @@ TEST(Locate, Magnitudes) {
   }
 }
 
+/// No scaling is right for all sets; queries of one are finer or farther than its points.
+TEST(Locate, SetsOfEveryScale) {
+  Case input;
+  for (const double factor : {0x1p960, 0x1p-900, 1.0, 0x1p-300}) {
+    for (const char* const name : {"uniform", "grid", "collinear"}) {
+      const Coordinates points = make_fixture(name, 40, 16);
+      input.add(testing::scaled(points, factor), testing::scaled(make_queries(points, 3, 17), factor));
+    }
+  }
+  input.add(make_fixture("kuzmin", 40, 18), {0.5, 0x1p508, -0x1p450, 0.5, 0, 0});
+  input.add(make_fixture("kuzmin", 40, 19), {0.5, 0x1p-450, 0x1p-450, 0, 0.25, 0.5});
+  input.add({}, {0x1p1000, 1});
+  input.triangulate();
+  check_answers(input);
+}
+
+/// One scaling for the points, but not for all queries.
+TEST(Locate, QueriesOfEveryScale) {
+  Case input;
+  input.add(make_fixture("uniform", 40, 20), {0.5, 0x1p508, 0.25, 0.75});
+  input.add(make_fixture("uniform", 40, 21), {0.5, 0x1p-900, 0.25, 0.75});
+  input.triangulate();
+  check_answers(input);
+}
+
 std::string message_of(const std::function<void()>& action, ErrorKind kind) {
   try {
     action();
@@ -445,6 +470,13 @@ TEST(SmallErrors, QueriesThatCannotBeDecided) {
   EXPECT_NE(message({0.5, 0.5, 0, 0, 0.25, 0x1p-1070}).find("query 2 is too fine to be exact: it has y = "),
             std::string::npos);
   EXPECT_NE(message({0.5, 0.5, 0x1p1023, 0x1p-10}).find("query 1 is too far to be exact: it has x = "),
+            std::string::npos);
+  Case sets;
+  sets.add({0, 0, 1, 0, 0, 1}, {0.5, 0.5, 0x1p1000, 1});
+  sets.add({0, 0, 0x1p900, 0, 0, 0x1p900}, {0x1p1000, 1, 0, 0x1p-1070});
+  sets.triangulate();
+  EXPECT_NE(message_of([&] { ask(runtime, sets, values_for(6)); }, ErrorKind::input)
+                .find("query 3 is too fine to be exact: it has y = "),
             std::string::npos);
   EXPECT_NE(message({0.5, 0.5}, ErrorKind::usage, {0, 2}).find("end with 2; there are 1 queries"),
             std::string::npos);

@@ -110,7 +110,7 @@ TEST(SmallInspect, SetsAreScaledOneByOne) {
     const SetsOfManyScales sets(30);
     host::Arena::Scope scope(runtime.arena());
     const std::size_t n = sets.offsets.back();
-    const auto [uniform, scaling] =
+    const auto [uniform, scaling, shifts] =
         make_uniform(runtime, testing::upload(runtime, sets.points), sets.offsets);
     EXPECT_EQ(scaling.shift, 0);
     EXPECT_GT(scaling.bounds.circle, 0);
@@ -135,7 +135,7 @@ TEST(SmallInspect, PointsOfOneScaleAreNotCopied) {
   host::Arena::Scope scope(runtime.arena());
   const Coordinates points = testing::scaled(make_fixture("uniform", 40, 1), 0x1p-500);
   const auto given = testing::upload(runtime, points);
-  const auto [uniform, scaling] = make_uniform(runtime, given, {0, 10, 40});
+  const auto [uniform, scaling, shifts] = make_uniform(runtime, given, {0, 10, 40});
   EXPECT_EQ(uniform.memory(), given.memory());
   EXPECT_EQ(scaling.shift, scaling_for(points.data(), 0, 40, magnitudes_twin(points, 0, 40)).shift);
 }
