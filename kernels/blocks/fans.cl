@@ -4,10 +4,9 @@
 // passes follow the last merge, if there were ties:
 // 1. find_inside, with one work-item per pair of edges, marks the edges inside of polygons.
 // 2. leave_inside, with one work-item per vertex, makes the vertices' own edges ones that stay.
-// 3. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that is
-// the
-//    one that comes before both of its neighbours on the polygon. It says so at one edge inside of the polygon: the
-//    first one at that vertex, counter-clockwise, or the one opposite to it, if it has none.
+// 3. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that one
+//    comes before both of its neighbours on the polygon. It says so at one edge inside of the polygon: the first one at
+//    that vertex, counter-clockwise, or the one opposite to it, if it has none.
 // 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes nothing but what lies
 //    inside of one polygon.
 

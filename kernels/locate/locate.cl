@@ -17,10 +17,9 @@
 //    beyond it: a visibility walk (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002). In a Delaunay
 //    triangulation it ends, whichever edge is tried first: the power of the query with respect to the triangle's circle
 //    falls with each step, except within a cocircular polygon, whose triangles form a tree.
-// 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query. In meshes
-// where
-//    a walk to the nearest vertex takes long, nearest_points searches through levels (shared/nearest_search.h), which
-//    are made when the first query needs them (locate/levels.cl).
+// 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query. Where a walk
+//    to the nearest vertex takes long, nearest_points searches through levels (shared/nearest_search.h), which are made
+//    when the first query needs them (locate/levels.cl).
 
 #include "shared/cut_tree.h"
 #include "shared/halfedges.h"
