@@ -145,13 +145,6 @@ kernel void circumcentres(int n, int points, global const double* restrict input
 // ---------------------------------------------------------------------------------------------------------------------
 // Cells
 
-// A corner of a triangle; no corner if the triangle is -1.
-typedef struct {
-  int triangle, corner;
-} place;
-
-static inline int number_of(place at) { return 3 * at.triangle + at.corner; }
-
 // The number of the corner opposite to a neighbour, which is one of three. Without branches, since they could not be
 // predicted.
 static inline int corner_towards(int neighbor, global const int* three) {
@@ -159,42 +152,65 @@ static inline int corner_towards(int neighbor, global const int* three) {
   return is_one + 2 * (is_two & !is_one);
 }
 
-// The same vertex in the next triangle around it, counter-clockwise or clockwise. No corner behind the hull, and where
-// neighbours are not mutual: so no two corners have the same next one, and walks end whatever the arrays contain.
-static inline place beside(place from, int is_clockwise, int triangle_count, global const int* neighbors) {
-  const place none = {-1, 0};
-  global const int* const here = neighbors + 3 * from.triangle;
-  const int opposite = is_clockwise ? corner_before(from.corner) : next_corner(from.corner);
-  const int u = here[opposite];
-  if (u < 0 || u >= triangle_count) return none;
-  global const int* const there = neighbors + 3 * u;
-  const int back = corner_towards(from.triangle, there);
-  if (there[back] != from.triangle || corner_towards(u, here) != opposite) return none;
-  const place to = {u, is_clockwise ? corner_before(back) : next_corner(back)};
+// A walk around a vertex, counter-clockwise or clockwise: the triangle where it is, or -1; the neighbour where it goes;
+// the other two neighbours.
+typedef struct {
+  int triangle, next, other, last;
+} turn;
+
+static inline turn turn_at(int triangle, int corner, int is_clockwise, global const int* neighbors) {
+  const int ahead = neighbors[3 * triangle + next_corner(corner)];
+  const int behind = neighbors[3 * triangle + corner_before(corner)];
+  const turn at = {triangle, is_clockwise ? behind : ahead, neighbors[3 * triangle + corner],
+                   is_clockwise ? ahead : behind};
+  return at;
+}
+
+// The next triangle around the vertex. None, -1, behind the hull, and where neighbours are not mutual or one is there
+// twice: so no two corners have the same next one, and walks end whatever the arrays contain. The corner opposite to
+// the triangle before is chosen without branches, since they could not be predicted.
+static inline turn turned(turn from, int is_clockwise, int triangle_count, global const int* neighbors) {
+  turn to = {-1, -1, -1, -1};
+  if (from.next < 0 || from.next >= triangle_count) return to;
+  global const int* const there = neighbors + 3 * from.next;
+  const int zero = there[0], one = there[1], two = there[2];
+  const int is_one = one == from.triangle, is_two = (two == from.triangle) & !is_one;
+  const int is_mutual =
+      ((zero == from.triangle) | is_one | is_two) & (from.next != from.other) & (from.next != from.last);
+  const int is_zero = 1 - is_one - is_two;
+  const int before = there[2 * is_zero + is_two], after = there[is_zero + 2 * is_one];
+  to.triangle = is_mutual ? from.next : -1;
+  to.next = is_clockwise ? after : before;
+  to.other = is_clockwise ? before : after;
+  to.last = from.triangle;
   return to;
 }
 
 // The cell of a vertex on the hull begins at the hull edge that leaves the vertex.
-static inline uint unbounded_cell_size(place first, int triangle_count, global const int* neighbors) {
+static inline uint unbounded_cell_size(int triangle, int corner, int triangle_count, global const int* neighbors) {
   uint size = 0;
-  for (place at = first; at.triangle >= 0; at = beside(at, 0, triangle_count, neighbors)) ++size;
+  for (turn at = turn_at(triangle, corner, 0, neighbors); at.triangle >= 0;
+       at = turned(at, 0, triangle_count, neighbors)) {
+    ++size;
+  }
   return size;
 }
 
 // The cell of any other vertex begins with the smallest triangle. 0 if there is a smaller one, or if the vertex is on
 // the hull. Walks in both directions take turns: then all corners of a vertex with d triangles take O(d log d) steps,
 // in whatever order the triangles are.
-static inline uint bounded_cell_size(place first, int triangle_count, global const int* neighbors) {
-  place ahead = beside(first, 0, triangle_count, neighbors), behind = first;
+static inline uint bounded_cell_size(int first, int corner, int triangle_count, global const int* neighbors) {
+  turn ahead = turned(turn_at(first, corner, 0, neighbors), 0, triangle_count, neighbors);
+  turn behind = turn_at(first, corner, 1, neighbors);
   uint size = 1;
-  while (number_of(ahead) != number_of(behind)) {
-    if (number_of(ahead) < number_of(first)) return 0;
+  while (ahead.triangle != behind.triangle) {
+    if (ahead.triangle < first) return 0;
     ++size;
-    behind = beside(behind, 1, triangle_count, neighbors);
-    if (number_of(behind) == number_of(ahead)) break;
-    if (number_of(behind) < number_of(first)) return 0;
+    behind = turned(behind, 1, triangle_count, neighbors);
+    if (behind.triangle == ahead.triangle) break;
+    if (behind.triangle < first) return 0;
     ++size;
-    ahead = beside(ahead, 0, triangle_count, neighbors);
+    ahead = turned(ahead, 0, triangle_count, neighbors);
   }
   return size;
 }
@@ -208,13 +224,11 @@ kernel void measure_cells(int n, int points, global const int* restrict triangle
     fetch(&neighbors[3 * min(n - 1, t + WALKS_AHEAD)]);
     uint begun = 0;
     for (int k = 0; k < 3; ++k) {
-      const place first = {t, k};
       const int ahead = neighbors[3 * t + next_corner(k)], behind = neighbors[3 * t + corner_before(k)];
       const int vertex = triangles[3 * t + k];
       // Most corners have a smaller triangle beside them.
       if ((behind != -1 && min(ahead, behind) < t) || vertex < 0 || vertex >= points) continue;
-      const uint size =
-          behind == -1 ? unbounded_cell_size(first, n, neighbors) : bounded_cell_size(first, n, neighbors);
+      const uint size = behind == -1 ? unbounded_cell_size(t, k, n, neighbors) : bounded_cell_size(t, k, n, neighbors);
       if (size > 0) {
         sizes[vertex] = size;
         begun |= 1u << k;
@@ -245,7 +259,7 @@ kernel void write_cells(int n, global const int* restrict triangles, global cons
       if ((firsts[t] >> k & 1) == 0) continue;
       const int vertex = triangles[3 * t + k];
       const uint end = offsets[vertex + 1];
-      // As beside(), which has found the way already.
+      // As turned(), which has found the way already.
       int at = t, opposite = next_corner(k);
       for (uint to = offsets[vertex]; to < end && at >= 0 && at < n; ++to) {
         cells[to] = at;
