@@ -52,9 +52,9 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles);
 
 /// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
-/// of its representative; -1 if the set is empty. O(log n) steps per query are expected, whatever the points.
-/// If a query is far to walk to, makes the locator's levels, whose buffers come from `own`; until there are
-/// levels, waits once more.
+/// of its representative; -1 if the set is empty. About O(log n) steps per query, except at a vertex with
+/// very many neighbours that are no fan and are all about as near. If a query is far to walk to, makes the
+/// locator's levels, whose buffers come from `own`; until there are levels, waits once more.
 void nearest(host::Runtime& runtime, Arena& own, Locator& locator, const Buffer<cl_double>& queries,
              std::size_t m, const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
 
