@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
 
 #include "contest.hpp"
 
@@ -22,29 +24,32 @@ struct Sizes {
 };
 
 constexpr const char* kUniform = "uniform";
+constexpr const char* kOneThread = ", 1 thread";
 
 /// Everything that is measured, beside each other but for the largest input: that would empty every cache and
 /// take most of the memory, so it is measured only beside the one that its growth is over.
 struct Inputs {
   Inputs(const Sizes& sizes, bool without_largest)
-      : with_cgal(make_inputs(kPaperDistributions, {sizes.base, sizes.large})),
+      : base(make_inputs(kPaperDistributions, {sizes.base})),
+        large(make_inputs(kPaperDistributions, {sizes.large})),
         alone(make_inputs(kDegenerateDistributions, {sizes.base})),
         call(make_inputs({kUniform}, {sizes.call})) {
     alone.push_back(equal_sets(sizes.base / sizes.set, sizes.set));
     if (!without_largest) growth = make_inputs({kUniform}, {sizes.base, sizes.largest});
   }
-  std::vector<Input> with_cgal, alone, call, growth;
+  std::vector<Input> base, large, alone, call, growth;
 };
 
 /// The greatest of the paper's distributions.
-double memory_per_point(const std::vector<Input>& inputs, std::size_t n, const std::string& mode,
+double memory_per_point(const std::vector<Input>& inputs, const std::string& mode,
                         const std::string& device) {
   DeviceMemory memory(device);
-  std::size_t peak = 0;
+  double most = 0;
   for (const Input& input : inputs) {
-    if (input.n == n) peak = std::max(peak, memory.peak(input, options_of(mode)));
+    const auto peak = static_cast<double>(memory.peak(input, options_of(mode)));
+    most = std::max(most, peak / static_cast<double>(input.n));
   }
-  return static_cast<double>(peak) / static_cast<double>(n);
+  return most;
 }
 
 /// The slowest distribution's time over the fastest one's.
@@ -75,9 +80,17 @@ void add_targets_of(Json& targets, const std::string& name, const Sizes& sizes, 
 
   for (const std::size_t n : {sizes.base, sizes.large}) {
     for (const std::string& distribution : kPaperDistributions) {
-      add(fmt::format("CGAL's time / ours, {} {}", thousands(n), distribution), 2.5, 3.5,
+      add(fmt::format("CGAL's time / ours, {} {}", thousands(n), distribution), 3.5, 5,
           ratio(median_of(entries, kCgal, distribution, n), seconds(distribution, n)));
     }
+  }
+  add(fmt::format("CGAL's time / ours, {} uniform", largest), 3.5, 5,
+      ratio(median_of(growth, kCgal, kUniform, sizes.largest),
+            median_of(growth, name, kUniform, sizes.largest)));
+  for (const std::string& distribution : kPaperDistributions) {
+    add(fmt::format("CGAL's time / ours on one core, {} {}", base, distribution), 2, 2.5,
+        ratio(median_of(entries, kCgal, distribution, sizes.base),
+              median_of(entries, name + kOneThread, distribution, sizes.base)));
   }
   for (const std::size_t n : {sizes.base, sizes.large}) {
     add("slowest / fastest distribution, " + thousands(n), 1.3, 1.15, spread_of(entries, name, n));
@@ -92,9 +105,37 @@ void add_targets_of(Json& targets, const std::string& name, const Sizes& sizes, 
       ratio(seconds(kUniform, sizes.call), 1e-3));
   add("device memory, bytes per point, " + base, 200, 140, bytes_per_point);
   for (const std::string& distribution : kDegenerateDistributions) {
-    add(fmt::format("{} / uniform, {}", distribution, base), 1.5, 1.1,
+    // Its points are exactly cocircular, by tens of thousands.
+    const double goal = distribution == "integer-circle" ? 1.2 : 1.1;
+    add(fmt::format("{} / uniform, {}", distribution, base), 1.5, goal,
         ratio(seconds(distribution, sizes.base), uniform));
   }
+}
+
+/// A triangulator on one thread. Only the host has one: other devices' threads are those of the process.
+std::unique_ptr<Triangulator> on_one_thread(const Triangulator& like) {
+  if (like.device().name != "host") return nullptr;
+  const char* const variable = "FLAUNAY_THREADS";
+  const char* const before = std::getenv(variable);
+  const std::string kept = before != nullptr ? before : "";
+  setenv(variable, "1", 1);
+  auto made = std::make_unique<Triangulator>("host");
+  if (before != nullptr) {
+    setenv(variable, kept.c_str(), 1);
+  } else {
+    unsetenv(variable);
+  }
+  return made;
+}
+
+Implementations renamed(const Implementations& all, const char* addition) {
+  Implementations made;
+  for (const auto& one : all) {
+    auto other = std::make_shared<Implementation>(*one);
+    other->name += addition;
+    made.push_back(other);
+  }
+  return made;
 }
 
 Result measure_targets(const Request& request) {
@@ -108,14 +149,20 @@ Result measure_targets(const Request& request) {
     const Implementations own = mode_implementations(triangulator, request.modes);
     Implementations all = own;
     append(all, peer_implementations({kCgal}));
-    most = make_entries(all, inputs.with_cgal);
+    const std::unique_ptr<Triangulator> single = on_one_thread(triangulator);
+    Implementations with_single = all;
+    if (single) append(with_single, renamed(mode_implementations(*single, request.modes, 1), kOneThread));
+    most = make_entries(with_single, inputs.base);
+    append(most, make_entries(all, inputs.large));
     append(most, make_entries(own, inputs.alone));
     append(most, make_entries(all, inputs.call));
     measure(most, request.runs);
   }
   if (!request.without_largest) {
     Triangulator triangulator(request.device);
-    growth = make_entries(mode_implementations(triangulator, request.modes), inputs.growth);
+    Implementations all = mode_implementations(triangulator, request.modes);
+    append(all, peer_implementations({kCgal}));
+    growth = make_entries(all, inputs.growth);
     measure(growth, request.runs);
   }
   result.agree = check_counts(most);
@@ -124,7 +171,7 @@ Result measure_targets(const Request& request) {
   add_entries(result.tables, growth);
   for (const std::string& mode : request.modes) {
     add_targets_of(result.tables["targets"], implementation_name(mode), sizes, most, growth,
-                   inputs.alone.back(), memory_per_point(inputs.with_cgal, sizes.base, mode, request.device));
+                   inputs.alone.back(), memory_per_point(inputs.base, mode, request.device));
   }
   return result;
 }
