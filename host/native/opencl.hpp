@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "host/native/function.hpp"
+// Kernels do not count what they do, see shared/counting.h.
+#define FLAUNAY_NATIVE_KERNELS
 #include "shared/language.h"
 
 namespace flaunay::kernel {
@@ -47,7 +49,6 @@ inline double min(double a, double b) { return b < a ? b : a; }
 inline double max(double a, double b) { return a < b ? b : a; }
 using std::fmax;
 using std::ilogb;
-inline int popcount(ulong x) { return __builtin_popcountl(x); }
 inline bool isfinite(double x) { return std::isfinite(x); }
 
 // Atomic operations; as in OpenCL C 1.2, they order nothing else.

@@ -8,11 +8,13 @@
 
 #include "shared/codes.h"
 #include "shared/cut_tree.h"
+#include "shared/prefetch.h"
 #include "shared/rings.h"
 
 // Where a point stands in either order.
 typedef int2 ranks;
 #define MOST_DEPTH 32
+#define FETCHED_VERTICES_AHEAD 256
 
 // A work-item's own arrays, with room for one block.
 typedef struct {
@@ -27,6 +29,7 @@ typedef struct {
 // Writes a block's distinct points into scratch, in the order of x, and returns their number.
 static inline int distinct_by_x(int count, global const double2* points, global const int* source,
                                 const block_scratch* s, global int* representatives) {
+  fetch_bytes(points, count * sizeof(double2));
   global keyed* elements = (global keyed*)s->by_x;
   for (int i = 0; i < count; ++i) elements[i] = VECTOR(keyed, 0, (uint)i);
   elements = sort_along(elements, (global keyed*)s->by_y, count, points, 0);
@@ -111,6 +114,9 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
   int height = 0;
   for (int i = 0; i < 1 << depth; ++i) {
     const int begin = part_begin(count, depth, i);
+    // Edges are used for the first time here, about in this order.
+    fetch_bytes(&g->edges[EDGES_PER_VERTEX * (first + begin + FETCHED_VERTICES_AHEAD)],
+                LEAF_VERTICES * EDGES_PER_VERTEX * sizeof(ring_edge));
     hull_ends whole = make_leaf(g, first + begin, part_begin(count, depth, i + 1) - begin);
     for (int node = ((1 << depth) + i); node & 1 && node > 1; node >>= 1) {
       const int axis = s->axes[node >> 1];

@@ -81,12 +81,18 @@ static inline void write_triangle(int e, int with_corners, global const double2*
 
 // What will be needed is fetched in the order of memory: edges lead anywhere within a block.
 #define PAIRS_A_CACHE_LINE 2
-static inline void fetch_ahead(int pair, int last, global const ring_edge* edges) {
+#define POINTS_A_CACHE_LINE 4
+#define PAIRS_A_VERTEX (EDGES_PER_VERTEX / 2)
+static inline void fetch_ahead(int pair, int last, global const ring_edge* edges, global const double2* points) {
 #if FETCH_AHEAD
-  const int end = min(last, pair + FETCH_AHEAD + PAIRS_AT_ONCE);
-  for (int k = pair + FETCH_AHEAD; k < end; k += PAIRS_A_CACHE_LINE) fetch(&edges[2 * k]);
+  const int begin = pair + FETCH_AHEAD, end = min(last, begin + PAIRS_AT_ONCE);
+  for (int k = begin; k < end; k += PAIRS_A_CACHE_LINE) fetch(&edges[2 * k]);
+  for (int v = begin / PAIRS_A_VERTEX; v < end / PAIRS_A_VERTEX; v += POINTS_A_CACHE_LINE) fetch(&points[v]);
 #endif
 }
+
+// An edge without a triangle on its left has no corner.
+#define NO_CORNER -1
 
 // n pairs of edges.
 kernel void write_triangles(int n, int chunk, int with_corners, global const double2* restrict points,
@@ -97,11 +103,13 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const dou
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
     for (int begin = c * chunk; begin < last; begin += PAIRS_AT_ONCE) {
-      fetch_ahead(begin, last, edges);
+      fetch_ahead(begin, last, edges, points);
       int owned[2 * PAIRS_AT_ONCE + 1];
       int count = 0;
       for (int k = begin; k < min(last, begin + PAIRS_AT_ONCE); ++k) {
         const ring_edge there = edges[2 * k], back = edges[2 * k + 1];
+        if (with_corners && (there.to == NO_VERTEX || is_outside(there.next))) corner_of_edge[2 * k] = NO_CORNER;
+        if (with_corners && (there.to == NO_VERTEX || is_outside(back.next))) corner_of_edge[2 * k + 1] = NO_CORNER;
         if (there.to == NO_VERTEX) continue;
         const double2 from = points[back.to], to = points[there.to];
         const int right = precedes(from, to, 0);
@@ -118,26 +126,26 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const dou
 }
 
 // n pairs of edges.
-kernel void write_neighbors(int n, global const ring_edge* restrict edges, global const int* restrict corner_of_edge,
-                            global int* restrict neighbors) {
+kernel void write_neighbors(int n, global const int* restrict corner_of_edge, global int* restrict neighbors) {
   const int k = get_global_id(0);
-  if (k < n && edges[2 * k].to != NO_VERTEX) {
-    const int left = is_outside(edges[2 * k].next) ? -1 : corner_of_edge[2 * k];
-    const int right = is_outside(edges[2 * k + 1].next) ? -1 : corner_of_edge[2 * k + 1];
-    if (left >= 0) neighbors[left] = right < 0 ? -1 : right / 3;
-    if (right >= 0) neighbors[right] = left < 0 ? -1 : left / 3;
+  if (k < n) {
+    fetch(&corner_of_edge[2 * min(n - 1, k + STREAM_AHEAD)]);
+    const int left = corner_of_edge[2 * k], right = corner_of_edge[2 * k + 1];
+    if (left != NO_CORNER) neighbors[left] = right == NO_CORNER ? -1 : right / 3;
+    if (right != NO_CORNER) neighbors[right] = left == NO_CORNER ? -1 : left / 3;
   }
 }
 
 // n pairs of edges.
-kernel void write_halfedges(int n, global const ring_edge* restrict edges, global const int* restrict corner_of_edge,
-                            global int* restrict halfedges) {
+kernel void write_halfedges(int n, global const int* restrict corner_of_edge, global int* restrict halfedges) {
   const int k = get_global_id(0);
-  if (k < n && edges[2 * k].to != NO_VERTEX) {
-    const int left = is_outside(edges[2 * k].next) ? -1 : opposite_halfedge(corner_of_edge[2 * k]);
-    const int right = is_outside(edges[2 * k + 1].next) ? -1 : opposite_halfedge(corner_of_edge[2 * k + 1]);
-    if (left >= 0) halfedges[left] = right;
-    if (right >= 0) halfedges[right] = left;
+  if (k < n) {
+    fetch(&corner_of_edge[2 * min(n - 1, k + STREAM_AHEAD)]);
+    const int left = corner_of_edge[2 * k], right = corner_of_edge[2 * k + 1];
+    const int from_left = left == NO_CORNER ? -1 : opposite_halfedge(left);
+    const int from_right = right == NO_CORNER ? -1 : opposite_halfedge(right);
+    if (from_left >= 0) halfedges[from_left] = from_right;
+    if (from_right >= 0) halfedges[from_right] = from_left;
   }
 }
 

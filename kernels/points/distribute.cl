@@ -11,6 +11,7 @@
 #include "points/inspect.cl"
 #include "shared/coordinates.h"
 #include "shared/cut_tree.h"
+#include "shared/prefetch.h"
 #include "shared/records.h"
 
 kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const double* restrict input,
@@ -24,6 +25,7 @@ kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, g
     const int blocks = 1 << chunk.depth;
     for (int b = 0; b < blocks; ++b) cursor[b] = 0;
     for (int i = chunk.first; i < chunk.last; i += DESCENTS) {
+      fetch_bytes(&input[2 * min(chunk.last, i + STREAM_AHEAD)], DESCENTS * sizeof(double2));
       int block[DESCENTS];
       find_leaves(i, chunk.last, input, tree, chunk.depth, block);
       for (int k = 0; k < min(DESCENTS, chunk.last - i); ++k) {

@@ -6,20 +6,33 @@
 
 #include "shared/codes.h"
 #include "shared/coordinates.h"
+#include "shared/prefetch.h"
 #include "shared/search.h"
 
-// Exponents of the leading and of the lowest set bit of a finite x other than 0.
-static inline int2 bit_range(double x) {
-  const ulong bits = as_ulong(x) & 0x7fffffffffffffffUL;
-  const int field = (int)(bits >> 52);
-  ulong mantissa = bits & 0x000fffffffffffffUL;
-  int unit = -1074;
-  if (field > 0) {
-    mantissa |= 0x0010000000000000UL;
-    unit = field - 1075;
+// What coordinates have in common: the largest magnitude, as its bits, and the exponent of the lowest set
+// bit.
+typedef struct {
+  ulong most;
+  int lowest;
+} bit_account;
+
+#define MAGNITUDE_BITS 0x7fffffffffffffffUL
+#define MANTISSA_BITS 0x000fffffffffffffUL
+#define HIDDEN_BIT 0x0010000000000000UL
+
+// The exponent of the last bit that a double of this magnitude has room for.
+static inline int unit_of(ulong magnitude) { return max(1, (int)(magnitude >> 52)) - 1075; }
+static inline ulong mantissa_of(ulong magnitude) {
+  return (magnitude & MANTISSA_BITS) | (magnitude > MANTISSA_BITS ? HIDDEN_BIT : 0);
+}
+
+static inline void account_for(double x, bit_account* account) {
+  const ulong magnitude = as_ulong(x) & MAGNITUDE_BITS;
+  account->most = max(account->most, magnitude);
+  if (magnitude != 0) {
+    const ulong mantissa = mantissa_of(magnitude);
+    account->lowest = min(account->lowest, unit_of(magnitude) + 63 - (int)clz(mantissa & (~mantissa + 1)));
   }
-  const int trailing = (int)popcount((mantissa & (~mantissa + 1)) - 1);
-  return VECTOR(int2, unit + 63 - (int)clz(mantissa), unit + trailing);
 }
 
 // Points of single precision from `first` on.
@@ -30,26 +43,21 @@ kernel void widen_points(int n, ulong first, global const float* restrict narrow
 
 // Adds the points [low, high) to an account.
 static inline void inspect_points(int low, int high, global const double* input, global volatile int* account) {
-  int largest = NO_LARGEST, lowest = NO_LOWEST, bad = NO_BAD;
+  bit_account bits = {0, NO_LOWEST};
+  int bad = NO_BAD;
   for (int i = low; i < high; ++i) {
+    fetch(&input[2 * min(high - 1, i + STREAM_AHEAD)]);
     const double2 p = vload2(i, input);  // which need not be aligned as pairs
-    if (!isfinite(p.x) || !isfinite(p.y)) {
+    if (isfinite(p.x) && isfinite(p.y)) {
+      account_for(p.x, &bits);
+      account_for(p.y, &bits);
+    } else {
       bad = min(bad, i);
-      continue;
-    }
-    if (p.x != 0.0) {
-      const int2 range = bit_range(p.x);
-      largest = max(largest, range.x);
-      lowest = min(lowest, range.y);
-    }
-    if (p.y != 0.0) {
-      const int2 range = bit_range(p.y);
-      largest = max(largest, range.x);
-      lowest = min(lowest, range.y);
     }
   }
+  const int largest = bits.most == 0 ? NO_LARGEST : unit_of(bits.most) + 63 - (int)clz(mantissa_of(bits.most));
   atomic_max(&account[INSPECT_LARGEST], largest);
-  atomic_min(&account[INSPECT_LOWEST], lowest);
+  atomic_min(&account[INSPECT_LOWEST], bits.lowest);
   atomic_min(&account[INSPECT_BAD], bad);
 }
 

@@ -15,7 +15,7 @@ static inline int cut_axis(cut_node cut) { return cut.turn != 0; }
 static inline int goes_high(ulong x, ulong y, cut_node cut) {
   const ulong swapped = (x ^ y) & cut.turn;
   const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;
-  return (major > cut.major) | ((major == cut.major) & (minor >= cut.minor));
+  return is_at_least(major, minor, cut.major, cut.minor);
 }
 
 // Points that go down a tree at the same time: each step waits for the one before.

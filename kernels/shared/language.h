@@ -7,6 +7,11 @@
 // VECTOR(type, components...) for a vector, INTEGER_CONSTANT(NAME, value) for a constant of type int, OUT_OF_LINE for a
 // function that is called rarely and is long, and ASSERT_SIZE(type, bytes), which does not compile unless the type has
 // that size.
+//
+// double_pair is two doubles in one register, on which predicates compute side by side: with the operators + - *,
+// low and high for its elements, swapped, lows and highs for the elements of two pairs with the same place, and
+// high_negated. In OpenCL C it is double2. In C++ a struct of two doubles would do, but compilers keep its members
+// apart.
 #ifndef FLAUNAY_LANGUAGE_H
 #define FLAUNAY_LANGUAGE_H
 
@@ -55,6 +60,29 @@ struct double2 {
 };
 inline double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
 inline double2 operator-(double2 a) { return {-a.x, -a.y}; }
+
+using double_pair [[gnu::vector_size(16)]] = double;
+inline double_pair as_pair(double2 p) { return double_pair{p.x, p.y}; }
+inline double2 as_point(double_pair p) { return {p[0], p[1]}; }
+inline double_pair load_pair(const double2* from) {
+  double_pair p;
+  std::memcpy(&p, from, sizeof p);
+  return p;
+}
+inline double low(double_pair p) { return p[0]; }
+inline double high(double_pair p) { return p[1]; }
+inline double_pair swapped(double_pair p) { return double_pair{p[1], p[0]}; }
+inline double_pair lows(double_pair p, double_pair q) { return double_pair{p[0], q[0]}; }
+inline double_pair highs(double_pair p, double_pair q) { return double_pair{p[1], q[1]}; }
+inline double_pair high_negated(double_pair p) {
+  using Bits [[gnu::vector_size(16)]] = long;
+  return reinterpret_cast<double_pair>(reinterpret_cast<Bits>(p) ^ Bits{0, static_cast<long>(1UL << 63)});
+}
+inline double_pair magnitudes(double_pair p) {
+  using Bits [[gnu::vector_size(16)]] = long;
+  return reinterpret_cast<double_pair>(reinterpret_cast<Bits>(p) & static_cast<long>(~0UL >> 1));
+}
+
 inline double2 vload2(std::size_t i, const double* from) { return {from[2 * i], from[2 * i + 1]}; }
 
 using std::fabs;
@@ -87,6 +115,10 @@ __extension__ using WideLong = __int128;
 __extension__ using WideUlong = unsigned __int128;
 inline long high_product(long x, long y) { return static_cast<long>(WideLong{x} * y >> 64); }
 inline ulong high_product(ulong x, ulong y) { return static_cast<ulong>(WideUlong{x} * y >> 64); }
+// Compares pairs by the first number, then by the second.
+inline int is_at_least(ulong a, ulong b, ulong x, ulong y) {
+  return (WideUlong{a} << 64 | b) >= (WideUlong{x} << 64 | y);
+}
 
 END_SHARED
 
@@ -104,6 +136,18 @@ END_SHARED
 #define ASSERT_SIZE(type, bytes) typedef char type##_has_its_size[sizeof(type) == (bytes) ? 1 : -1]
 #define OUT_OF_LINE
 
+typedef double2 double_pair;
+static inline double_pair as_pair(double2 p) { return p; }
+static inline double2 as_point(double_pair p) { return p; }
+static inline double_pair load_pair(global const double2* from) { return *from; }
+static inline double low(double_pair p) { return p.x; }
+static inline double high(double_pair p) { return p.y; }
+static inline double_pair swapped(double_pair p) { return p.yx; }
+static inline double_pair lows(double_pair p, double_pair q) { return (double2)(p.x, q.x); }
+static inline double_pair highs(double_pair p, double_pair q) { return (double2)(p.y, q.y); }
+static inline double_pair high_negated(double_pair p) { return (double2)(p.x, -p.y); }
+static inline double_pair magnitudes(double_pair p) { return fabs(p); }
+
 // The upper half of a product. Compilers for CPUs have a type for it, which is several times as fast as their mul_hi.
 #if defined(__SIZEOF_INT128__) && (defined(__x86_64__) || defined(__aarch64__))
 static inline long __attribute__((overloadable)) high_product(long x, long y) { return (long)((__int128)x * y >> 64); }
@@ -113,6 +157,8 @@ static inline ulong __attribute__((overloadable)) high_product(ulong x, ulong y)
 #else
 #define high_product mul_hi
 #endif
+
+static inline int is_at_least(ulong a, ulong b, ulong x, ulong y) { return (a > x) | ((a == x) & (b >= y)); }
 
 #endif
 

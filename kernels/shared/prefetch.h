@@ -16,11 +16,23 @@
 #endif
 #endif
 
+// How many points or pairs of edges ahead of its use memory is fetched that is read in its order. That is a few
+// kilobytes: more than a page, at which processors stop fetching by themselves.
+#define STREAM_AHEAD 512
+#define CACHE_LINE 64
+
 BEGIN_SHARED
 
 static inline void fetch(GLOBAL const void* what) {
 #if FETCH_AHEAD
   __builtin_prefetch(what);
+#endif
+}
+
+// May reach beyond the end of an array, as nothing is read.
+static inline void fetch_bytes(GLOBAL const void* what, int bytes) {
+#if FETCH_AHEAD
+  for (int k = 0; k < bytes; k += CACHE_LINE) fetch((GLOBAL const uchar*)what + k);
 #endif
 }
 

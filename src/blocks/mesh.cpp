@@ -93,14 +93,12 @@ void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const
                                             .corner_of_edge = corner_of_edge});
     if (milestones != nullptr) milestones->set("output", kTrianglesWritten);
     if (with_neighbors) {
-      runtime.map(
-          pairs, kernels::write_neighbors{
-                     .edges = rings.edges, .corner_of_edge = corner_of_edge, .neighbors = buffers.neighbors});
+      runtime.map(pairs,
+                  kernels::write_neighbors{.corner_of_edge = corner_of_edge, .neighbors = buffers.neighbors});
     }
     if (with_halfedges) {
-      runtime.map(
-          pairs, kernels::write_halfedges{
-                     .edges = rings.edges, .corner_of_edge = corner_of_edge, .halfedges = buffers.halfedges});
+      runtime.map(pairs,
+                  kernels::write_halfedges{.corner_of_edge = corner_of_edge, .halfedges = buffers.halfedges});
     }
   }
   if (buffers.hull.memory() != nullptr) write_hulls(work, blocks, rings, sizes, buffers.hull);

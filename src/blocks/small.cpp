@@ -153,12 +153,12 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   if (options.neighbors) {
     result.neighbors.resize(3 * sizes.triangles());
     for_each_item(static_cast<std::size_t>(pairs),
-                  [&] { kernel::write_neighbors(pairs, edges, corner_of_edge, result.neighbors.data()); });
+                  [&] { kernel::write_neighbors(pairs, corner_of_edge, result.neighbors.data()); });
   }
   if (options.halfedges) {
     result.halfedges.resize(3 * sizes.triangles());
     for_each_item(static_cast<std::size_t>(pairs),
-                  [&] { kernel::write_halfedges(pairs, edges, corner_of_edge, result.halfedges.data()); });
+                  [&] { kernel::write_halfedges(pairs, corner_of_edge, result.halfedges.data()); });
   }
   result.hull.resize(sizes.hull_vertices());
   s.hull_offsets.assign(sizes.hull_offsets.begin(), sizes.hull_offsets.end());
