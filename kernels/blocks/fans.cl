@@ -20,14 +20,18 @@ static inline int apex_left_of(int e, global const ring_edge* edges) {
   return edges[edges[e ^ 1].previous].to == apex ? apex : NO_VERTEX;
 }
 
+// c and d are seen from either side of the edge from a to b.
 static inline int are_cocircular(double2 a, double2 b, double2 c, double2 d, double bound) {
-  const int sign = circle_filtered(a, b, c, d, bound);
+  const int sign = angle_compared(angle_at(d, a, b), angle_at(c, a, b), bound);
   return (sign == UNDECIDED ? circle_undecided(a, b, c, d, bound) : sign) == 0;
 }
 
 // Edges lead anywhere within a block.
 static inline void fetch_edges(int pair, int pairs, global const ring_edge* edges) {
   fetch(&edges[2 * min(pairs - 1, pair + FETCH_AHEAD)]);
+}
+static inline void fetch_points(int pair, int pairs, global const double2* points) {
+  fetch(&points[2 * min(pairs - 1, pair + FETCH_AHEAD) / EDGES_PER_VERTEX]);
 }
 
 // n pairs of edges.
@@ -36,12 +40,16 @@ kernel void find_inside(int n, double bound, global const double2* restrict poin
   const int k = get_global_id(0);
   if (k < n) {
     fetch_edges(k, n, edges);
+    fetch_points(k, n, points);
     const int from = edges[2 * k + 1].to, to = edges[2 * k].to;
     int found = 0;
     if (to != NO_VERTEX) {
-      const int left = apex_left_of(2 * k, edges), right = apex_left_of(2 * k + 1, edges);
-      found = left != NO_VERTEX && right != NO_VERTEX && left != right &&
-              are_cocircular(points[from], points[to], points[left], points[right], bound);
+      // Where there is a triangle on either side, these are their third corners; whether there is, is seldom worth
+      // asking.
+      const int left = edges[edges[2 * k].next].to, right = edges[edges[2 * k + 1].next].to;
+      found = left != right &&
+              are_cocircular(points[from], points[to], points[left], points[right], angle_bound(bound)) &&
+              apex_left_of(2 * k, edges) != NO_VERTEX && apex_left_of(2 * k + 1, edges) != NO_VERTEX;
     }
     inside[k] = found;
   }

@@ -69,15 +69,18 @@ static inline void count_tally(global volatile uint* counters, int component, ta
 #define COUNT_TALLY(component, of)
 #endif
 
-// The host always has tallies: they take no time worth mentioning there.
+// The host's own algorithms always have tallies; kernels that run on the host have the member, but leave it alone.
 #if defined(FLAUNAY_COUNT) || defined(__cplusplus)
 #define TALLY_MEMBER tally counted;
-#define TALLY(of, kind, amount) (of).counted.kind += (amount)
 #define CLEAR_TALLY(of) (of).counted.arithmetic = (of).counted.orientations = (of).counted.circles = 0
 #else
 #define TALLY_MEMBER
-#define TALLY(of, kind, amount)
 #define CLEAR_TALLY(of)
+#endif
+#if defined(FLAUNAY_COUNT) || (defined(__cplusplus) && !defined(FLAUNAY_NATIVE_KERNELS))
+#define TALLY(of, kind, amount) (of).counted.kind += (amount)
+#else
+#define TALLY(of, kind, amount)
 #endif
 
 // Comparisons of a binary search among m elements: the ceiling of log2 m.

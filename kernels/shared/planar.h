@@ -13,13 +13,20 @@ BEGIN_SHARED
 // The sign that floating point cannot tell. Every filter takes its bound, see shared/bounds.h.
 #define UNDECIDED 2
 
+// The sign of a computed determinant whose error is at most the given one. One comparison, which can be predicted, says
+// whether it is decided, so that the sign itself need not be a branch.
+static inline int filtered_sign(double det, double error, double bound) {
+  if (fabs(det) > error) return det > 0.0 ? 1 : -1;
+  return bound == 0.0 ? 0 : UNDECIDED;
+}
+
 // 1 if a, b, c turn left, -1 right, 0 straight, UNDECIDED.
 static inline int orient_filtered(double2 a, double2 b, double2 c, double bound) {
   const double left = (a.x - c.x) * (b.y - c.y);
   const double right = (a.y - c.y) * (b.x - c.x);
   const double det = left - right;
   const double error = bound * (fabs(left) + fabs(right));
-  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+  return filtered_sign(det, error, bound);
 }
 
 // Of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
@@ -70,33 +77,32 @@ static inline int circle_filtered(double2 a, double2 b, double2 c, double2 d, do
   const double det = al * (bc - cb) + bl * (ca - ac) + cl * (ab - ba);
   const double magnitude = (fabs(bc) + fabs(cb)) * al + (fabs(ca) + fabs(ac)) * bl + (fabs(ab) + fabs(ba)) * cl;
   const double error = bound * magnitude;
-  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+  return filtered_sign(det, error, bound);
 }
 
-// The angle under which a point sees the edge from a to b: its cotangent is dot / cross. Magnitudes bound the errors.
+// The angle under which a point sees the edge from a to b: its cotangent is the dot product over the cross product, of
+// which this is the pair. Magnitudes bound their errors.
 typedef struct {
-  double dot, cross, dot_magnitude, cross_magnitude;
+  double_pair products, magnitudes;
 } angle;
 
-static inline angle angle_at(double2 p, double2 a, double2 b) {
-  const double2 pa = a - p;
-  const double2 pb = b - p;
-  const double left = pa.x * pb.y;
-  const double right = pa.y * pb.x;
-  const double xx = pa.x * pb.x;
-  const double yy = pa.y * pb.y;
+static inline angle angle_of(double_pair p, double_pair a, double_pair b) {
+  const double_pair pa = a - p;
+  const double_pair pb = b - p;
+  const double_pair along = pa * pb;
+  const double_pair across = pa * swapped(pb);
+  const double_pair first = lows(along, across);
+  const double_pair second = highs(along, across);
   angle seen;
-  seen.dot = xx + yy;
-  seen.cross = left - right;
-  seen.dot_magnitude = fabs(xx) + fabs(yy);
-  seen.cross_magnitude = fabs(left) + fabs(right);
+  seen.products = first + high_negated(second);
+  seen.magnitudes = magnitudes(first) + magnitudes(second);
   return seen;
 }
+static inline angle angle_at(double2 p, double2 a, double2 b) { return angle_of(as_pair(p), as_pair(a), as_pair(b)); }
 
 // As orient_filtered of a, b and the point: 1 if it lies left of the edge.
 static inline int angle_side(angle seen, double bound) {
-  const double error = bound * seen.cross_magnitude;
-  return seen.cross > error ? 1 : seen.cross < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+  return filtered_sign(high(seen.products), bound * high(seen.magnitudes), bound);
 }
 
 // 1 if a point left of the edge sees it under a wider angle than another, which is to lie inside the circle through the
@@ -104,25 +110,27 @@ static inline int angle_side(angle seen, double bound) {
 // below 4.02 e times its magnitude, that of the products below 9.1 e times theirs, that of the difference below 10.2 e
 // of the sum, with e = 2^-53: see docs/exactness.md.
 static inline int angle_compared(angle seen, angle other, double bound) {
-  const double det = other.dot * seen.cross - seen.dot * other.cross;
-  const double error =
-      bound * (other.dot_magnitude * seen.cross_magnitude + seen.dot_magnitude * other.cross_magnitude);
-  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+  const double_pair products = other.products * swapped(seen.products);
+  const double_pair terms = other.magnitudes * swapped(seen.magnitudes);
+  return filtered_sign(low(products) - high(products), bound * (low(terms) + high(terms)), bound);
 }
 
 // The bound of angle_compared where the in-circle test has the given one.
 static inline double angle_bound(double circle_bound) { return circle_bound == 0.0 ? 0.0 : ANGLE_BOUND; }
 
-// The in-circle determinant of differences from the fourth point, which are integers below 2^SMALL_BITS, 2^MIDDLE_BITS
-// or 2^WIDE_BITS, or what two_sum gives. The first two are modulo 2^64 and 2^128, which suffices where a filter could
-// not decide: then the determinant is below 2^61 and 2^125, see docs/exactness.md. Of the third, both factors of a term
-// are below 2^125.
-#define SMALL_BITS 26
-static inline int circle_small(long ax, long ay, long bx, long by, long cx, long cy) {
-  const ulong a = as_ulong(ax * ax + ay * ay) * as_ulong(bx * cy - by * cx);
-  const ulong b = as_ulong(bx * bx + by * by) * as_ulong(cx * ay - cy * ax);
-  const ulong c = as_ulong(cx * cx + cy * cy) * as_ulong(ax * by - ay * bx);
-  return sign_of_64(as_long(a + b + c));
+// The in-circle determinant of differences from the fourth point, which are integers below 2^SHORT_BITS, 2^MIDDLE_BITS
+// or 2^WIDE_BITS, or what two_sum gives. The first compares angles over the edge from a to b, whose dot and cross
+// products are below 2^63. The second is modulo 2^128, which suffices where a filter could not decide: then the
+// determinant is below 2^125, see docs/exactness.md. Of the third, both factors of a term are below 2^125.
+#define SHORT_BITS 30
+static inline int circle_short(long ax, long ay, long bx, long by, long cx, long cy) {
+  const long dot = ax * bx + ay * by, cross = ax * by - ay * bx;
+  ax -= cx;
+  ay -= cy;
+  bx -= cx;
+  by -= cy;
+  const long other_dot = ax * bx + ay * by, other_cross = ax * by - ay * bx;
+  return sign_of_128(difference_128(product_128(other_dot, cross), product_128(dot, other_cross)));
 }
 
 static inline integer128 sum_of_squares(long x, long y) { return sum_128(product_128(x, x), product_128(y, y)); }
@@ -130,11 +138,18 @@ static inline integer128 cross_product(long ax, long ay, long bx, long by) {
   return difference_128(product_128(ax, by), product_128(ay, bx));
 }
 
+static inline integer128 dot_product(long ax, long ay, long bx, long by) {
+  return sum_128(product_128(ax, bx), product_128(ay, by));
+}
+
 static inline int circle_middle(long ax, long ay, long bx, long by, long cx, long cy) {
-  const integer128 a = low_product(sum_of_squares(ax, ay), cross_product(bx, by, cx, cy));
-  const integer128 b = low_product(sum_of_squares(bx, by), cross_product(cx, cy, ax, ay));
-  const integer128 c = low_product(sum_of_squares(cx, cy), cross_product(ax, ay, bx, by));
-  return sign_of_128(sum_128(sum_128(a, b), c));
+  const integer128 dot = dot_product(ax, ay, bx, by), cross = cross_product(ax, ay, bx, by);
+  ax -= cx;
+  ay -= cy;
+  bx -= cx;
+  by -= cy;
+  const integer128 other_dot = dot_product(ax, ay, bx, by), other_cross = cross_product(ax, ay, bx, by);
+  return sign_of_128(difference_128(low_product(other_dot, cross), low_product(dot, other_cross)));
 }
 
 static inline integer256 circle_term(long ax, long ay, long bx, long by, long cx, long cy) {
@@ -220,9 +235,9 @@ OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, 
     all |= x[k] | y[k];
   }
   if (!integers) return circle_exact(a, b, c, d);
-  const int spare = MIDDLE_BITS - SMALL_BITS;
+  const int spare = MIDDLE_BITS - SHORT_BITS;
   if ((all & ((1L << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
-  return circle_small(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
+  return circle_short(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
 }
 
 // The filter first, the exact test where it cannot decide.

@@ -68,25 +68,34 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
   return axis ? ends_of(least, most, low.first_y, high.last_y) : ends_of(low.first_x, high.last_x, least, most);
 }
 
+// What filters could not decide; out of line, so that merges have more registers.
+OUT_OF_LINE static inline int side_undecided(rings* g, double2 a, double2 b, double2 c) {
+  ++g->undecided;
+  return orient_exact(a, b, c);
+}
+
+OUT_OF_LINE static inline int in_circle_undecided(rings* g, double2 a, double2 b, double2 c, double2 d, double bound) {
+  int sign = 0;
+  if (bound != 0.0) {
+    ++g->undecided;
+    sign = circle_undecided(a, b, c, d, bound);
+    g->ties += sign == 0;
+  }
+  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, bound);
+}
+
 static inline int side_of(rings* g, double2 a, double2 b, double2 c) {
   TALLY(*g, orientations, 1);
   const int sign = orient_filtered(a, b, c, g->bounds.orient);
-  if (sign != UNDECIDED) return sign;
-  ++g->undecided;
-  return orient_exact(a, b, c);
+  return sign != UNDECIDED ? sign : side_undecided(g, a, b, c);
 }
 static inline int turns_left(rings* g, double2 a, double2 b, double2 c) { return side_of(g, a, b, c) > 0; }
 
 // Is d inside of the circle through a, b, c (counter-clockwise)?
 static inline int in_circle(rings* g, double2 a, double2 b, double2 c, double2 d) {
   TALLY(*g, circles, 1);
-  int sign = circle_filtered(a, b, c, d, g->bounds.circle);
-  if (sign == UNDECIDED) {
-    ++g->undecided;
-    sign = circle_undecided(a, b, c, d, g->bounds.circle);
-    g->ties += sign == 0;
-  }
-  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, g->bounds.circle);
+  const int sign = circle_filtered(a, b, c, d, g->bounds.circle);
+  return sign == 1 || sign == -1 ? sign > 0 : in_circle_undecided(g, a, b, c, d, g->bounds.circle);
 }
 
 static inline void put_edge(rings* g, int e, int to, int next, int previous) {
@@ -135,15 +144,15 @@ static inline void free_unused(rings* g, int end) {
   }
 }
 
-// Puts edge e, alone so far, into the ring of f.
-static inline void insert_after(rings* g, int e, int f) {
-  const int next = g->edges[f].next;
-  g->edges[e].previous = f;
+// Puts edge e into a ring, between two neighbours.
+static inline void join(rings* g, int previous, int e, int next) {
+  g->edges[e].previous = previous;
   g->edges[e].next = next;
-  g->edges[f].next = e;
+  g->edges[previous].next = e;
   g->edges[next].previous = e;
 }
-static inline void insert_before(rings* g, int e, int f) { insert_after(g, e, g->edges[f].previous); }
+static inline void insert_after(rings* g, int e, int f) { join(g, f, e, g->edges[f].next); }
+static inline void insert_before(rings* g, int e, int f) { join(g, g->edges[f].previous, e, f); }
 
 // Takes edge e, which is not its origin's vertex_edge, out of the ring, in which there are others.
 static inline void unlink(rings* g, int e) {
@@ -258,53 +267,96 @@ static inline int lower_tangent(rings* g, int left, int right) {
   return base;
 }
 
+// Whether an apex that sees the base so lies above it.
+static inline int is_above(rings* g, double_pair left, double_pair right, double_pair apex, angle seen) {
+  TALLY(*g, orientations, 1);
+  const int sign = angle_side(seen, g->bounds.orient);
+  return (sign != UNDECIDED ? sign : side_undecided(g, as_point(left), as_point(right), as_point(apex))) > 0;
+}
+
+// Whether a point that sees the base so is inside of the circle through the base and an apex above it.
+static inline int rules_out(rings* g, double_pair left, double_pair right, double_pair apex, angle apex_seen,
+                            double_pair point, angle seen, double bound) {
+  TALLY(*g, circles, 1);
+  const int sign = angle_compared(seen, apex_seen, bound);
+  return sign == 1 || sign == -1
+             ? sign > 0
+             : in_circle_undecided(g, as_point(left), as_point(right), as_point(apex), as_point(point), bound);
+}
+
+static inline double_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
+
 // Merges two triangulations that a cut separates, named as if it were vertical. left: the left one's last vertex along
 // the axis; right: the right one's first.
+//
+// Its time is that of waiting: for memory, for predicates, and for predictions of them that were wrong. So the
+// in-circle tests over a base compare angles, which are computed once and also tell which apexes rise above it. The
+// side whose vertex stays keeps its candidate in registers.
 static inline void merge_triangulations(rings* g, int left, int right) {
   GLOBAL const ring_edge* edges = g->edges;
+  const double bound = angle_bound(g->bounds.circle);
   int base = lower_tangent(g, left, right);
   left = edges[base].to;
   right = edges[base ^ 1].to;
-  double2 left_point = g->points[left], right_point = g->points[right];
-  for (int rises = 1; rises;) {
+  double_pair left_point = point_at(g, left), right_point = point_at(g, right);
+  int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
+  int left_to = edges[left_edge].to, right_to = edges[right_edge].to;
+  double_pair left_apex = point_at(g, left_to), right_apex = point_at(g, right_to);
+  for (;;) {
     // Each side's candidate: the next edge that rises above the base, after removal of those that its circle rules out.
-    int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
-    double2 left_apex = g->points[edges[left_edge].to], right_apex = g->points[edges[right_edge].to];
-    const int left_rises = turns_left(g, left_apex, left_point, right_point);
-    const int right_rises = turns_left(g, right_apex, left_point, right_point);
-    rises = left_rises || right_rises;
-    if (!rises) break;
+    angle left_seen = angle_of(left_apex, left_point, right_point);
+    angle right_seen = angle_of(right_apex, left_point, right_point);
+    const int left_rises = is_above(g, left_point, right_point, left_apex, left_seen);
+    const int right_rises = is_above(g, left_point, right_point, right_apex, right_seen);
+    if (!left_rises && !right_rises) break;
     if (left_rises) {
       for (int then = edges[left_edge].next; then != (base ^ 1); then = edges[left_edge].next) {
-        const double2 beyond = g->points[edges[then].to];
-        if (!in_circle(g, left_point, right_point, left_apex, beyond)) break;
+        const int beyond_to = edges[then].to;
+        const double_pair beyond = point_at(g, beyond_to);
+        const angle seen = angle_of(beyond, left_point, right_point);
+        if (!rules_out(g, left_point, right_point, left_apex, left_seen, beyond, seen, bound)) break;
         remove_edge(g, left_edge);
         left_edge = then;
+        left_to = beyond_to;
         left_apex = beyond;
+        left_seen = seen;
       }
     }
     if (right_rises) {
       for (int then = edges[right_edge].previous; then != base; then = edges[right_edge].previous) {
-        const double2 beyond = g->points[edges[then].to];
-        if (!in_circle(g, left_point, right_point, right_apex, beyond)) break;
+        const int beyond_to = edges[then].to;
+        const double_pair beyond = point_at(g, beyond_to);
+        const angle seen = angle_of(beyond, left_point, right_point);
+        if (!rules_out(g, left_point, right_point, right_apex, right_seen, beyond, seen, bound)) break;
         remove_edge(g, right_edge);
         right_edge = then;
+        right_to = beyond_to;
         right_apex = beyond;
+        right_seen = seen;
       }
     }
-    if (!left_rises || (right_rises && in_circle(g, left_point, right_point, left_apex, right_apex))) {
-      right = edges[right_edge].to;
+    if (!left_rises ||
+        (right_rises && rules_out(g, left_point, right_point, left_apex, left_seen, right_apex, right_seen, bound))) {
+      const int from_apex = right_edge ^ 1, above_right = edges[from_apex].previous;
+      right = right_to;
       right_point = right_apex;
       const int crossing = make_edge(g, right, left);
-      insert_before(g, crossing, right_edge ^ 1);
-      insert_after(g, crossing ^ 1, base ^ 1);
+      join(g, above_right, crossing, from_apex);
+      join(g, base ^ 1, crossing ^ 1, left_edge);
+      right_edge = above_right;
+      right_to = edges[right_edge].to;
+      right_apex = point_at(g, right_to);
       base = crossing;
     } else {
-      left = edges[left_edge].to;
+      const int from_apex = left_edge ^ 1, above_left = edges[from_apex].next;
+      left = left_to;
       left_point = left_apex;
       const int crossing = make_edge(g, right, left);
-      insert_before(g, crossing, base);
-      insert_after(g, crossing ^ 1, left_edge ^ 1);
+      join(g, right_edge, crossing, base);
+      join(g, from_apex, crossing ^ 1, above_left);
+      left_edge = above_left;
+      left_to = edges[left_edge].to;
+      left_apex = point_at(g, left_to);
       base = crossing;
     }
   }

@@ -52,6 +52,18 @@ struct double2 {
 double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
 double2 operator-(double2 a) { return {-a.x, -a.y}; }
 
+using double_pair = double2;
+double_pair operator+(double_pair a, double_pair b) { return {a.x + b.x, a.y + b.y}; }
+double_pair operator*(double_pair a, double_pair b) { return {a.x * b.x, a.y * b.y}; }
+double_pair as_pair(double2 p) { return p; }
+Counted low(double_pair p) { return p.x; }
+Counted high(double_pair p) { return p.y; }
+double_pair swapped(double_pair p) { return {p.y, p.x}; }
+double_pair lows(double_pair p, double_pair q) { return {p.x, q.x}; }
+double_pair highs(double_pair p, double_pair q) { return {p.y, q.y}; }
+double_pair high_negated(double_pair p) { return {p.x, -p.y}; }
+double_pair magnitudes(double_pair p) { return {fabs(p.x), fabs(p.y)}; }
+
 // For the exact tests, which are read but not counted.
 using kernel::as_long;
 using kernel::as_ulong;
