@@ -1,10 +1,11 @@
 // The dual of a triangulation: circumcentres, and for each vertex its triangles in their order around it.
 //
-// circumcentres is one pass over the triangles. measure_cells, another one, finds the triangle in which each cell
-// begins and the size of the cell, by walks around vertices. The host scans the sizes. write_cells, a third pass over
-// the triangles, writes the cells that begin in each to their places. Triangles that follow each other mostly are near
-// each other, whatever the order of the points is, so walks read what is in the cache. mark_hull marks the cells that
-// are unbounded. Indices that are out of range are skipped.
+// circumcentres is one pass over the triangles. link_corners, another one, finds the way around each vertex.
+// measure_cells finds the triangle in which each cell begins and the size of the cell, by walks around vertices. The
+// host scans the sizes. write_cells writes the cells that begin in each triangle to their places. These two are passes
+// over chunks of triangles, with one work-item per chunk. Triangles that follow each other mostly are near each other,
+// whatever the order of the points is, so walks read what is in the cache. mark_hull marks the cells that are
+// unbounded. Indices that are out of range are skipped.
 
 #include "shared/bounds.h"
 #include "shared/coordinates.h"
@@ -22,21 +23,29 @@
 // Circumcentres
 
 // Whether a coordinate is in the range in which predicates are exact, whatever its bits are: as nearly all are.
+#define LEAST_IN_RANGE power_of_two(LOWEST_EXPONENT + DOUBLE_BITS - 1)
+#define END_OF_RANGE power_of_two(LARGEST_EXPONENT + 1)
 static inline int is_in_range(double x) {
-  const double magnitude = fabs(x);
-  return (magnitude == 0.0) | ((magnitude >= power_of_two(LOWEST_EXPONENT + DOUBLE_BITS - 1)) &
-                               (magnitude < power_of_two(LARGEST_EXPONENT + 1)));
+  return (x == 0.0) | ((fabs(x) >= LEAST_IN_RANGE) & (fabs(x) < END_OF_RANGE));
 }
+
+static inline double2 magnitudes_of(double2 p) { return VECTOR(double2, fabs(p.x), fabs(p.y)); }
 
 // The shift that brings a triangle to that range. The triangulation is known to be exact, so the bits of the
 // coordinates span at most MOST_BITS.
-static inline int shift_of(double2 a, double2 b, double2 c) {
+OUT_OF_LINE static inline int shift_for(double2 a, double2 b, double2 c, double most) {
   if (is_in_range(a.x) & is_in_range(a.y) & is_in_range(b.x) & is_in_range(b.y) & is_in_range(c.x) & is_in_range(c.y))
     return 0;
-  const double largest_a = fmax(fabs(a.x), fabs(a.y));
-  const double largest_b = fmax(fabs(b.x), fabs(b.y));
-  const double largest_c = fmax(fabs(c.x), fabs(c.y));
-  return LARGEST_EXPONENT - ilogb(fmax(largest_a, fmax(largest_b, largest_c)));
+  return LARGEST_EXPONENT - ilogb(most);
+}
+
+static inline int shift_of(double2 a, double2 b, double2 c) {
+  const double2 p = magnitudes_of(a), q = magnitudes_of(b), r = magnitudes_of(c);
+  const double least = min(min(min(p.x, p.y), min(q.x, q.y)), min(r.x, r.y));
+  const double most = max(max(max(p.x, p.y), max(q.x, q.y)), max(r.x, r.y));
+  // So it is mostly; but a coordinate may be 0.
+  if (least >= LEAST_IN_RANGE && most < END_OF_RANGE) return 0;
+  return shift_for(a, b, c, most);
 }
 
 static inline double2 shifted(double2 p, int shift) {
@@ -67,7 +76,7 @@ static inline double rounded(const expansion* e) {
 }
 
 // The centre relative to a, by determinants that are exact until they are rounded.
-static inline double2 centre_exact(double2 a, double2 b, double2 c) {
+OUT_OF_LINE static inline double2 centre_exact(double2 a, double2 b, double2 c) {
   const double2 bx = two_sum(b.x, -a.x), by = two_sum(b.y, -a.y);
   const double2 cx = two_sum(c.x, -a.x), cy = two_sum(c.y, -a.y);
   expansion sum;
@@ -111,15 +120,20 @@ static inline double2 centre(double2 a, double2 b, double2 c) {
 
 static inline void fetch_points(int corner, int end, global const int* triangles, global const double* input) {
 #if FETCH_AHEAD
-  for (int c = corner; c < min(corner + 3, end); ++c) fetch(&input[2 * triangles[c]]);
+  if (corner < end) {
+    for (int c = corner; c < corner + 3; ++c) fetch(&input[2 * triangles[c]]);
+  }
 #endif
 }
 
-// Relative to the lexicographically first corner: that is the same one for all triangles of a cocircular fan.
+// Relative to the lexicographically first corner: that is the same one for all triangles of a cocircular fan. Without
+// branches, since they could not be predicted.
 static inline double2 centre_from_first(double2 a, double2 b, double2 c) {
-  const int b_first = comes_before(b, a) && comes_before(b, c);
-  const int c_first = comes_before(c, a) && !b_first && comes_before(c, b);
-  return centre(b_first ? b : c_first ? c : a, b_first ? c : c_first ? a : b, b_first ? a : c_first ? b : c);
+  const double2 corners[5] = {a, b, c, a, b};
+  const int b_first = comes_before(b, a) & comes_before(b, c);
+  const int c_first = comes_before(c, a) & comes_before(c, b);
+  const int first = b_first + 2 * c_first;
+  return centre(corners[first], corners[first + 1], corners[first + 2]);
 }
 
 kernel void circumcentres(int n, int points, global const double* restrict input, global const int* restrict triangles,
@@ -129,7 +143,7 @@ kernel void circumcentres(int n, int points, global const double* restrict input
     fetch_points(3 * (t + TRIANGLES_AHEAD), 3 * n, triangles, input);
     const int i = triangles[3 * t], j = triangles[3 * t + 1], k = triangles[3 * t + 2];
     double2 at = VECTOR(double2, as_double(0x7ff8000000000000UL), as_double(0x7ff8000000000000UL));
-    if (min(i, min(j, k)) >= 0 && max(i, max(j, k)) < points) {
+    if (((uint)i < (uint)points) & ((uint)j < (uint)points) & ((uint)k < (uint)points)) {
       const double2 a = vload2(i, input), b = vload2(j, input), c = vload2(k, input);
       const int shift = shift_of(a, b, c);
       if (shift == 0) {
@@ -152,120 +166,139 @@ static inline int corner_towards(int neighbor, global const int* three) {
   return is_one + 2 * (is_two & !is_one);
 }
 
-// A walk around a vertex, counter-clockwise or clockwise: the triangle where it is, or -1; the neighbour where it goes;
-// the other two neighbours.
-typedef struct {
-  int triangle, next, other, last;
-} turn;
-
-static inline turn turn_at(int triangle, int corner, int is_clockwise, global const int* neighbors) {
-  const int ahead = neighbors[3 * triangle + next_corner(corner)];
-  const int behind = neighbors[3 * triangle + corner_before(corner)];
-  const turn at = {triangle, is_clockwise ? behind : ahead, neighbors[3 * triangle + corner],
-                   is_clockwise ? ahead : behind};
-  return at;
+// Corners are numbered 3 t + k. n triangles. ahead: the same vertex in the next triangle around it, counter-clockwise.
+// None, -1, behind the hull, and where neighbours are not mutual or one is there twice: so no two corners have the same
+// next one, and walks end whatever the arrays contain.
+kernel void link_corners(int n, global const int* restrict neighbors, global int* restrict ahead) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    fetch(&neighbors[3 * min(n - 1, t + WALKS_AHEAD)]);
+    global const int* const here = neighbors + 3 * t;
+    for (int k = 0; k < 3; ++k) {
+      const int u = here[next_corner(k)];
+      int next = -1;
+      if (u >= 0 && u < n) {
+        global const int* const there = neighbors + 3 * u;
+        const int back = corner_towards(t, there);
+        const int is_mutual = (there[back] == t) & (u != here[k]) & (u != here[corner_before(k)]);
+        if (is_mutual) next = 3 * u + next_corner(back);
+      }
+      ahead[3 * t + k] = next;
+    }
+  }
 }
 
-// The next triangle around the vertex. None, -1, behind the hull, and where neighbours are not mutual or one is there
-// twice: so no two corners have the same next one, and walks end whatever the arrays contain. The corner opposite to
-// the triangle before is chosen without branches, since they could not be predicted.
-static inline turn turned(turn from, int is_clockwise, int triangle_count, global const int* neighbors) {
-  turn to = {-1, -1, -1, -1};
-  if (from.next < 0 || from.next >= triangle_count) return to;
-  global const int* const there = neighbors + 3 * from.next;
-  const int zero = there[0], one = there[1], two = there[2];
-  const int is_one = one == from.triangle, is_two = (two == from.triangle) & !is_one;
-  const int is_mutual =
-      ((zero == from.triangle) | is_one | is_two) & (from.next != from.other) & (from.next != from.last);
-  const int is_zero = 1 - is_one - is_two;
-  const int before = there[2 * is_zero + is_two], after = there[is_zero + 2 * is_one];
-  to.triangle = is_mutual ? from.next : -1;
-  to.next = is_clockwise ? after : before;
-  to.other = is_clockwise ? before : after;
-  to.last = from.triangle;
-  return to;
+// The corner that has this one ahead, or -1.
+static inline int corner_behind(int corner, int triangle_count, global const int* neighbors, global const int* ahead) {
+  const int t = corner / 3, u = neighbors[3 * t + corner_before(corner - 3 * t)];
+  if (u < 0 || u >= triangle_count) return -1;
+  const int behind = 3 * u + corner_before(corner_towards(t, neighbors + 3 * u));
+  return ahead[behind] == corner ? behind : -1;
 }
 
 // The cell of a vertex on the hull begins at the hull edge that leaves the vertex.
-static inline uint unbounded_cell_size(int triangle, int corner, int triangle_count, global const int* neighbors) {
+static inline uint unbounded_cell_size(int first, global const int* ahead) {
   uint size = 0;
-  for (turn at = turn_at(triangle, corner, 0, neighbors); at.triangle >= 0;
-       at = turned(at, 0, triangle_count, neighbors)) {
-    ++size;
-  }
+  for (int at = first; at >= 0; at = ahead[at]) ++size;
   return size;
 }
 
 // The cell of any other vertex begins with the smallest triangle. 0 if there is a smaller one, or if the vertex is on
-// the hull. Walks in both directions take turns: then all corners of a vertex with d triangles take O(d log d) steps,
+// the hull. The first steps are made without branches, which could not be predicted. Around vertices with more
+// triangles, walks in both directions take turns: then all corners of a vertex with d triangles take O(d log d) steps,
 // in whatever order the triangles are.
-static inline uint bounded_cell_size(int first, int corner, int triangle_count, global const int* neighbors) {
-  turn ahead = turned(turn_at(first, corner, 0, neighbors), 0, triangle_count, neighbors);
-  turn behind = turn_at(first, corner, 1, neighbors);
+#define FEW_TRIANGLES 8
+static inline uint bounded_cell_size(int first, int triangle_count, global const int* neighbors,
+                                     global const int* ahead) {
   uint size = 1;
-  while (ahead.triangle != behind.triangle) {
-    if (ahead.triangle < first) return 0;
+  int front = ahead[first], back = first;
+  for (int step = 1; step < FEW_TRIANGLES; ++step) {
+    const int goes_on = front > first;
+    const int next = ahead[max(front, 0)];
+    size += goes_on;
+    front = goes_on ? next : front;
+  }
+  if (front <= first) return front < first ? 0 : size;
+  while (front != back) {
+    if (front < first) return 0;
     ++size;
-    behind = turned(behind, 1, triangle_count, neighbors);
-    if (behind.triangle == ahead.triangle) break;
-    if (behind.triangle < first) return 0;
+    back = corner_behind(back, triangle_count, neighbors, ahead);
+    if (back == front) break;
+    if (back < first) return 0;
     ++size;
-    ahead = turned(ahead, 0, triangle_count, neighbors);
+    front = ahead[front];
   }
   return size;
 }
 
+// Triangles whose corners are looked at before the cells that may begin there are.
+#define TRIANGLES_AT_ONCE 64
+
 // n triangles. sizes: 0 throughout; gets the size of each vertex' cell. firsts: gets for each triangle the set of its
 // corners at which cells begin.
-kernel void measure_cells(int n, int points, global const int* restrict triangles, global const int* restrict neighbors,
+kernel void measure_cells(int n, int chunk, int points, global const int* restrict triangles,
+                          global const int* restrict neighbors, global const int* restrict ahead,
                           global uint* restrict sizes, global uchar* restrict firsts) {
-  const int t = get_global_id(0);
-  if (t < n) {
-    fetch(&neighbors[3 * min(n - 1, t + WALKS_AHEAD)]);
-    uint begun = 0;
-    for (int k = 0; k < 3; ++k) {
-      const int ahead = neighbors[3 * t + next_corner(k)], behind = neighbors[3 * t + corner_before(k)];
-      const int vertex = triangles[3 * t + k];
-      // Most corners have a smaller triangle beside them.
-      if ((behind != -1 && min(ahead, behind) < t) || vertex < 0 || vertex >= points) continue;
-      const uint size = behind == -1 ? unbounded_cell_size(t, k, n, neighbors) : bounded_cell_size(t, k, n, neighbors);
-      if (size > 0) {
-        sizes[vertex] = size;
-        begun |= 1u << k;
+  const int c = get_global_id(0);
+  if ((long)c * chunk < n) {
+    const int last = (int)min((long)n, (c + 1L) * chunk);
+    for (int begin = c * chunk; begin < last; begin += TRIANGLES_AT_ONCE) {
+      const int end = min(last, begin + TRIANGLES_AT_ONCE);
+      int corners[3 * TRIANGLES_AT_ONCE + 1];
+      int count = 0;
+      for (int t = begin; t < end; ++t) {
+        fetch(&ahead[3 * min(n - 1, t + WALKS_AHEAD)]);
+        firsts[t] = 0;
+        for (int k = 0; k < 3; ++k) {
+          const int left = neighbors[3 * t + next_corner(k)], right = neighbors[3 * t + corner_before(k)];
+          corners[count] = 3 * t + k;
+          // Most corners have a smaller triangle beside them.
+          count += (right == -1) | (min(left, right) >= t);
+        }
+      }
+      for (int i = 0; i < count; ++i) {
+        const int first = corners[i], t = first / 3, k = first - 3 * t;
+        const int vertex = triangles[first];
+        if (vertex < 0 || vertex >= points) continue;
+        const uint size = neighbors[3 * t + corner_before(k)] == -1 ? unbounded_cell_size(first, ahead)
+                                                                    : bounded_cell_size(first, n, neighbors, ahead);
+        if (size > 0) {
+          sizes[vertex] = size;
+          firsts[t] |= 1u << k;
+        }
       }
     }
-    firsts[t] = begun;
   }
-}
-
-static inline void fetch_offsets(int t, int end, global const int* triangles, global const uchar* firsts,
-                                 global const uint* offsets) {
-#if FETCH_AHEAD
-  for (int k = 0; k < 3 && t < end; ++k) {
-    if (firsts[t] >> k & 1) fetch(&offsets[triangles[3 * t + k]]);
-  }
-#endif
 }
 
 // n triangles. offsets: where cells begin; the last one is the end.
-kernel void write_cells(int n, global const int* restrict triangles, global const int* restrict neighbors,
+kernel void write_cells(int n, int chunk, global const int* restrict triangles, global const int* restrict ahead,
                         global const uchar* restrict firsts, global const uint* restrict offsets,
                         global int* restrict cells) {
-  const int t = get_global_id(0);
-  if (t < n) {
-    fetch(&neighbors[3 * min(n - 1, t + WALKS_AHEAD)]);
-    fetch_offsets(t + TRIANGLES_AHEAD, n, triangles, firsts, offsets);
-    for (int k = 0; k < 3; ++k) {
-      if ((firsts[t] >> k & 1) == 0) continue;
-      const int vertex = triangles[3 * t + k];
-      const uint end = offsets[vertex + 1];
-      // As turned(), which has found the way already.
-      int at = t, opposite = next_corner(k);
-      for (uint to = offsets[vertex]; to < end && at >= 0 && at < n; ++to) {
-        cells[to] = at;
-        const int next = neighbors[3 * at + opposite];
-        opposite = next < 0 || next >= n ? 0 : corner_before(corner_towards(at, neighbors + 3 * next));
-        at = next;
+  const int c = get_global_id(0);
+  if ((long)c * chunk < n) {
+    const int last = (int)min((long)n, (c + 1L) * chunk);
+    for (int begin = c * chunk; begin < last; begin += TRIANGLES_AT_ONCE) {
+      const int end = min(last, begin + TRIANGLES_AT_ONCE);
+      int corners[3 * TRIANGLES_AT_ONCE + 1];
+      int count = 0;
+      for (int t = begin; t < end; ++t) {
+        fetch(&ahead[3 * min(n - 1, t + WALKS_AHEAD)]);
+        for (int k = 0; k < 3; ++k) {
+          corners[count] = 3 * t + k;
+          count += firsts[t] >> k & 1;
+        }
+      }
+      for (int i = 0; i < count; ++i) fetch(&offsets[triangles[corners[i]]]);
+      for (int i = 0; i < count; ++i) fetch(&cells[offsets[triangles[corners[i]]]]);
+      for (int i = 0; i < count; ++i) {
+        const int vertex = triangles[corners[i]];
+        const uint end_of_cell = offsets[vertex + 1];
+        int at = corners[i];
+        for (uint to = offsets[vertex]; to < end_of_cell && at >= 0; ++to) {
+          cells[to] = at / 3;
+          at = ahead[at];
+        }
       }
     }
   }

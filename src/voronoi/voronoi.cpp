@@ -15,22 +15,27 @@ void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
 }
 
 void write_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result) {
-  const std::size_t n = mesh.points();
-  const auto firsts = runtime.arena().allocate<cl_uchar>(mesh.triangle_count());
+  const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
+  const auto ahead = runtime.arena().allocate<cl_int>(3 * triangles);
+  const auto firsts = runtime.arena().allocate<cl_uchar>(triangles);
+  runtime.map(triangles, kernels::link_corners{.neighbors = mesh.neighbors, .ahead = ahead});
   // The prefix sums of the sizes are the offsets, which replace the sizes in place.
   const auto offsets = result.cell_offsets.as<cl_uint>();
   runtime.fill(offsets, n + 1, cl_uint{0});
-  runtime.map(mesh.triangle_count(), kernels::measure_cells{.points = n,
-                                                            .triangles = mesh.triangles,
-                                                            .neighbors = mesh.neighbors,
-                                                            .sizes = offsets,
-                                                            .firsts = firsts});
+  runtime.chunks(triangles, runtime.sizes().chunk(triangles),
+                 kernels::measure_cells{.points = n,
+                                        .triangles = mesh.triangles,
+                                        .neighbors = mesh.neighbors,
+                                        .ahead = ahead,
+                                        .sizes = offsets,
+                                        .firsts = firsts});
   host::exclusive_scan(runtime, offsets, n, offsets);
-  runtime.map(mesh.triangle_count(), kernels::write_cells{.triangles = mesh.triangles,
-                                                          .neighbors = mesh.neighbors,
-                                                          .firsts = firsts,
-                                                          .offsets = offsets,
-                                                          .cells = result.cells});
+  runtime.chunks(triangles, runtime.sizes().chunk(triangles),
+                 kernels::write_cells{.triangles = mesh.triangles,
+                                      .ahead = ahead,
+                                      .firsts = firsts,
+                                      .offsets = offsets,
+                                      .cells = result.cells});
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Buffers {
 };
 
 /// Enqueues the computation of the dual, and does not wait. If the mesh is not valid, the results are
-/// unspecified, but no memory outside of the arrays is accessed. Temporary memory: a byte per triangle. A
+/// unspecified, but no memory outside of the arrays is accessed. Temporary memory: 13 bytes per triangle. A
 /// cell of d triangles takes O(d log d) steps, of which one work-item does O(d).
 void compute(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result);
 

@@ -612,7 +612,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 26u);
+  EXPECT_EQ(kernels, 27u);
 }
 
 }  // namespace
