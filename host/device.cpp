@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/compute/platform.hpp>
 #include <cctype>
+#include <cerrno>
 #include <cstdlib>
 
 #include "host/error.hpp"
@@ -101,11 +102,13 @@ std::string wanted_device(const std::string& given) {
 
 bool may_have_gpu([[maybe_unused]] const std::string& folder) {
 #ifdef __linux__
-  for (const char* const drivers : {"OCL_ICD_VENDORS", "OCL_ICD_FILENAMES"}) {
+  for (const char* const drivers : {"OCL_ICD_VENDORS", "OCL_ICD_FILENAMES", "OPENCL_VENDOR_PATH"}) {
     if (std::getenv(drivers) != nullptr) return true;
   }
   for (const char* const file : kGpuFiles) {
-    if (::access((folder + "/" + file).c_str(), F_OK) == 0) return true;
+    const bool is_missing =
+        ::access((folder + "/" + file).c_str(), F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR);
+    if (!is_missing) return true;
   }
   return false;
 #else

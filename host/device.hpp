@@ -27,7 +27,7 @@ std::optional<boost::compute::device> find_gpu();
 
 /// Whether this system may have a GPU, as far as its device files in `folder` tell. Loading OpenCL to look
 /// for one takes longer than triangulating ten thousand points. Always true if the environment chooses
-/// OpenCL's drivers (OCL_ICD_VENDORS, OCL_ICD_FILENAMES).
+/// OpenCL's drivers (OCL_ICD_VENDORS, OCL_ICD_FILENAMES, OPENCL_VENDOR_PATH).
 bool may_have_gpu(const std::string& folder = "/dev");
 
 /// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else the first GPU with fp64,

@@ -47,7 +47,6 @@ inline void vstore2(double2 value, std::size_t i, double* to) {
 inline double2 convert_double2(float2 value) { return {value.x, value.y}; }
 inline double min(double a, double b) { return b < a ? b : a; }
 inline double max(double a, double b) { return a < b ? b : a; }
-using std::fmax;
 using std::ilogb;
 inline bool isfinite(double x) { return std::isfinite(x); }
 

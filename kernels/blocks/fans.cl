@@ -20,7 +20,7 @@ static inline int apex_left_of(int e, global const ring_edge* edges) {
   return edges[edges[e ^ 1].previous].to == apex ? apex : NO_VERTEX;
 }
 
-// c and d are seen from either side of the edge from a to b.
+// c and d lie on either side of the edge from a to b.
 static inline int are_cocircular(double2 a, double2 b, double2 c, double2 d, double bound) {
   const int sign = angle_compared(angle_at(d, a, b), angle_at(c, a, b), bound);
   return (sign == UNDECIDED ? circle_undecided(a, b, c, d, bound) : sign) == 0;

@@ -32,7 +32,7 @@ INTEGER_CONSTANT(BOX_LEVELS, 12);
 static inline int corner_at(face f, int vertex) { return f.corner[0] == vertex ? 0 : f.corner[1] == vertex ? 1 : 2; }
 
 // A triangulation, as locators have it; points are scaled by `unit` more, as queries are. Where there are levels:
-// the first triangle of each vertex, clockwise; the parts of fans.
+// a triangle of each vertex, on the hull the first one counter-clockwise; the parts of fans.
 typedef struct {
   GLOBAL const double2* points;
   GLOBAL const face* faces;

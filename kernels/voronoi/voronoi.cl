@@ -36,7 +36,8 @@ static inline double2 magnitudes_of(double2 p) { return VECTOR(double2, fabs(p.x
 OUT_OF_LINE static inline int shift_for(double2 a, double2 b, double2 c, double most) {
   if (is_in_range(a.x) & is_in_range(a.y) & is_in_range(b.x) & is_in_range(b.y) & is_in_range(c.x) & is_in_range(c.y))
     return 0;
-  return LARGEST_EXPONENT - ilogb(most);
+  // Others are no points of a triangulation.
+  return isfinite(most) ? LARGEST_EXPONENT - ilogb(most) : 0;
 }
 
 static inline int shift_of(double2 a, double2 b, double2 c) {

@@ -19,6 +19,8 @@ constexpr std::size_t kPersistentByBlock = 3 * sizeof(cl_int) + sizeof(kernel::b
                                            sizeof(kernel::cut_node) + sizeof(kernel::solved_block);
 // Per point, until it is in its block.
 constexpr std::size_t kInput = sizeof(cl_double2);
+// Per set, if each has its own scaling, in a copy of the points: its first point and its shift.
+constexpr std::size_t kScalingBySet = 2 * sizeof(cl_int);
 // Per point, while points are moved to blocks: the block, the cursor, the count and the sum of its scan.
 constexpr std::size_t kMoving = 4 * sizeof(cl_int);
 // Per block: a place, the first count of its set, and the further values of the last chunk of its set.
@@ -38,11 +40,12 @@ WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std:
   const std::size_t chunks = std::min(n, 3 * n / tuning.chunk(n)) + blocks + 2;
   const std::size_t rounding = kArrays * runtime.arena().alignment();
   const std::size_t cutting = CutTrees::bytes(std::min(sets, leaves), leaves, tuning.samples_per_block);
+  const std::size_t scaling = sets > 1 ? n * kInput + (sets + 1) * kScalingBySet : 0;
   const std::size_t moving = n * kMoving + blocks * kMovingByBlock + chunks * kMovingByChunk;
   const std::size_t solving = solve_bytes(tuning, n);
   const std::size_t writing = n * kWriting + 2 * (sets + 1) * sizeof(cl_int);
   return {n * kPersistent + (blocks + 1) * kPersistentByBlock + rounding,
-          std::max({n * kInput + std::max(cutting, moving), solving, writing}) + rounding};
+          std::max({n * kInput + scaling + std::max(cutting, moving), solving, writing}) + rounding};
 }
 
 }  // namespace flaunay::blocks

@@ -149,15 +149,14 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
   return implementation_->answer<std::int32_t>(queries, offsets, [&](auto& runtime, const auto&... all) {
-    locate::nearest(runtime, implementation_->own, implementation_->locator, all...);
+    locate::nearest(runtime, implementation_->locator, all...);
   });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
   implementation_->answer<cl_int>(
-      queries, nullptr, points, "nearest points", enqueue, [&](auto& runtime, const auto&... all) {
-        locate::nearest(runtime, implementation_->own, implementation_->locator, all...);
-      });
+      queries, nullptr, points, "nearest points", enqueue,
+      [&](auto& runtime, const auto&... all) { locate::nearest(runtime, implementation_->locator, all...); });
 }
 
 std::vector<double> Locator::interpolate(const double* values, const double* queries, std::size_t m) {

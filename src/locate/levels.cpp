@@ -96,10 +96,6 @@ Buffer<kernel::vertex_box> make_boxes(host::Runtime& runtime, Arena& own, const 
 
 }  // namespace
 
-std::vector<cl_int> integers(const std::vector<std::size_t>& values) {
-  return {values.begin(), values.end()};
-}
-
 SampleSizes sample_sizes(const std::vector<std::size_t>& vertices, std::size_t ratio) {
   SampleSizes sizes;
   sizes.sets = vertices.size();
@@ -113,17 +109,20 @@ SampleSizes sample_sizes(const std::vector<std::size_t>& vertices, std::size_t r
   }
 }
 
-void make_levels(host::Runtime& runtime, Arena& own, Locator& locator) {
+void make_levels(host::Runtime& runtime, Locator& locator) {
   Arena& scratch = runtime.arena();
   Arena::Scope scope(scratch);
   const Tuning& tuning = tuning_of(runtime);
-  const std::size_t ratio = std::max<std::size_t>(2, tuning.level_ratio);
   std::vector<cl_int> first_vertices(locator.sets + 1);
   std::vector<kernel::mesh_set> records(locator.sets);
+  const host::Runtime::Settled settled(runtime);
   runtime.read_later(locator.first_vertices, 0, locator.sets + 1, first_vertices.data());
   runtime.read(locator.records, 0, locator.sets, records.data());
 
   Levels levels;
+  levels.own = std::make_shared<Arena>(runtime.memory());
+  if (runtime.sizes().separate_buffers != 0) levels.own->separate_buffers();
+  Arena& own = *levels.own;
   std::vector<cl_int> long_sets(locator.sets, -1), firsts;
   std::vector<std::size_t> vertices;
   for (std::size_t s = 0; s < locator.sets; ++s) {
@@ -132,6 +131,9 @@ void make_levels(host::Runtime& runtime, Arena& own, Locator& locator) {
     firsts.push_back(first_vertices[s]);
     vertices.push_back(static_cast<std::size_t>(first_vertices[s + 1] - first_vertices[s]));
   }
+  // So that there is a level, whatever the tuning.
+  const std::size_t most = vertices.empty() ? 2 : *std::max_element(vertices.begin(), vertices.end());
+  const std::size_t ratio = std::min(std::max<std::size_t>(2, tuning.level_ratio), most);
   const SampleSizes sizes = sample_sizes(vertices, ratio);
   const std::size_t samples = sizes.offsets.back();
   levels.count = sizes.levels;
@@ -153,9 +155,9 @@ void make_levels(host::Runtime& runtime, Arena& own, Locator& locator) {
   const Options options;
   statistics::Phases phases(options);
   const blocks::Outcome outcome = blocks::run(runtime, persistent, sizes.offsets, exchange, phases);
-  locator.samples = std::make_shared<Locator>(
+  const auto samples_locator = std::make_shared<Locator>(
       make_walk_locator(runtime, own, exchange.result(sizes.offsets, outcome.sizes)));
-  const Locator& sampled = *locator.samples;
+  const Locator& sampled = *samples_locator;
   const auto numbers = scratch.allocate<cl_int>(samples);
   runtime.fill(numbers, samples, cl_int{-1});
   runtime.map(sampled.faces.size(), kernels::number_entries{.faces = sampled.faces,
@@ -172,6 +174,7 @@ void make_levels(host::Runtime& runtime, Arena& own, Locator& locator) {
   // The arenas of this call end here.
   runtime.finish();
   locator.levels = std::move(levels);
+  locator.samples = samples_locator;
 }
 
 }  // namespace flaunay::locate

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "points/device_mesh.hpp"
@@ -21,17 +22,16 @@ struct Stars {
 };
 
 /// Triangulations of samples, from the largest on, of each set that is large enough; the mesh's own stars; a
-/// tree of boxes around its vertices. About 20 bytes per triangle of the mesh.
+/// tree of boxes around its vertices. About 16 bytes per triangle of the mesh, and 8 more while they are
+/// made.
 struct Levels {
+  std::shared_ptr<Arena> own{};     ///< where the buffers come from
   std::size_t count = 0, sets = 0;  ///< levels, and sets that have them
   Buffer<cl_int> long_sets{};       ///< per set its number among those, or -1
   Buffer<cl_int> below{};           ///< per vertex of a sample, by its index there, the vertex below
   Stars stars{}, sample_stars{};
   Buffer<kernel::vertex_box> boxes{};
 };
-
-/// The same numbers, as kernels have them.
-std::vector<cl_int> integers(const std::vector<std::size_t>& values);
 
 /// The sizes of the samples: those of set s on level l are [offsets[l * sets + s], offsets[l * sets + s +
 /// 1]).
@@ -44,8 +44,9 @@ struct SampleSizes {
 /// below, and the last one has a few vertices of the largest set.
 SampleSizes sample_sizes(const std::vector<std::size_t>& vertices, std::size_t ratio);
 
-/// Makes the levels of a locator's mesh, and its samples. Their buffers come from `own`. Sets with fewer
-/// triangles than `levels_from` have none. Waits some 20 times. O(n log n), a small part of a triangulation.
-void make_levels(host::Runtime& runtime, Arena& own, Locator& locator);
+/// Makes the levels of a locator's mesh, and its samples. Sets with fewer triangles than `levels_from` have
+/// none. If it throws, the locator is as it was. Waits some 20 times. O(n log n), a small part of a
+/// triangulation.
+void make_levels(host::Runtime& runtime, Locator& locator);
 
 }  // namespace flaunay::locate

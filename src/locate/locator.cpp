@@ -268,7 +268,10 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
   Locator locator;
   locator.sets = mesh.sets();
   const UniformPoints input = make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
-  locator.range = {inspect_sets(runtime, mesh.coordinates, mesh.point_offsets), input.shifts};
+  locator.range = {input.by_set, input.shifts};
+  if (input.by_set.empty()) {
+    locator.range.by_set = inspect_sets(runtime, mesh.coordinates, mesh.point_offsets);
+  }
   locator.points = own.allocate<cl_double2>(n);
   locator.source = own.allocate<cl_int>(n);
   locator.first_triangle = own.allocate<cl_int>(n);
@@ -366,8 +369,8 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
   find_triangles(runtime, locator, pass, true, kNoLimits, queries, m, triangles);
 }
 
-void nearest(host::Runtime& runtime, Arena& own, Locator& locator, const Buffer<cl_double>& queries,
-             std::size_t m, const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points) {
+void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points) {
   Arena::Scope scope(runtime.arena());
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m), unanswered = runtime.arena().allocate<cl_int>(1);
@@ -378,7 +381,7 @@ void nearest(host::Runtime& runtime, Arena& own, Locator& locator, const Buffer<
   nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
   if (m == 0 || locator.most_triangles < limits.long_from || locator.levels.count > 0) return;
   if (runtime.read_one(unanswered, 0) == 0) return;
-  make_levels(runtime, own, locator);
+  make_levels(runtime, locator);
   nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
 }
 

@@ -34,17 +34,18 @@ struct Locator {
 
 /// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
 /// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
-/// for triangulation. Waits about 6 times. O(n log n).
+/// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
 Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
 
 /// The same without trees.
 Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
 
 // Queries are m points, x0 y0 x1 y1 ..., with the alignment of doubles; set s has queries [query_offsets[s],
-// query_offsets[s + 1]). Each call waits 2 times to check that all queries are finite, and neither too fine
-// nor too far away for exact arithmetic with the points; otherwise it throws Error(input), which names a
-// query. Then it enqueues the rest. Many queries are sorted by the leaves of the trees first, which takes one
-// more wait. Temporary memory: 24 m bytes, or 32 m if queries are sorted.
+// query_offsets[s + 1]). Each call waits 2 times, or 3 if sets need different scalings, to check that all
+// queries are finite, and neither too fine nor too far away for exact arithmetic with the points; otherwise
+// it throws Error(input), which names a query. Then it enqueues the rest. Many queries are sorted by the
+// leaves of the trees first, which takes one more wait. Temporary memory: 24 m bytes, or 32 m if queries are
+// sorted.
 
 /// Finds for each query the triangle that contains it, the smallest one if there are several; -1 outside of
 /// the hull.
@@ -54,9 +55,9 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
 /// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
 /// of its representative; -1 if the set is empty. About O(log n) steps per query, except at a vertex with
 /// very many neighbours that are no fan and are all about as near. If a query is far to walk to, makes the
-/// locator's levels, whose buffers come from `own`; until there are levels, waits once more.
-void nearest(host::Runtime& runtime, Arena& own, Locator& locator, const Buffer<cl_double>& queries,
-             std::size_t m, const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
+/// locator's levels; until there are levels, waits once more.
+void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
 
 /// Computes for each query the linear interpolation of the three values of its triangle; NaN outside of the
 /// hull. values: one per point.

@@ -11,6 +11,11 @@ namespace flaunay::points {
 using host::Arena;
 using host::Buffer;
 
+/// The same numbers, as kernels have them.
+inline std::vector<cl_int> integers(const std::vector<std::size_t>& values) {
+  return {values.begin(), values.end()};
+}
+
 struct DeviceMesh {
   std::vector<std::size_t> point_offsets, triangle_offsets, hull_offsets;  ///< sets + 1
   Buffer<cl_double> coordinates{};  ///< 2 per input point, as the caller gave them; aligned to 8 bytes only

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "launchers/points/inspect.cl.hpp"
+#include "points/device_mesh.hpp"
 #include "shared/codes.h"
 
 namespace flaunay::points {
@@ -19,10 +20,6 @@ std::vector<double> to_host(host::Runtime& runtime, const host::Buffer<cl_double
   return coordinates;
 }
 
-std::vector<cl_int> integers(const std::vector<std::size_t>& offsets) {
-  return {offsets.begin(), offsets.end()};
-}
-
 UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
                          const std::vector<std::size_t>& offsets) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
@@ -36,7 +33,7 @@ UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& 
                                      .shifts = runtime.upload(runtime.arena(), scalings.shifts),
                                      .input = points,
                                      .scaled_input = scaled});
-  return {scaled, {0, scalings.bounds}, scalings.shifts};
+  return {scaled, {0, scalings.bounds}, scalings.shifts, by_set};
 }
 
 }  // namespace
@@ -78,7 +75,10 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
   std::vector<double> coordinates;
   if (differ || magnitudes.bad != kernel::NO_BAD) coordinates = to_host(runtime, points, n);
   const Scaling scaling = scaling_for(coordinates.data(), 0, n, magnitudes);
-  return {points, scaling, {scaling.shift}};
+  return {points,
+          scaling,
+          {scaling.shift},
+          sets == 1 ? std::vector<Magnitudes>{magnitudes} : std::vector<Magnitudes>()};
 }
 
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,

@@ -22,6 +22,8 @@ struct UniformPoints {
   /// What the caller's points were multiplied by, together with the scaling: one power for all, or one per
   /// set.
   std::vector<int> shifts;
+  /// The magnitudes of the caller's points by set, if that took no pass of its own; otherwise empty.
+  std::vector<Magnitudes> by_set;
 };
 
 /// Chooses the scaling of sets of points. If the magnitudes of sets differ too much for one, the points are a

@@ -15,6 +15,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,7 @@ Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& valu
   const auto triangles = guarded<cl_int>(runtime, m), points = guarded<cl_int>(runtime, m);
   const auto results = guarded<cl_double>(runtime, m);
   locate(runtime, locator, queries, m, input.query_offsets, triangles);
-  nearest(runtime, own, locator, queries, m, input.query_offsets, points);
+  nearest(runtime, locator, queries, m, input.query_offsets, points);
   interpolate(runtime, locator, upload(runtime, values), queries, m, input.query_offsets, results);
   return {download(runtime, triangles, m), download(runtime, points, m), download(runtime, results, m)};
 }
@@ -319,8 +320,8 @@ double looked_at(const Case& input) {
   Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
   const std::size_t m = input.query_count();
   const auto answers = guarded<cl_int>(runtime, m);
-  nearest(runtime, own, locator, upload(runtime, input.queries), m, input.query_offsets, answers);
-  if (locator.levels.count == 0) make_levels(runtime, own, locator);
+  nearest(runtime, locator, upload(runtime, input.queries), m, input.query_offsets, answers);
+  if (locator.levels.count == 0) make_levels(runtime, locator);
   const std::vector<cl_int> expected = download(runtime, answers, m);
   const Levels& levels = locator.levels;
   const LocatorOnHost mesh(runtime, locator), samples(runtime, *locator.samples);
@@ -349,6 +350,165 @@ double looked_at(const Case& input) {
     sum += looked;
   }
   return sum / static_cast<double>(m);
+}
+
+/// The box around vertices, or around boxes of the level below.
+template <typename Low, typename High>
+kernel::vertex_box box_twin(std::size_t first, std::size_t last, const Low& low, const High& high) {
+  kernel::vertex_box box{low(first), high(first)};
+  for (std::size_t i = first + 1; i < last; ++i) {
+    box.low = {std::min(box.low.x, low(i).x), std::min(box.low.y, low(i).y)};
+    box.high = {std::max(box.high.x, high(i).x), std::max(box.high.y, high(i).y)};
+  }
+  return box;
+}
+
+void check_boxes(const LocatorOnHost& mesh, std::size_t vertices,
+                 const std::vector<kernel::vertex_box>& boxes) {
+  constexpr auto kFan = static_cast<std::size_t>(kernel::BOX_FAN);
+  const auto point = [&](std::size_t v) { return kernel::double2{mesh.points[v].s[0], mesh.points[v].s[1]}; };
+  std::vector<kernel::vertex_box> expected;
+  for (std::size_t v = 0; v < vertices; v += kFan) {
+    expected.push_back(box_twin(v, std::min(vertices, v + kFan), point, point));
+  }
+  std::size_t begin = 0;
+  while (expected.size() - begin > 1) {
+    const std::size_t end = expected.size();
+    for (std::size_t b = begin; b < end; b += kFan) {
+      expected.push_back(box_twin(
+          b, std::min(end, b + kFan), [&](std::size_t i) { return expected[i].low; },
+          [&](std::size_t i) { return expected[i].high; }));
+    }
+    begin = end;
+  }
+  ASSERT_EQ(boxes.size(), expected.size());
+  EXPECT_EQ(std::memcmp(boxes.data(), expected.data(), boxes.size() * sizeof boxes[0]), 0);
+}
+
+/// The triangle behind t in a fan, counter-clockwise about the fan's first vertex; -1 if there is none.
+int next_in_fan(const LocatorOnHost& mesh, int t, int* first) {
+  const auto place = [&](int v) {
+    const cl_double2 p = mesh.points[static_cast<std::size_t>(v)];
+    return std::make_pair(p.s[0], p.s[1]);
+  };
+  const kernel::face f = mesh.faces[static_cast<std::size_t>(t)];
+  int k = 0;
+  for (int c = 1; c < 3; ++c) {
+    if (place(f.corner[c]) < place(f.corner[k])) k = c;
+  }
+  *first = f.corner[k];
+  const int u = f.neighbor[(k + 1) % 3];
+  if (u < 0) return -1;
+  const kernel::face g = mesh.faces[static_cast<std::size_t>(u)];
+  for (const int apex : g.corner) {
+    if (apex == f.corner[0] || apex == f.corner[1] || apex == f.corner[2]) continue;
+    double p[4][2];
+    for (int c = 0; c < 3; ++c) std::tie(p[c][0], p[c][1]) = place(f.corner[c]);
+    std::tie(p[3][0], p[3][1]) = place(apex);
+    return *first >= 0 && place(*first) < place(apex) &&
+                   testing::reference_incircle(p[0], p[1], p[2], p[3]) == 0
+               ? u
+               : -1;
+  }
+  return -1;
+}
+
+void check_fans(const LocatorOnHost& mesh, const std::vector<kernel::fan_part>& fans) {
+  ASSERT_EQ(fans.size(), mesh.faces.size());
+  for (std::size_t t = 0; t < fans.size(); ++t) {
+    int vertex = -1, other = -1, last = static_cast<int>(t);
+    const bool is_part = next_in_fan(mesh, last, &vertex) >= 0;
+    for (int next = last; next >= 0;) {
+      last = next;
+      next = next_in_fan(mesh, last, &other);
+      if (other != vertex) break;
+    }
+    ASSERT_EQ(fans[t].vertex, is_part ? vertex : -1) << t;
+    ASSERT_EQ(fans[t].last, last) << t;
+  }
+}
+
+/// What is made for the levels: boxes, fans, and the triangles where stars begin.
+TEST(Levels, BoxesFansAndStarsAreThoseOfTwins) {
+  for (const char* const name : {"grid", "integer-circle", "uniform", "star"}) {
+    for (const std::size_t n : {9, 64, 65, 700}) {
+      SCOPED_TRACE(fmt::format("{} points of {}", n, name));
+      Runtime& runtime = Runtimes::get("small");
+      Arena own(runtime.memory());
+      Arena::Scope scope(runtime.arena());
+      const Case input = make_case(make_fixture(name, n, 3), 0, 4);
+      Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+      make_levels(runtime, locator);
+      const LocatorOnHost mesh(runtime, locator);
+      const auto starts = all_of(runtime, locator.levels.stars.starts);
+      check_boxes(mesh, starts.size(), all_of(runtime, locator.levels.boxes));
+      check_fans(mesh, all_of(runtime, locator.levels.stars.fans));
+      for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+          const auto v = static_cast<std::size_t>(mesh.faces[t].corner[k]);
+          // The edge that leaves the vertex is on the hull.
+          if (mesh.faces[t].neighbor[(k + 2) % 3] < 0) {
+            ASSERT_EQ(starts[v], static_cast<cl_int>(t));
+          }
+          const kernel::face begin = mesh.faces[static_cast<std::size_t>(starts[v])];
+          ASSERT_EQ(std::count(begin.corner, begin.corner + 3, mesh.faces[t].corner[k]), 1);
+        }
+      }
+    }
+  }
+}
+
+/// A box is left out only if all of it is farther than the point; and mostly if it is.
+TEST(Levels, BoxesAreLeftOutByACertainMargin) {
+  FixtureRandom random(5);
+  const auto any = [&] { return std::ldexp(random.unit() - 0.5, static_cast<int>(random.integer(-3, 3))); };
+  int beyond = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double x[2] = {any(), any()}, y[2] = {any(), any()};
+    const kernel::vertex_box box{{std::min(x[0], x[1]), std::min(y[0], y[1])},
+                                 {std::max(x[0], x[1]), std::max(y[0], y[1])}};
+    const kernel::double2 q{any(), any()};
+    const double nearest[2] = {std::clamp(q.x, box.low.x, box.high.x),
+                               std::clamp(q.y, box.low.y, box.high.y)};
+    const double asked[2] = {q.x, q.y};
+    // A point as near as the box but for a few units in the last place, or any.
+    kernel::double2 best{nearest[0], nearest[1]};
+    if (i % 2 == 0) {
+      best.x = q.x + (best.x - q.x) * (1 + 0x1p-50 * static_cast<double>(random.integer(-9, 9)));
+    } else {
+      best = {any(), any()};
+    }
+    const double of_best[2] = {best.x, best.y};
+    const mpq_class box_distance = distance(nearest, asked), best_distance = distance(of_best, asked);
+    const bool is_left_out = kernel::is_beyond(box, kernel::squared_distance(best, q), q, 1);
+    if (is_left_out) {
+      ASSERT_GT(box_distance, best_distance) << i;
+    }
+    if (box_distance > best_distance * mpq_class(1 + 0x1p-40)) {
+      ASSERT_TRUE(is_left_out) << i;
+    }
+    beyond += is_left_out;
+  }
+  EXPECT_GT(beyond, 2000);
+}
+
+/// The tuning of the levels changes no answer, whatever it is.
+TEST(Levels, AnyTuningHasTheSameAnswers) {
+  const Case input = make_case(make_fixture("star", 40, 6), 5, 7);
+  const auto runtime = testing::make_tuned_runtime("own");
+  for (const std::size_t ratio : {0, 1, 3, 1000000}) {
+    for (const std::size_t from : {0, 1, 30}) {
+      Tuning tuning = tuning_of(*runtime);
+      tuning.level_ratio = ratio;
+      tuning.levels_from = from;
+      tuning.walk_most = 1;
+      runtime->set_sizes(std::make_shared<Tuning>(tuning));
+      const Answers answers = ask(*runtime, input, values_for(input.size()));
+      for (std::size_t i = 0; i < input.query_count(); ++i) {
+        ASSERT_EQ(answers.nearest[i], nearest_twin(input, 0, input.query(i))) << ratio << ", " << from;
+      }
+    }
+  }
 }
 
 /// Of 16 times as many points, a query looks at some more, on one more level: not at 16 times as many.

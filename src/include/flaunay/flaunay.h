@@ -482,9 +482,9 @@ FLAUNAY_API void flaunay_locator_destroy(flaunay_locator* locator);
 FLAUNAY_API flaunay_status flaunay_locator_locate(flaunay_locator* locator, const double* queries, size_t m,
                                                   const size_t* offsets, size_t sets, int32_t* triangles);
 /// Finds for each query the index of the nearest point, by exact comparisons. If several points are nearest,
-/// it is the first of them in the order of x, then y. It is -1 if the set is empty. About O(log n) per query,
-/// wherever the points are. points: m values of the caller's. The other arguments and the errors are those of
-/// flaunay_locator_locate.
+/// it is the first of them in the order of x, then y. It is -1 if the set is empty. About O(log n) per query
+/// is expected, except at a vertex with very many neighbours that are all about as near and not cocircular.
+/// points: m values of the caller's. The other arguments and the errors are those of flaunay_locator_locate.
 FLAUNAY_API flaunay_status flaunay_locator_nearest(flaunay_locator* locator, const double* queries, size_t m,
                                                    const size_t* offsets, size_t sets, int32_t* points);
 /// Computes for each query the linear interpolation of the values at the corners of its triangle, rounded; at

@@ -324,7 +324,8 @@ class FLAUNAY_API Locator {
 
   /// Finds for each of m queries the index of the nearest point, by exact comparisons. If several points are
   /// nearest, it is the first of them in the order of x, then y. It is -1 if the set is empty. About O(log n)
-  /// per query, wherever the points are. On meshes where some walks are long (points on a curve, vertices
+  /// per query is expected, except at a vertex with very many neighbours that are all about as near and not
+  /// cocircular. On meshes where some walks are long (points on a curve, vertices
   /// with very many neighbours), the first call with such a query takes up to half as long as making the
   /// locator did, once.
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
