@@ -88,9 +88,10 @@ void add_targets_of(Json& targets, const std::string& name, const Sizes& sizes, 
       ratio(median_of(growth, kCgal, kUniform, sizes.largest),
             median_of(growth, name, kUniform, sizes.largest)));
   for (const std::string& distribution : kPaperDistributions) {
+    const auto on_one_core = median_of(entries, name + kOneThread, distribution, sizes.base);
+    if (!on_one_core) continue;
     add(fmt::format("CGAL's time / ours on one core, {} {}", base, distribution), 2, 2.5,
-        ratio(median_of(entries, kCgal, distribution, sizes.base),
-              median_of(entries, name + kOneThread, distribution, sizes.base)));
+        ratio(median_of(entries, kCgal, distribution, sizes.base), on_one_core));
   }
   for (const std::size_t n : {sizes.base, sizes.large}) {
     add("slowest / fastest distribution, " + thousands(n), 1.3, 1.15, spread_of(entries, name, n));
@@ -151,7 +152,7 @@ Result measure_targets(const Request& request) {
     append(all, peer_implementations({kCgal}));
     const std::unique_ptr<Triangulator> single = on_one_thread(triangulator);
     Implementations with_single = all;
-    if (single) append(with_single, renamed(mode_implementations(*single, request.modes, 1), kOneThread));
+    if (single) append(with_single, renamed(mode_implementations(*single, {"blocks"}, 1), kOneThread));
     most = make_entries(with_single, inputs.base);
     append(most, make_entries(all, inputs.large));
     append(most, make_entries(own, inputs.alone));

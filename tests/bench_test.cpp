@@ -242,8 +242,9 @@ TEST_F(BenchTest, TargetsAreMeasured) {
     ++of_goal[target["goal"].dump()];
   }
   // Speedups, spreads, growth and degenerate inputs, sets, the call, memory.
-  const std::map<std::string, int> expected = {{"1.15", 2}, {"1.1", 4}, {"0.7", 1}, {"1.0", 1}, {"140.0", 1}};
-  EXPECT_EQ(of_goal["3.5"], cgal ? 8 : 0);
+  const std::map<std::string, int> expected = {{"1.15", 2}, {"1.1", 3}, {"1.2", 1},
+                                               {"0.7", 1},  {"1.0", 1}, {"140.0", 1}};
+  EXPECT_EQ(of_goal["5.0"], cgal ? 9 : 0);
   for (const auto& [goal, count] : expected) EXPECT_EQ(of_goal[goal], count) << goal;
   expect_drawn({"goal", "grid / uniform, 2k"});
 }
@@ -256,7 +257,15 @@ TEST_F(BenchTest, TargetsWithoutTheLargestInput) {
     ++unmeasured;
     EXPECT_EQ(target.value("verdict", ""), "not measured");
   }
-  EXPECT_EQ(unmeasured, without_cgal(contents(path("err"))) ? 9u : 1u);
+  EXPECT_EQ(unmeasured, without_cgal(contents(path("err"))) ? 10u : 2u);
+}
+
+TEST_F(BenchTest, TargetsOfTheHostAreMeasuredOnOneCoreToo) {
+  const auto record = run_well("targets --quick --without-largest --device host");
+  const auto is_of_one_core = [](const auto& target) {
+    return target.value("what", "").find("on one core") != std::string::npos;
+  };
+  EXPECT_EQ(std::count_if(record["targets"].begin(), record["targets"].end(), is_of_one_core), 4);
 }
 
 TEST_F(BenchTest, ScalingIsRecorded) {
