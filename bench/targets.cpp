@@ -150,7 +150,8 @@ Result measure_targets(const Request& request) {
     const Implementations own = mode_implementations(triangulator, request.modes);
     Implementations all = own;
     append(all, peer_implementations({kCgal}));
-    const std::unique_ptr<Triangulator> single = on_one_thread(triangulator);
+    const bool has_host_mode = std::count(request.modes.begin(), request.modes.end(), "blocks") > 0;
+    const std::unique_ptr<Triangulator> single = has_host_mode ? on_one_thread(triangulator) : nullptr;
     Implementations with_single = all;
     if (single) append(with_single, renamed(mode_implementations(*single, {"blocks"}, 1), kOneThread));
     most = make_entries(with_single, inputs.base);

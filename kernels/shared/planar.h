@@ -26,7 +26,8 @@ static inline int orient_filtered(double2 a, double2 b, double2 c, double bound)
   const double right = (a.y - c.y) * (b.x - c.x);
   const double det = left - right;
   const double error = bound * (fabs(left) + fabs(right));
-  return filtered_sign(det, error, bound);
+  // As a chain of comparisons, for walks, which branch by the sign.
+  return det > error ? 1 : det < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
 }
 
 // Of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
