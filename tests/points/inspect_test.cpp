@@ -110,12 +110,11 @@ TEST(SmallInspect, SetsAreScaledOneByOne) {
     const SetsOfManyScales sets(30);
     host::Arena::Scope scope(runtime.arena());
     const std::size_t n = sets.offsets.back();
-    const auto [uniform, scaling, shifts] =
-        make_uniform(runtime, testing::upload(runtime, sets.points), sets.offsets);
-    EXPECT_EQ(scaling.shift, 0);
-    EXPECT_GT(scaling.bounds.circle, 0);
+    const UniformPoints uniform = make_uniform(runtime, testing::upload(runtime, sets.points), sets.offsets);
+    EXPECT_EQ(uniform.scaling.shift, 0);
+    EXPECT_GT(uniform.scaling.bounds.circle, 0);
     Coordinates found(2 * n);
-    runtime.read(uniform, 0, 2 * n, found.data());
+    runtime.read(uniform.coordinates, 0, 2 * n, found.data());
     for (std::size_t s = 0; s + 1 < sets.offsets.size(); ++s) {
       const Magnitudes before = magnitudes_twin(sets.points, sets.offsets[s], sets.offsets[s + 1]);
       const int shift = scaling_for(sets.points.data(), sets.offsets[s], sets.offsets[s + 1], before).shift;
@@ -135,9 +134,9 @@ TEST(SmallInspect, PointsOfOneScaleAreNotCopied) {
   host::Arena::Scope scope(runtime.arena());
   const Coordinates points = testing::scaled(make_fixture("uniform", 40, 1), 0x1p-500);
   const auto given = testing::upload(runtime, points);
-  const auto [uniform, scaling, shifts] = make_uniform(runtime, given, {0, 10, 40});
-  EXPECT_EQ(uniform.memory(), given.memory());
-  EXPECT_EQ(scaling.shift, scaling_for(points.data(), 0, 40, magnitudes_twin(points, 0, 40)).shift);
+  const UniformPoints uniform = make_uniform(runtime, given, {0, 10, 40});
+  EXPECT_EQ(uniform.coordinates.memory(), given.memory());
+  EXPECT_EQ(uniform.scaling.shift, scaling_for(points.data(), 0, 40, magnitudes_twin(points, 0, 40)).shift);
 }
 
 }  // namespace
