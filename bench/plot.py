@@ -45,7 +45,8 @@ def new_figure(title, record, panels, columns=0, size=(4.2, 3.2)):
     rows = -(-panels // columns)
     figure, axes = plt.subplots(rows, columns, figsize=(size[0] * columns, size[1] * rows + 0.7), squeeze=False)
     runs = f"median of {record['runs']} runs, minimum to maximum" if record["runs"] > 1 else "one run"
-    device = f"; {record['device']}, driver {record['driver']}" if record["device"] else ""
+    device = f"; {record['device']}" if record["device"] else ""
+    device += f", driver {record['driver']}" if record["driver"] else ""
     figure.suptitle(f"{title}\n{runs}{device}", fontsize=10)
     panel_list = list(axes.flat)
     for unused in panel_list[panels:]:
