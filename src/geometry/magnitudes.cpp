@@ -12,11 +12,6 @@
 namespace flaunay::geometry {
 namespace {
 
-// The number of bits that the coordinates span; 0 if all are 0.
-int bits_of(const Magnitudes& magnitudes) {
-  return magnitudes.lowest <= magnitudes.largest ? magnitudes.largest - magnitudes.lowest + 1 : 0;
-}
-
 [[noreturn]] void throw_range(const double* coordinates, std::size_t first, std::size_t last,
                               const Magnitudes& magnitudes) {
   std::size_t largest = 0, finest = 0;
@@ -47,6 +42,10 @@ int lowest_bit(double x) {
     ++low;
   }
   return low;
+}
+
+int bits_of(const Magnitudes& magnitudes) {
+  return magnitudes.lowest <= magnitudes.largest ? magnitudes.largest - magnitudes.lowest + 1 : 0;
 }
 
 bool differ_too_much(const Magnitudes& magnitudes) {

@@ -33,6 +33,9 @@ struct Scaling {
 /// The exponent of the lowest set bit of x, which must be finite and not 0.
 int lowest_bit(double x);
 
+/// The number of binary places that the coordinates span; 0 if all are 0.
+int bits_of(const Magnitudes& magnitudes);
+
 /// Whether the magnitudes of finite points differ too much for one scaling.
 bool differ_too_much(const Magnitudes& magnitudes);
 

@@ -25,10 +25,6 @@ Magnitudes together(const Magnitudes& a, const Magnitudes& b) {
   return {std::max(a.largest, b.largest), std::min(a.lowest, b.lowest), std::min(a.bad, b.bad)};
 }
 
-int bits_of(const Magnitudes& magnitudes) {
-  return magnitudes.lowest <= magnitudes.largest ? magnitudes.largest - magnitudes.lowest + 1 : 0;
-}
-
 // Throws an error that names the one of the queries [first, last) whose magnitude exceeds that of the points
 // by more.
 [[noreturn]] void throw_range(host::Runtime& runtime, const Buffer<cl_double>& queries, std::size_t first,
