@@ -10,6 +10,7 @@
 #include "shared/halfedges.h"
 #include "shared/prefetch.h"
 #include "shared/rings.h"
+#include "shared/rows.h"
 
 kernel void vertex_triangles(int n, global const int* restrict vertex_edge, global uint* restrict counts) {
   const int v = get_global_id(0);
@@ -62,17 +63,14 @@ static inline void write_triangle(int e, int with_corners, global const double2*
   const int is_second = (first_rows[v + 1] - first == 2) & precedes(points[v], points[a], 0);
   const int row = 3 * (int)(first + is_second);
   const int at_v = source[v], at_a = source[a], at_b = source[b];
-  const int least = min(at_v, min(at_a, at_b));
-  const int from = (at_a == least) + 2 * (at_b == least);
-  const int place_v = (3 - from) % 3, place_b = 2 - from;
-  const int place_a = 3 - place_v - place_b;
-  triangles[row + place_v] = at_v;
-  triangles[row + place_a] = at_a;
-  triangles[row + place_b] = at_b;
+  const row_places to = places_in_row(at_v, at_a, at_b);
+  triangles[row + to.v] = at_v;
+  triangles[row + to.a] = at_a;
+  triangles[row + to.b] = at_b;
   if (with_corners) {
-    corner_of_edge[e] = row + place_b;
-    corner_of_edge[back.previous] = row + place_v;
-    corner_of_edge[there.next ^ 1] = row + place_a;
+    corner_of_edge[e] = row + to.b;
+    corner_of_edge[back.previous] = row + to.v;
+    corner_of_edge[there.next ^ 1] = row + to.a;
   }
 }
 

@@ -115,6 +115,23 @@ typedef struct {
 } vertex_box;
 ASSERT_SIZE(vertex_box, 32);
 
+// Where a block of points lies in its set. All other points of the round are on or beyond the sides of its rectangle,
+// which are infinite where there are none beyond; `all` is the box around the set. outside: if the block's hull has
+// three vertices, the edges that have the outside on their left; otherwise NO_EDGE.
+typedef struct {
+  vertex_box rectangle, all;
+  int outside[4];
+} block_frame;
+ASSERT_SIZE(block_frame, 80);
+
+// An edge of which the triangles on one side are emitted and those on the other are not, seen from one of its
+// vertices: the other vertex, or NO_VERTEX for the ray to infinity from a vertex of the hull; the place of the emitted
+// corner opposite to it, or GHOST; and whether the side that is open begins at it, counter-clockwise.
+typedef struct {
+  int to, corner, begins;
+} open_edge;
+ASSERT_SIZE(open_edge, 12);
+
 END_SHARED
 
 #endif

@@ -15,9 +15,9 @@ constexpr std::size_t kLeastBlocksPerWorker = 64;
 
 // Triangulates the blocks that have more than `larger` and at most `capacity` points. milestones: null for
 // none.
-void solve(Workspace& work, const Blocks& blocks, std::size_t workers, std::size_t capacity,
-           std::ptrdiff_t larger, const Rings& rings, const Buffer<cl_int>& representatives,
-           Milestones* milestones) {
+void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std::size_t capacity,
+                 std::ptrdiff_t larger, const Rings& rings, const Buffer<cl_int>& representatives,
+                 Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
@@ -68,8 +68,8 @@ std::size_t solve_bytes(const Tuning& tuning, std::size_t n) {
                                        tuning.block_workers * tuning.large_blocks * tuning.block_points));
 }
 
-Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
-             Milestones* milestones) {
+Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
+            Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Rings rings;
   rings.edges = work.persistent.allocate<kernel::ring_edge>(kernel::EDGES_PER_VERTEX * blocks.points);
@@ -87,14 +87,20 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
   const std::size_t capacity = std::min(largest, tuning.large_blocks * tuning.block_points);
   const std::size_t affordable =
       std::max<std::size_t>(1, tuning.scratch_per_point * blocks.points / capacity);
-  solve(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
-        representatives, milestones);
+  solve_sizes(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
+              representatives, milestones);
   if (largest > capacity) {
-    solve(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives, nullptr);
+    solve_sizes(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives,
+                nullptr);
   }
+  return rings;
+}
+
+void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones) {
+  host::Runtime& runtime = work.runtime;
   std::size_t first = 0;
   for (const std::size_t end : blocks.level_ends) {
-    runtime.launch(end - first, tuning.block_group, end - first,
+    runtime.launch(end - first, tuning_of(runtime).block_group, end - first,
                    kernels::merge_blocks{.first_merge = first,
                                          .merges = blocks.device_merges,
                                          .nodes = blocks.device_nodes,
@@ -111,6 +117,12 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
                                                          static_cast<double>(blocks.merges.size()));
   }
   runtime.flush();
+}
+
+Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
+             Milestones* milestones) {
+  const Rings rings = solve(work, blocks, representatives, milestones);
+  merge(work, blocks, rings, milestones);
   return rings;
 }
 

@@ -1,5 +1,8 @@
 #include "blocks/run.hpp"
 
+#include "blocks/rounds.hpp"
+#include "tuning/tuning.hpp"
+
 namespace flaunay::blocks {
 
 void Outcome::write(std::size_t n, Statistics& statistics) const {
@@ -12,6 +15,7 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
 
 Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
             Exchange& exchange, statistics::Phases& phases) {
+  if (tuning_of(runtime).round_points > 0) return run_rounds(runtime, persistent, offsets, exchange, phases);
   Workspace work{runtime, persistent};
   Rings rings;
   const host::Runtime::Settled settled(runtime);

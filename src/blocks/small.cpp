@@ -13,6 +13,7 @@
 #include "shared/halfedges.h"
 #include "shared/prefetch.h"
 #include "shared/rings.h"
+#include "shared/rows.h"
 #include "shared/search.h"
 
 namespace flaunay::kernel {

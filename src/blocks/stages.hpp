@@ -50,6 +50,11 @@ struct Rings {
 /// level of merges, unless milestones are null.
 Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
              Milestones* milestones = nullptr);
+/// The first part of divide: triangulates each block.
+Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
+            Milestones* milestones = nullptr);
+/// The second part of divide: merges the triangulations of blocks.
+void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones = nullptr);
 /// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);

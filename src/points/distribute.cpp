@@ -80,14 +80,15 @@ void add_block(std::size_t first, std::size_t last, std::size_t size, Plan& plan
   plan.chunk_first.push_back(static_cast<cl_int>(first));
 }
 
-Plan make_plan(const Tuning& tuning, const std::vector<std::size_t>& offsets, Blocks& blocks) {
+Plan make_plan(const Tuning& tuning, std::size_t block_points, const std::vector<std::size_t>& offsets,
+               Blocks& blocks) {
   Plan plan;
   const std::size_t chunk = tuning.chunk(blocks.points);
   std::vector<std::vector<kernel::block_merge>> levels;
   blocks.set_blocks.push_back(0);
   for (std::size_t s = 0; s < blocks.sets; ++s) {
     const std::size_t first = offsets[s], last = offsets[s + 1];
-    const int depth = depth_for(last - first, tuning.block_points);
+    const int depth = depth_for(last - first, block_points);
     if (depth == 0) {
       add_block(first, last, chunk, plan);
     } else {
@@ -114,7 +115,7 @@ void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& inpu
   trees.cut(trees.draw(input).points, blocks.device_nodes);
 }
 
-void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& input,
+void move_to_blocks(Workspace& work, const Plan& plan, const Buffer<cl_double>& input,
                     const Buffer<cl_int>& representatives, Blocks& blocks) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
@@ -130,19 +131,18 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
   if (has_trees) {
     runtime.launch(plan.chunks.size(), group, chunk_count,
                    kernels::count_blocks{.chunks = chunks,
-                                         .input = input.coordinates,
+                                         .input = input,
                                          .nodes = blocks.device_nodes,
                                          .block_of_point = block_of_point,
                                          .cursors = cursors,
                                          .counts = counts});
     host::exclusive_scan(runtime, counts, plan.counts, counts);
   }
-  const kernel::scaling scale = input.scaling.powers();
   runtime.launch(plan.chunks.size(), group, chunk_count,
                  kernels::move_points{.chunks = chunks,
                                       .set_first = chunk_first,
-                                      .input = input.coordinates,
-                                      .scale = scale,
+                                      .input = input,
+                                      .scale = blocks.scale,
                                       .block_of_point = block_of_point,
                                       .scanned = counts,
                                       .cursors = cursors,
@@ -165,26 +165,44 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
   runtime.write(blocks.device_offsets, 0, blocks.count + 1, blocks.offsets.data());
 }
 
-}  // namespace
-
-Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
-                   const Buffer<cl_int>& representatives) {
-  Blocks blocks;
+// Writes blocks. coordinates: x0 y0 x1 y1 ..., to be multiplied by blocks.scale.
+void distribute(Workspace& work, const Buffer<cl_double>& coordinates,
+                const std::vector<std::size_t>& offsets, std::size_t block_points,
+                const Buffer<cl_int>& representatives, Blocks& blocks) {
   blocks.sets = offsets.size() - 1;
   blocks.points = offsets.back();
-  Arena::Scope scope(work.scratch());
-  Plan plan;
   const host::Runtime::Settled settled(work.runtime);
-  const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
-  work.bounds = uniform.scaling.bounds;
-  plan = make_plan(tuning_of(work.runtime), offsets, blocks);
-  make_trees(work, plan, uniform.coordinates, blocks);
+  const Plan plan = make_plan(tuning_of(work.runtime), block_points, offsets, blocks);
+  make_trees(work, plan, coordinates, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
   blocks.device_set_blocks = work.runtime.upload(work.persistent, blocks.set_blocks);
   blocks.device_merges = work.runtime.upload(work.persistent, blocks.merges);
-  move_to_blocks(work, plan, uniform, representatives, blocks);
+  move_to_blocks(work, plan, coordinates, representatives, blocks);
+}
+
+}  // namespace
+
+Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
+                   const Buffer<cl_int>& representatives) {
+  Blocks blocks;
+  Arena::Scope scope(work.scratch());
+  const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
+  work.bounds = uniform.scaling.bounds;
+  blocks.scale = uniform.scaling.powers();
+  distribute(work, uniform.coordinates, offsets, tuning_of(work.runtime).block_points, representatives,
+             blocks);
+  return blocks;
+}
+
+Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
+                      const std::vector<std::size_t>& offsets, std::size_t block_points) {
+  Blocks blocks;
+  Arena::Scope scope(work.scratch());
+  // Not needed: these points have no duplicates.
+  const auto representatives = work.scratch().allocate<cl_int>(offsets.back());
+  distribute(work, points.as<cl_double>(), offsets, block_points, representatives, blocks);
   return blocks;
 }
 

@@ -38,6 +38,7 @@ struct Blocks {
   Buffer<cl_int> device_set_blocks{}, device_offsets{};
   Buffer<kernel::block_merge> device_merges{};
   Buffer<kernel::cut_node> device_nodes{};  ///< the nodes of all trees
+  kernel::scaling scale{1, 1, 1};           ///< what the nodes' coordinates are multiplied by
   /// The scaled points, block by block, and their indices in the input. After blocks are triangulated, the
   /// distinct points of each block come first; these are its vertices.
   Buffer<cl_double2> vertices{};
@@ -49,5 +50,10 @@ struct Blocks {
 /// too much. O(n log n).
 Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
                    const Buffer<cl_int>& representatives);
+
+/// Distributes points that are scaled and checked already to blocks of at most so many points, as a rule.
+/// Their sources are their places in `points`. O(n log n).
+Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
+                      const std::vector<std::size_t>& offsets, std::size_t block_points);
 
 }  // namespace flaunay::points

@@ -39,6 +39,13 @@ struct Tuning : host::Sizes {
   /// calling thread if no device is named; 0: none.
   std::size_t host_points = 0;
 
+  /// The largest number of points of a block in rounds after the first, as a rule; 0: blocks are merged
+  /// instead of rounds.
+  std::size_t round_points = 0;
+  /// If a round leaves more than so many percent of its points, the next one is the last: its blocks are
+  /// merged.
+  std::size_t merge_from_percent = 1;
+
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.
 

@@ -1,0 +1,535 @@
+// Rounds of blocks: what is final in the blocks' triangulations is emitted, and the points around which something is
+// missing go on to the next round, in other blocks.
+//
+// A triangle is final if its circumcircle lies within the block's rectangle (shared/certify.h): then it is one of the
+// triangulation of all points of the round. These are the points that are not done yet, so that triangulation also has
+// triangles that cover what was emitted in rounds before; they are told from those still missing by the open sectors at
+// one of their vertices (shared/open_sectors.h). The outside is emitted likewise, hull edge by hull edge.
+//
+// Before the rounds:
+// 1. frame_blocks, per block, finds the rectangle between the cuts. box_blocks, per block, and join_boxes, in one
+// launch
+//    per factor of 16 blocks, find the box around each set's points.
+// Each round, when the blocks are solved:
+// 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
+//    vertex, and notes the state of each edge's left side. emit_unsure decides exactly what the filters could not.
+// 3. link_triangles, per pair of edges, joins emitted triangles, also with those of rounds before.
+// 4. count_open, per vertex, counts what goes on; after a scan write_open writes the points and their open edges.
+// After the rounds:
+// 5. count_rows, per place, and after a scan write_rows, per place, close the gaps between triangles.
+// 6. count_hull and list_hull, per vertex, list the hulls' vertices; rank_hull, in one launch per doubling, finds how
+// many
+//    follow each; write_hull writes them in order.
+// measure_open and measure_sets tell the host how large the sets' parts are.
+
+#include "shared/certify.h"
+#include "shared/coordinates.h"
+#include "shared/cut_tree.h"
+#include "shared/halfedges.h"
+#include "shared/open_sectors.h"
+#include "shared/rings.h"
+#include "shared/rows.h"
+#include "shared/search.h"
+
+static inline vertex_box joined_boxes(vertex_box a, vertex_box b) {
+  vertex_box both;
+  both.low = VECTOR(double2, min(a.low.x, b.low.x), min(a.low.y, b.low.y));
+  both.high = VECTOR(double2, max(a.high.x, b.high.x), max(a.high.y, b.high.y));
+  return both;
+}
+
+static inline vertex_box no_box(void) {
+  const vertex_box none = {VECTOR(double2, INFINITY, INFINITY), VECTOR(double2, -INFINITY, -INFINITY)};
+  return none;
+}
+
+// n blocks.
+kernel void box_blocks(int n, global const solved_block* restrict solved, global const double2* restrict points,
+                       global vertex_box* restrict boxes) {
+  const int b = get_global_id(0);
+  if (b < n) {
+    const hull_ends ends = solved[b].ends;
+    vertex_box box = no_box();
+    if (ends.first_x != NO_VERTEX) {
+      box.low = VECTOR(double2, points[ends.first_x].x, points[ends.first_y].y);
+      box.high = VECTOR(double2, points[ends.last_x].x, points[ends.last_y].y);
+    }
+    boxes[b] = box;
+  }
+}
+
+// Blocks whose boxes are joined in one step.
+#define JOINED_BOXES 16
+
+// n blocks. step: the first of so many blocks of a set has the box of them all.
+kernel void join_boxes(int n, int sets, int step, global const int* restrict set_blocks, global vertex_box* boxes) {
+  const int b = get_global_id(0);
+  if (b < n) {
+    const int s = segment_of(b, sets, set_blocks);
+    if ((b - set_blocks[s]) % (JOINED_BOXES * step) == 0) {
+      vertex_box box = boxes[b];
+      for (int k = 1; k < JOINED_BOXES; ++k) {
+        const long other = b + (long)k * step;
+        if (other < set_blocks[s + 1]) box = joined_boxes(box, boxes[other]);
+      }
+      boxes[b] = box;
+    }
+  }
+}
+
+static inline double from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
+
+// What is left of a rectangle on the one side of a cut.
+static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int is_high, scaling scale) {
+  const double at = scaled(from_orderable(cut.major), scale);
+  if (cut_axis(cut)) {
+    if (is_high) rectangle.low.y = max(rectangle.low.y, at);
+    if (!is_high) rectangle.high.y = min(rectangle.high.y, at);
+  } else {
+    if (is_high) rectangle.low.x = max(rectangle.low.x, at);
+    if (!is_high) rectangle.high.x = min(rectangle.high.x, at);
+  }
+  return rectangle;
+}
+
+// The edges of a triangle around a triangulation, from the outside; of other hulls none.
+static inline void find_outside(hull_ends ends, global const ring_edge* edges, global const int* vertex_edge,
+                                int* outside) {
+  outside[0] = outside[1] = outside[2] = outside[3] = NO_EDGE;
+  const int first = ends.first_x == NO_VERTEX ? NO_EDGE : vertex_edge[ends.first_x];
+  if (first == NO_EDGE) return;
+  const int second = edges[first ^ 1].next, third = edges[second ^ 1].next;
+  if (third == first || edges[third ^ 1].next != first) return;
+  outside[0] = first ^ 1;
+  outside[1] = second ^ 1;
+  outside[2] = third ^ 1;
+}
+
+// n blocks: the leaves of each set's tree, whose nodes begin at set_nodes. is_merged: the first block of each set has
+// the set's triangulation.
+kernel void frame_blocks(int n, int sets, int is_merged, global const int* restrict set_blocks,
+                         global const int* restrict set_nodes, global const cut_node* restrict nodes, scaling scale,
+                         global const solved_block* restrict solved, global const vertex_box* restrict boxes,
+                         global const ring_edge* restrict edges, global const int* restrict vertex_edge,
+                         global block_frame* restrict frames) {
+  const int b = get_global_id(0);
+  if (b < n) {
+    const int s = segment_of(b, sets, set_blocks);
+    const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
+    block_frame frame;
+    frame.all = boxes[first];
+    frame.rectangle.low = VECTOR(double2, -INFINITY, -INFINITY);
+    frame.rectangle.high = VECTOR(double2, INFINITY, INFINITY);
+    for (int node = leaves + b - first; node > 1 && !is_merged; node >>= 1) {
+      frame.rectangle = cut_rectangle(frame.rectangle, nodes[set_nodes[s] + (node >> 1)], node & 1, scale);
+    }
+    find_outside(solved[is_merged ? first : b].ends, edges, vertex_edge, frame.outside);
+    frames[b] = frame;
+  }
+}
+
+// n vertices of a round. listed: where they stood in the list that was made into blocks; listed_vertices: their numbers
+// in the first round, which all rounds use; of the first round itself, there is no list.
+kernel void name_vertices(int n, int is_first, global const int* restrict listed,
+                          global const int* restrict listed_vertices, global int* restrict vertices) {
+  const int k = get_global_id(0);
+  if (k < n) vertices[k] = is_first ? k : listed_vertices[listed[k]];
+}
+
+// What the triangles of a round are emitted from and to.
+typedef struct {
+  int is_first;
+  double bound;  // of orientations
+  global const double2* points;
+  global const ring_edge* edges;
+  global const int* vertices;
+  global const int* listed;
+  global const int* open_offsets;
+  global const open_edge* open_edges;
+  global const double2* all_points;
+  global const int* indices;  // in the input, by vertex
+  global int* places;
+  global int* states;
+  global int* hull_next;
+  global int* hull_previous;
+} emission;
+
+static inline int is_outside(int e, global const ring_edge* edges, const block_frame* frame) {
+  const int apex = edges[edges[e].next].to;
+  return edges[edges[e ^ 1].previous].to != apex || e == frame->outside[0] || e == frame->outside[1] ||
+         e == frame->outside[2];
+}
+
+// Whether what is left of the edge from `from` to `to` is missing; UNDECIDED if that takes exact arithmetic.
+static inline int is_missing(const emission* m, int from, int to, int is_ghost, int exactly) {
+  const int begin = m->open_offsets[m->listed[from]], end = m->open_offsets[m->listed[from] + 1];
+  if (begin == end) return 1;
+  const direction d = {m->points[from], m->points[to], m->vertices[to], is_ghost};
+  return begins_open(&d, m->open_edges, begin, end, m->all_points, m->bound, exactly);
+}
+
+static inline int open_count(const emission* m, int vertex) {
+  return m->open_offsets[m->listed[vertex] + 1] - m->open_offsets[m->listed[vertex]];
+}
+
+// Whether a triangle is missing, asked at the vertex with the fewest open edges.
+static inline int is_triangle_missing(const emission* m, int a, int b, int c, int exactly) {
+  const int at_a = open_count(m, a), at_b = open_count(m, b), at_c = open_count(m, c);
+  if (at_a <= at_b && at_a <= at_c) return is_missing(m, a, b, 0, exactly);
+  return at_b <= at_c ? is_missing(m, b, c, 0, exactly) : is_missing(m, c, a, 0, exactly);
+}
+
+// Emits the triangle left of e, an edge of its middle vertex v, whose row starts with the smallest index.
+static inline void emit_triangle(const emission* m, int e) {
+  const ring_edge there = m->edges[e], back = m->edges[e ^ 1];
+  const int v = back.to, a = there.to, b = m->edges[there.next].to;
+  const int vertex = m->vertices[v];
+  const int row = 3 * (2 * vertex + precedes(m->points[v], m->points[a], 0));
+  const int at_v = m->indices[vertex], at_a = m->indices[m->vertices[a]], at_b = m->indices[m->vertices[b]];
+  const row_places to = places_in_row(at_v, at_a, at_b);
+  m->places[row + to.v] = at_v;
+  m->places[row + to.a] = at_a;
+  m->places[row + to.b] = at_b;
+  m->states[e] = row + to.b;
+  m->states[back.previous] = row + to.v;
+  m->states[there.next ^ 1] = row + to.a;
+}
+
+// The hull goes from v to w. The vertices of a set on one line are a chain in the order of x.
+static inline void emit_hull_edge(const emission* m, int v, int w, int is_line) {
+  if (is_line && !precedes(m->points[v], m->points[w], 0)) return;
+  m->hull_next[m->vertices[v]] = m->vertices[w];
+  m->hull_previous[m->vertices[w]] = m->vertices[v];
+}
+
+static inline void decide_ghost(const emission* m, const block_frame* frame, int e, int exactly) {
+  const int to = m->edges[e].to, from = m->edges[e ^ 1].to;
+  const int is_line = is_outside(e ^ 1, m->edges, frame);
+  // Of points on one line it is not known on which side others are.
+  const int is_final =
+      !has_other_blocks(frame) || (!is_line && is_half_plane_inside(frame, m->points[to], m->points[from]));
+  const int missing = is_final && !m->is_first ? is_missing(m, from, to, 1, exactly) : is_final;
+  if (missing == 1) emit_hull_edge(m, to, from, is_line);
+  m->states[e] = missing == 1 ? GHOST : missing == UNDECIDED ? UNSURE_GHOST : OPEN_GHOST;
+}
+
+static inline void decide_triangle(const emission* m, const block_frame* frame, int e, int exactly) {
+  const ring_edge there = m->edges[e], back = m->edges[e ^ 1];
+  const int v = back.to, a = there.to, b = m->edges[there.next].to;
+  const int is_final = is_circle_inside(frame, m->points[v], m->points[a], m->points[b]);
+  const int missing = is_final && !m->is_first ? is_triangle_missing(m, v, a, b, exactly) : is_final;
+  if (missing == 1) {
+    emit_triangle(m, e);
+  } else {
+    m->states[e] = missing == UNDECIDED ? UNSURE : OPEN;
+    m->states[back.previous] = m->states[there.next ^ 1] = OPEN;
+  }
+}
+
+// The triangle left of e belongs to the edge's origin, which is its middle vertex, if the edge to the right or to the
+// left separates it from neither of the other two.
+static inline int is_from_middle(int e, global const ring_edge* edges, global const double2* points) {
+  const double2 v = points[edges[e ^ 1].to];
+  return precedes(v, points[edges[e].to], 0) != precedes(v, points[edges[edges[e].next].to], 0);
+}
+
+static inline emission emission_of(int is_first, double bound, global const double2* points,
+                                   global const ring_edge* edges, global const int* vertices, global const int* listed,
+                                   global const int* open_offsets, global const open_edge* open_edges,
+                                   global const double2* all_points, global const int* indices, global int* places,
+                                   global int* states, global int* hull_next, global int* hull_previous) {
+  const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
+                      open_edges, all_points, indices, places, states,   hull_next, hull_previous};
+  return m;
+}
+
+#define PAIRS_A_VERTEX (EDGES_PER_VERTEX / 2)
+
+// n pairs of edges.
+kernel void emit_triangles(int n, int is_first, double bound, int blocks, global const int* restrict offsets,
+                           global const block_frame* restrict frames, global const double2* restrict points,
+                           global const ring_edge* restrict edges, global const int* restrict vertices,
+                           global const int* restrict listed, global const int* restrict open_offsets,
+                           global const open_edge* restrict open_edges, global const double2* all_points,
+                           global const int* restrict indices, global int* restrict places, global int* states,
+                           global int* restrict hull_next, global int* restrict hull_previous) {
+  const int k = get_global_id(0);
+  if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
+  if (k < n && edges[2 * k].to != NO_VERTEX) {
+    const emission m = emission_of(is_first, bound, points, edges, vertices, listed, open_offsets, open_edges,
+                                   all_points, indices, places, states, hull_next, hull_previous);
+    const block_frame frame = frames[segment_of(k / PAIRS_A_VERTEX, blocks, offsets)];
+    for (int e = 2 * k; e < 2 * k + 2; ++e) {
+      if (is_outside(e, edges, &frame)) {
+        decide_ghost(&m, &frame, e, 0);
+      } else if (is_from_middle(e, edges, points)) {
+        decide_triangle(&m, &frame, e, 0);
+      }
+    }
+  }
+}
+
+// n pairs of edges.
+kernel void emit_unsure(int n, int is_first, double bound, int blocks, global const int* restrict offsets,
+                        global const block_frame* restrict frames, global const double2* restrict points,
+                        global const ring_edge* restrict edges, global const int* restrict vertices,
+                        global const int* restrict listed, global const int* restrict open_offsets,
+                        global const open_edge* restrict open_edges, global const double2* all_points,
+                        global const int* restrict indices, global int* restrict places, global int* states,
+                        global int* restrict hull_next, global int* restrict hull_previous) {
+  const int k = get_global_id(0);
+  for (int e = 2 * k; e < 2 * k + 2 && k < n; ++e) {
+    if (states[e] != UNSURE && states[e] != UNSURE_GHOST) continue;
+    const emission m = emission_of(is_first, bound, points, edges, vertices, listed, open_offsets, open_edges,
+                                   all_points, indices, places, states, hull_next, hull_previous);
+    const block_frame frame = frames[segment_of(k / PAIRS_A_VERTEX, blocks, offsets)];
+    if (states[e] == UNSURE_GHOST) {
+      decide_ghost(&m, &frame, e, 1);
+    } else {
+      decide_triangle(&m, &frame, e, 1);
+    }
+  }
+}
+
+// The emitted corner beyond the open edge from one vertex, where that side begins, to another; GHOST if there is none.
+static inline int corner_beyond(int listed, int to, global const int* open_offsets,
+                                global const open_edge* open_edges) {
+  for (int k = open_offsets[listed]; k < open_offsets[listed + 1]; ++k) {
+    if (open_edges[k].to == to && open_edges[k].begins) return open_edges[k].corner;
+  }
+  return GHOST;
+}
+
+// n pairs of edges. links: the corner on the other side of the edge opposite to each corner.
+kernel void link_triangles(int n, int is_first, global const ring_edge* restrict edges,
+                           global const int* restrict vertices, global const int* restrict listed,
+                           global const int* restrict open_offsets, global const open_edge* restrict open_edges,
+                           global const int* restrict states, global int* restrict links) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    for (int e = 2 * k; e < 2 * k + 2; ++e) {
+      const int corner = states[e];
+      if (corner < 0) continue;
+      int other = states[e ^ 1];
+      if (!is_final(other) && !is_first) {
+        other = corner_beyond(listed[edges[e ^ 1].to], vertices[edges[e].to], open_offsets, open_edges);
+        if (other >= 0) links[other] = corner;
+      }
+      if (other >= 0) links[corner] = other;
+    }
+  }
+}
+
+// The open edges of a vertex after a round: those that were open before and those that became open, without those that
+// did both. If `to` is not null, they are written there.
+typedef struct {
+  global open_edge* to;
+  global const open_edge* before;
+  int begin, end;
+  int count;
+  int emitted;  // whether there is an emitted triangle at the vertex
+} open_list;
+
+static inline void add_open(open_list* list, int to, int corner, int begins) {
+  for (int k = list->begin; k < list->end; ++k) {
+    if (list->before[k].to == to && list->before[k].begins != begins) return;
+  }
+  if (list->to != 0) {
+    const open_edge edge = {to, corner, begins};
+    list->to[list->count] = edge;
+  }
+  ++list->count;
+}
+
+// Whether an edge that was open is closed by what is emitted on its other side now.
+static inline int is_closed_now(open_edge before, int first, global const ring_edge* edges, global const int* states,
+                                global const int* vertices) {
+  int e = first;
+  do {
+    const int left = is_final(states[e]), right = is_final(states[e ^ 1]);
+    if (before.to >= 0) {
+      if (vertices[edges[e].to] == before.to && (before.begins ? left && !right : right && !left)) return 1;
+    } else if (is_ghost(states[e])) {
+      const int behind = is_final(states[edges[e].next ^ 1]);
+      if (before.begins ? behind && !left : left && !behind) return 1;
+    }
+    e = edges[e].next;
+  } while (e != first);
+  return 0;
+}
+
+static inline void gather_open(open_list* list, int first, global const ring_edge* edges, global const int* states,
+                               global const int* vertices) {
+  list->count = 0;
+  list->emitted = list->begin < list->end;
+  for (int k = list->begin; k < list->end; ++k) {
+    if (first != NO_EDGE && is_closed_now(list->before[k], first, edges, states, vertices)) continue;
+    if (list->to != 0) list->to[list->count] = list->before[k];
+    ++list->count;
+  }
+  int e = first;
+  while (e != NO_EDGE) {
+    const int left = states[e], right = states[e ^ 1];
+    list->emitted |= is_final(left);
+    if (is_final(right) && !is_final(left)) add_open(list, vertices[edges[e].to], right, 1);
+    if (is_final(left) && !is_final(right)) add_open(list, vertices[edges[e].to], left, 0);
+    if (is_ghost(left)) {
+      // The outside begins with the ghost of this edge and ends with that of the next one.
+      const int behind = states[edges[e].next ^ 1];
+      if (is_final(left) && !is_final(behind)) add_open(list, NO_VERTEX, GHOST, 1);
+      if (is_final(behind) && !is_final(left)) add_open(list, NO_VERTEX, GHOST, 0);
+    }
+    e = edges[e].next;
+    if (e == first) e = NO_EDGE;
+  }
+}
+
+// The open edges of vertex k of a round.
+static inline open_list open_list_of(int k, int is_first, global const int* listed, global const int* open_offsets,
+                                     global const open_edge* open_edges) {
+  open_list list;
+  list.to = 0;
+  list.before = open_edges;
+  list.begin = is_first ? 0 : open_offsets[listed[k]];
+  list.end = is_first ? 0 : open_offsets[listed[k] + 1];
+  list.count = list.emitted = 0;
+  return list;
+}
+
+// Counts each vertex that goes on, and its open edges. n places; of each block, the first `distinct` are vertices.
+// is_merged: nothing goes on.
+kernel void count_open(int n, int is_first, int is_merged, int sets, int blocks, global const int* restrict set_blocks,
+                       global const int* restrict offsets, global const int* restrict distinct,
+                       global const ring_edge* restrict edges, global const int* restrict vertex_edge,
+                       global const int* restrict vertices, global const int* restrict listed,
+                       global const int* restrict open_offsets, global const open_edge* restrict open_edges,
+                       global const int* restrict states, global int* restrict hull_next,
+                       global uint2* restrict counts) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const int b = segment_of(k, blocks, offsets);
+    const int s = segment_of(b, sets, set_blocks);
+    const int is_vertex = k - offsets[b] < distinct[b];
+    const int is_whole = is_merged || set_blocks[s + 1] - set_blocks[s] == 1;
+    uint2 count = VECTOR(uint2, 0, 0);
+    // The hull of a single vertex.
+    if (is_vertex && is_whole && vertex_edge[k] == NO_EDGE) hull_next[vertices[k]] = vertices[k];
+    if (is_vertex && !is_whole) {
+      open_list list = open_list_of(k, is_first, listed, open_offsets, open_edges);
+      gather_open(&list, vertex_edge[k], edges, states, vertices);
+      if (list.count > 0 || !list.emitted) count = VECTOR(uint2, 1, (uint)list.count);
+    }
+    counts[k] = count;
+  }
+}
+
+// Writes the points that go on, in their order, and their open edges. n places.
+kernel void write_open(int n, int is_first, global const double2* restrict points,
+                       global const ring_edge* restrict edges, global const int* restrict vertex_edge,
+                       global const int* restrict vertices, global const int* restrict listed,
+                       global const int* restrict open_offsets, global const open_edge* restrict open_edges,
+                       global const int* restrict states, global const uint2* restrict scanned,
+                       global double2* restrict next_points, global int* restrict next_vertices,
+                       global int* restrict next_offsets, global open_edge* restrict next_edges) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const uint2 at = scanned[k];
+    if (scanned[k + 1].x > at.x) {
+      next_points[at.x] = points[k];
+      next_vertices[at.x] = vertices[k];
+      next_offsets[at.x] = (int)at.y;
+      open_list list = open_list_of(k, is_first, listed, open_offsets, open_edges);
+      list.to = next_edges + at.y;
+      gather_open(&list, vertex_edge[k], edges, states, vertices);
+    }
+    if (k == n - 1) next_offsets[scanned[n].x] = (int)scanned[n].y;
+  }
+}
+
+// n places of triangles.
+kernel void count_rows(int n, global const int* restrict places, global uint* restrict counts) {
+  const int p = get_global_id(0);
+  if (p < n) counts[p] = places[3 * p] >= 0;
+}
+
+// n places of triangles; scanned: the row of each. with_neighbors, with_halfedges: whether these arrays are wanted.
+kernel void write_rows(int n, int with_neighbors, int with_halfedges, global const int* restrict places,
+                       global const int* restrict links, global const uint* restrict scanned,
+                       global int* restrict triangles, global int* restrict neighbors, global int* restrict halfedges) {
+  const int p = get_global_id(0);
+  if (p < n && places[3 * p] >= 0) {
+    const int row = (int)scanned[p];
+    for (int k = 0; k < 3; ++k) {
+      triangles[3 * row + k] = places[3 * p + k];
+      if (!with_neighbors && !with_halfedges) continue;
+      const int link = links[3 * p + k];
+      const int other = link < 0 ? -1 : (int)scanned[link / 3];
+      if (with_neighbors) neighbors[3 * row + k] = other;
+      if (with_halfedges) halfedges[3 * row + next_corner(k)] = link < 0 ? -1 : 3 * other + next_corner(link % 3);
+    }
+  }
+}
+
+// n vertices.
+kernel void count_hull(int n, global const int* restrict hull_next, global const int* restrict hull_previous,
+                       global uint* restrict counts) {
+  const int v = get_global_id(0);
+  if (v < n) counts[v] = hull_next[v] != NO_VERTEX || hull_previous[v] != NO_VERTEX;
+}
+
+// Whether the hull's order begins with a vertex: the first one along x.
+static inline int begins_hull(int v, global const double2* points, global const int* hull_next,
+                              global const int* hull_previous) {
+  const int before = hull_previous[v], after = hull_next[v];
+  return before == NO_VERTEX || after == v ||
+         (after != NO_VERTEX && comes_before(points[v], points[after]) && comes_before(points[v], points[before]));
+}
+
+// Writes the hull vertices of all sets, and for each the place of the next one with 1, their distance, or its own with
+// 0, if it is the last one. n vertices; scanned: each hull vertex's place.
+kernel void list_hull(int n, global const double2* restrict points, global const int* restrict hull_next,
+                      global const int* restrict hull_previous, global const uint* restrict scanned,
+                      global int* restrict hull_vertices, global int2* restrict ahead) {
+  const int v = get_global_id(0);
+  if (v < n && scanned[v + 1] > scanned[v]) {
+    const int at = (int)scanned[v], after = hull_next[v];
+    const int is_last = after == NO_VERTEX || begins_hull(after, points, hull_next, hull_previous);
+    hull_vertices[at] = v;
+    ahead[at] = is_last ? VECTOR(int2, at, 0) : VECTOR(int2, (int)scanned[after], 1);
+  }
+}
+
+// Doubles how far ahead n hull vertices look (Wyllie, "The complexity of parallel computations", 1979).
+kernel void rank_hull(int n, global const int2* restrict from, global int2* restrict to) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const int2 here = from[k];
+    const int2 there = from[here.x];
+    to[k] = VECTOR(int2, there.x, here.y + there.y);
+  }
+}
+
+// n hull vertices, those of set s from hull_offsets[s] on; each knows the distance to the end.
+kernel void write_hull(int n, int sets, global const int* restrict hull_offsets,
+                       global const int* restrict hull_vertices, global const int2* restrict ahead,
+                       global const int* restrict indices, global int* restrict hull) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const int s = segment_of(k, sets, hull_offsets);
+    hull[hull_offsets[s + 1] - 1 - ahead[k].y] = indices[hull_vertices[k]];
+  }
+}
+
+// Where sets begin among the rows and among the hull vertices. n: the number of sets plus 1.
+kernel void measure_sets(int n, global const int* restrict set_points, global const uint* restrict row_of_place,
+                         global const uint* restrict hull_of_vertex, global uint2* restrict sizes) {
+  const int s = get_global_id(0);
+  if (s < n) sizes[s] = VECTOR(uint2, row_of_place[2 * set_points[s]], hull_of_vertex[set_points[s]]);
+}
+
+// Where sets begin among the points that go on. n: the number of sets plus 1.
+kernel void measure_open(int n, global const int* restrict set_points, global const uint2* restrict scanned,
+                         global uint2* restrict sizes) {
+  const int s = get_global_id(0);
+  if (s < n) sizes[s] = scanned[set_points[s]];
+}

@@ -1,0 +1,381 @@
+#include "blocks/rounds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "host/vector_operations.hpp"
+#include "launchers/blocks/rounds.cl.hpp"
+#include "shared/open_sectors.h"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+// The factor of kernel join_boxes.
+constexpr std::size_t kJoinedBoxes = 16;
+
+// What all rounds emit to.
+struct Emitted {
+  Buffer<cl_double2> points{};  // the vertices, as the first round numbers them
+  Buffer<cl_int> indices{};     // in the input
+  Buffer<cl_int> places{};      // 3 per place of a triangle, 2 places per vertex
+  Buffer<cl_int> links{};       // the same for their neighbours; no memory if these are not wanted
+  Buffer<cl_int> hull_next{}, hull_previous{};
+};
+
+// The points that go on to a round, and their open edges.
+struct OpenPoints {
+  std::vector<std::size_t> offsets;  // by set
+  Buffer<cl_double2> points{};
+  Buffer<cl_int> vertices{};
+  Buffer<cl_int> offsets_of_edges{};
+  Buffer<kernel::open_edge> edges{};
+
+  std::size_t count() const { return offsets.back(); }
+};
+
+// One round: its blocks, their triangulations and what is emitted of them.
+struct Round {
+  bool is_first;
+  bool is_merged;          // whether each set has one triangulation
+  const OpenPoints& open;  // what its points are made from; empty in the first round
+  const std::vector<std::size_t>& offsets;
+  Blocks blocks;
+  Rings rings;
+  Buffer<cl_int> vertices{};  // by place in the blocks
+  Buffer<cl_int> states{};    // by edge
+  Buffer<kernel::block_frame> frames{};
+};
+
+Buffer<kernel::vertex_box> boxes_of_sets(Workspace& work, const Round& round) {
+  const Blocks& blocks = round.blocks;
+  const auto boxes = work.scratch().allocate<kernel::vertex_box>(blocks.count);
+  work.runtime.map(
+      blocks.count,
+      kernels::box_blocks{.solved = round.rings.solved, .points = blocks.vertices, .boxes = boxes});
+  std::size_t most = 1;
+  for (std::size_t s = 0; s < blocks.sets; ++s) {
+    most = std::max<std::size_t>(most, blocks.set_blocks[s + 1] - blocks.set_blocks[s]);
+  }
+  for (std::size_t step = 1; step < most; step *= kJoinedBoxes) {
+    work.runtime.map(
+        blocks.count,
+        kernels::join_boxes{
+            .sets = blocks.sets, .step = step, .set_blocks = blocks.device_set_blocks, .boxes = boxes});
+  }
+  return boxes;
+}
+
+// Where the nodes of each set's tree begin.
+std::vector<cl_int> first_nodes(const Blocks& blocks) {
+  std::vector<cl_int> nodes;
+  cl_int next = 0;
+  for (std::size_t s = 0; s < blocks.sets; ++s) {
+    nodes.push_back(next);
+    const cl_int leaves = blocks.set_blocks[s + 1] - blocks.set_blocks[s];
+    if (leaves > 1) next += leaves;
+  }
+  return nodes;
+}
+
+void frame(Workspace& work, Round& round) {
+  const Blocks& blocks = round.blocks;
+  round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
+  Arena::Scope scope(work.scratch());
+  const auto boxes = boxes_of_sets(work, round);
+  const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
+  work.runtime.map(blocks.count, kernels::frame_blocks{.sets = blocks.sets,
+                                                       .is_merged = round.is_merged,
+                                                       .set_blocks = blocks.device_set_blocks,
+                                                       .set_nodes = set_nodes,
+                                                       .nodes = blocks.device_nodes,
+                                                       .scale = blocks.scale,
+                                                       .solved = round.rings.solved,
+                                                       .boxes = boxes,
+                                                       .edges = round.rings.edges,
+                                                       .vertex_edge = round.rings.vertex_edge,
+                                                       .frames = round.frames});
+}
+
+// kernels::emit_triangles or kernels::emit_unsure.
+template <typename Kernel>
+void launch_emission(Workspace& work, const Round& round, const Emitted& emitted) {
+  const Blocks& blocks = round.blocks;
+  work.runtime.map(round.states.size() / 2, Kernel{.is_first = round.is_first,
+                                                   .bound = work.bounds.orient,
+                                                   .blocks = blocks.count,
+                                                   .offsets = blocks.device_offsets,
+                                                   .frames = round.frames,
+                                                   .points = blocks.vertices,
+                                                   .edges = round.rings.edges,
+                                                   .vertices = round.vertices,
+                                                   .listed = blocks.source,
+                                                   .open_offsets = round.open.offsets_of_edges,
+                                                   .open_edges = round.open.edges,
+                                                   .all_points = emitted.points,
+                                                   .indices = emitted.indices,
+                                                   .places = emitted.places,
+                                                   .states = round.states,
+                                                   .hull_next = emitted.hull_next,
+                                                   .hull_previous = emitted.hull_previous});
+}
+
+// Emits what is final of a round's triangulations.
+void emit(Workspace& work, Round& round, const Emitted& emitted) {
+  host::Runtime& runtime = work.runtime;
+  const Blocks& blocks = round.blocks;
+  round.vertices = work.scratch().allocate<cl_int>(blocks.points);
+  round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
+  runtime.map(blocks.points, kernels::name_vertices{.is_first = round.is_first,
+                                                    .listed = blocks.source,
+                                                    .listed_vertices = round.open.vertices,
+                                                    .vertices = round.vertices});
+  frame(work, round);
+  launch_emission<kernels::emit_triangles>(work, round, emitted);
+  launch_emission<kernels::emit_unsure>(work, round, emitted);
+  if (emitted.links.memory() == nullptr) return;
+  runtime.map(round.states.size() / 2, kernels::link_triangles{.is_first = round.is_first,
+                                                               .edges = round.rings.edges,
+                                                               .vertices = round.vertices,
+                                                               .listed = blocks.source,
+                                                               .open_offsets = round.open.offsets_of_edges,
+                                                               .open_edges = round.open.edges,
+                                                               .states = round.states,
+                                                               .links = emitted.links});
+}
+
+// The points around which something is missing after a round. Waits once. Memory is persistent.
+OpenPoints open_after(Workspace& work, const Round& round, const Emitted& emitted) {
+  host::Runtime& runtime = work.runtime;
+  const Blocks& blocks = round.blocks;
+  OpenPoints next;
+  Arena::Scope scope(work.scratch());
+  std::vector<cl_uint2> sizes(blocks.sets + 1);
+  const host::Runtime::Settled settled(runtime);
+  const auto counts = work.scratch().allocate<cl_uint2>(blocks.points + 1);
+  runtime.map(blocks.points, kernels::count_open{.is_first = round.is_first,
+                                                 .is_merged = round.is_merged,
+                                                 .sets = blocks.sets,
+                                                 .blocks = blocks.count,
+                                                 .set_blocks = blocks.device_set_blocks,
+                                                 .offsets = blocks.device_offsets,
+                                                 .distinct = round.rings.device_distinct,
+                                                 .edges = round.rings.edges,
+                                                 .vertex_edge = round.rings.vertex_edge,
+                                                 .vertices = round.vertices,
+                                                 .listed = blocks.source,
+                                                 .open_offsets = round.open.offsets_of_edges,
+                                                 .open_edges = round.open.edges,
+                                                 .states = round.states,
+                                                 .hull_next = emitted.hull_next,
+                                                 .counts = counts});
+  host::exclusive_scan(runtime, counts, blocks.points, counts);
+  const auto device_sizes = work.scratch().allocate<cl_uint2>(sizes.size());
+  const auto set_points =
+      runtime.upload(work.scratch(), std::vector<cl_int>(round.offsets.begin(), round.offsets.end()));
+  runtime.map(sizes.size(),
+              kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
+  runtime.read(device_sizes, 0, sizes.size(), sizes.data());
+  for (const cl_uint2& size : sizes) next.offsets.push_back(size.s[0]);
+  if (next.count() == 0) return next;
+  next.points = work.persistent.allocate<cl_double2>(next.count());
+  next.vertices = work.persistent.allocate<cl_int>(next.count());
+  next.offsets_of_edges = work.persistent.allocate<cl_int>(next.count() + 1);
+  next.edges = work.persistent.allocate<kernel::open_edge>(std::max(1u, sizes.back().s[1]));
+  runtime.map(blocks.points, kernels::write_open{.is_first = round.is_first,
+                                                 .points = blocks.vertices,
+                                                 .edges = round.rings.edges,
+                                                 .vertex_edge = round.rings.vertex_edge,
+                                                 .vertices = round.vertices,
+                                                 .listed = blocks.source,
+                                                 .open_offsets = round.open.offsets_of_edges,
+                                                 .open_edges = round.open.edges,
+                                                 .states = round.states,
+                                                 .scanned = counts,
+                                                 .next_points = next.points,
+                                                 .next_vertices = next.vertices,
+                                                 .next_offsets = next.offsets_of_edges,
+                                                 .next_edges = next.edges});
+  return next;
+}
+
+// Rows and hulls from what is emitted.
+class Results {
+ public:
+  Results(Workspace& work, const Emitted& emitted, const std::vector<std::size_t>& offsets)
+      : work_(work), emitted_(emitted), sets_(offsets.size() - 1), n_(offsets.back()) {
+    set_points_ = work.runtime.upload(work.scratch(), std::vector<cl_int>(offsets.begin(), offsets.end()));
+    rows_ = work.scratch().allocate<cl_uint>(2 * n_ + 1);
+    hull_places_ = work.scratch().allocate<cl_uint>(n_ + 1);
+  }
+
+  // Waits once.
+  MeshSizes sizes(const std::vector<std::size_t>& vertices) {
+    host::Runtime& runtime = work_.runtime;
+    std::vector<cl_uint2> found(sets_ + 1);
+    const host::Runtime::Settled settled(runtime);
+    runtime.map(2 * n_, kernels::count_rows{.places = emitted_.places, .counts = rows_});
+    host::exclusive_scan(runtime, rows_, 2 * n_, rows_);
+    runtime.map(n_, kernels::count_hull{.hull_next = emitted_.hull_next,
+                                        .hull_previous = emitted_.hull_previous,
+                                        .counts = hull_places_});
+    host::exclusive_scan(runtime, hull_places_, n_, hull_places_);
+    const auto device_sizes = work_.scratch().allocate<cl_uint2>(found.size());
+    runtime.map(found.size(), kernels::measure_sets{.set_points = set_points_,
+                                                    .row_of_place = rows_,
+                                                    .hull_of_vertex = hull_places_,
+                                                    .sizes = device_sizes});
+    runtime.read(device_sizes, 0, found.size(), found.data());
+    MeshSizes sizes;
+    for (std::size_t s = 0; s <= sets_; ++s) {
+      sizes.triangle_offsets.push_back(found[s].s[0]);
+      sizes.hull_offsets.push_back(found[s].s[1]);
+      if (s > 0) check_euler(sizes, s - 1, vertices[s - 1]);
+    }
+    for (const std::size_t count : vertices) sizes.vertices += count;
+    return sizes;
+  }
+
+  void write(const MeshSizes& sizes, const MeshBuffers& buffers) {
+    if (buffers.triangles.memory() != nullptr) {
+      work_.runtime.map(2 * n_, kernels::write_rows{.with_neighbors = buffers.neighbors.memory() != nullptr,
+                                                    .with_halfedges = buffers.halfedges.memory() != nullptr,
+                                                    .places = emitted_.places,
+                                                    .links = emitted_.links,
+                                                    .scanned = rows_,
+                                                    .triangles = buffers.triangles,
+                                                    .neighbors = buffers.neighbors,
+                                                    .halfedges = buffers.halfedges});
+    }
+    if (buffers.hull.memory() != nullptr) write_hulls(sizes, buffers.hull);
+  }
+
+ private:
+  // d points, of which h are on the hull, have 2d - 2 - h triangles, and none if they are on one line.
+  static void check_euler(const MeshSizes& sizes, std::size_t s, std::size_t d) {
+    const std::size_t triangles = sizes.triangle_offsets[s + 1] - sizes.triangle_offsets[s];
+    const std::size_t h = sizes.hull_offsets[s + 1] - sizes.hull_offsets[s];
+    if (triangles == 0 ? h == d : triangles + h + 2 == 2 * d) return;
+    throw Error(ErrorKind::internal,
+                fmt::format("{} triangles and {} hull vertices of {} vertices in set {}; "
+                            "please report the input",
+                            triangles, h, d, s));
+  }
+
+  void write_hulls(const MeshSizes& sizes, const Buffer<cl_int>& hull) {
+    host::Runtime& runtime = work_.runtime;
+    Arena::Scope scope(work_.scratch());
+    const std::size_t count = sizes.hull_vertices();
+    const auto vertices = work_.scratch().allocate<cl_int>(count);
+    auto ahead = work_.scratch().allocate<cl_int2>(count);
+    auto farther = work_.scratch().allocate<cl_int2>(count);
+    runtime.map(n_, kernels::list_hull{.points = emitted_.points,
+                                       .hull_next = emitted_.hull_next,
+                                       .hull_previous = emitted_.hull_previous,
+                                       .scanned = hull_places_,
+                                       .hull_vertices = vertices,
+                                       .ahead = ahead});
+    std::size_t longest = 1;
+    for (std::size_t s = 0; s < sets_; ++s) {
+      longest = std::max(longest, sizes.hull_offsets[s + 1] - sizes.hull_offsets[s]);
+    }
+    for (std::size_t reach = 1; reach < longest; reach *= 2) {
+      runtime.map(count, kernels::rank_hull{.from = ahead, .to = farther});
+      std::swap(ahead, farther);
+    }
+    const auto offsets = runtime.upload(
+        work_.scratch(), std::vector<cl_int>(sizes.hull_offsets.begin(), sizes.hull_offsets.end()));
+    runtime.map(count, kernels::write_hull{.sets = sets_,
+                                           .hull_offsets = offsets,
+                                           .hull_vertices = vertices,
+                                           .ahead = ahead,
+                                           .indices = emitted_.indices,
+                                           .hull = hull});
+  }
+
+  Workspace& work_;
+  const Emitted& emitted_;
+  std::size_t sets_, n_;
+  Buffer<cl_int> set_points_{};
+  Buffer<cl_uint> rows_{}, hull_places_{};
+};
+
+Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
+  Emitted emitted;
+  emitted.points = blocks.vertices;
+  emitted.indices = blocks.source;
+  Arena& arena = work.persistent;
+  const std::size_t corners = 3 * kMostTrianglesPerPoint * blocks.points;
+  emitted.places = arena.allocate<cl_int>(corners);
+  emitted.links = arena.allocate<cl_int>(with_links ? corners : 0);
+  emitted.hull_next = arena.allocate<cl_int>(blocks.points);
+  emitted.hull_previous = arena.allocate<cl_int>(blocks.points);
+  for (const auto& array : {emitted.places, emitted.links, emitted.hull_next, emitted.hull_previous}) {
+    work.runtime.fill(array, array.size(), cl_int{-1});
+  }
+  return emitted;
+}
+
+// The distinct points of each set.
+std::vector<std::size_t> vertices_of_sets(const Blocks& blocks, const Rings& rings) {
+  std::vector<std::size_t> counts;
+  for (std::size_t s = 0; s < blocks.sets; ++s) {
+    std::size_t count = 0;
+    for (cl_int b = blocks.set_blocks[s]; b < blocks.set_blocks[s + 1]; ++b) count += rings.distinct[b];
+    counts.push_back(count);
+  }
+  return counts;
+}
+
+}  // namespace
+
+Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                   Exchange& exchange, statistics::Phases& phases) {
+  Workspace work{runtime, persistent};
+  const host::Runtime::Settled settled(runtime);
+  const Tuning& tuning = tuning_of(runtime);
+
+  phases.progress("blocks", 0);
+  const auto representatives = exchange.representatives();
+  Blocks blocks = [&] {
+    Arena::Scope points_scope(runtime.arena());
+    return make_blocks(work, exchange.points(), offsets, representatives);
+  }();
+  phases.end("blocks");
+
+  phases.progress("triangulate", kBlocksMade);
+  Emitted emitted = make_emitted(work, blocks, true);
+  OpenPoints open;
+  open.offsets = offsets;
+  std::vector<std::size_t> vertices;
+  Outcome outcome;
+  bool merges = false;
+  for (bool is_first = true; is_first || open.count() > 0; is_first = false) {
+    Arena::Scope scope(work.scratch());
+    if (!is_first)
+      blocks =
+          make_blocks_of(work, open.points, open.offsets, merges ? tuning.block_points : tuning.round_points);
+    Round round{is_first, merges, open, open.offsets, blocks, solve(work, blocks, representatives)};
+    if (merges) merge(work, blocks, round.rings);
+    if (is_first) exchange.while_device_computes();
+    await_rings(work, blocks, round.rings);
+    if (round.rings.ties > 0) make_fans(work, blocks, round.rings);
+    outcome.undecided += round.rings.undecided;
+    if (is_first) vertices = vertices_of_sets(blocks, round.rings);
+    emit(work, round, emitted);
+    OpenPoints next = open_after(work, round, emitted);
+    merges = 100 * next.count() > tuning.merge_from_percent * open.count() || next.count() == open.count();
+    open = std::move(next);
+  }
+  phases.end("triangulate");
+
+  phases.progress("output", kBlocksMerged);
+  Results results(work, emitted, offsets);
+  outcome.sizes = results.sizes(vertices);
+  phases.progress("output", kMeshCounted);
+  results.write(outcome.sizes, exchange.mesh(outcome.sizes));
+  return outcome;
+}
+
+}  // namespace flaunay::blocks

@@ -1,0 +1,17 @@
+// Rounds of blocks instead of merges up the trees: what is final is emitted, and the points around which
+// something is missing are brought to other blocks (kernels/blocks/rounds.cl).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "blocks/run.hpp"
+#include "blocks/stages.hpp"
+
+namespace flaunay::blocks {
+
+/// The same as run, in rounds. The results are the same bytes.
+Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                   Exchange& exchange, statistics::Phases& phases);
+
+}  // namespace flaunay::blocks
