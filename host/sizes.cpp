@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "shared/limits.h"
+
 namespace flaunay::host {
 namespace {
 
@@ -13,6 +15,9 @@ namespace {
 std::size_t sort_table_bytes(const Sizes& sizes) {
   return (sizes.sort_group << sizes.sort_bits) * sizeof(cl_uint);
 }
+
+// The local memory that kernels have which work on tiles: what OpenCL guarantees.
+constexpr std::size_t kTileBytes = std::size_t{32} << 10;
 
 }  // namespace
 
@@ -36,8 +41,14 @@ DeviceLimits limits_of(const boost::compute::device& device) {
 
 void fit(Sizes& sizes, const DeviceLimits& limits) {
   const std::size_t most = std::max<std::size_t>(1, limits.work_group);
-  for (std::size_t* group : {&sizes.map_group, &sizes.private_group, &sizes.chunk_group, &sizes.sort_group}) {
+  for (std::size_t* group :
+       {&sizes.map_group, &sizes.private_group, &sizes.chunk_group, &sizes.sort_group, &sizes.tile_group}) {
     *group = std::min(*group, most);
+  }
+  sizes.tile_group = std::min<std::size_t>(sizes.tile_group, kernel::LARGEST_TILE_GROUP);
+  if (limits.local_memory < kTileBytes) sizes.tile_group = 0;
+  for (std::size_t* size : {&sizes.scan_items, &sizes.scan_tiles_alone, &sizes.scan_groups}) {
+    *size = std::max<std::size_t>(1, *size);
   }
   while (sort_table_bytes(sizes) > limits.local_memory && sizes.sort_group > 1) sizes.sort_group /= 2;
   while (sort_table_bytes(sizes) > limits.local_memory && sizes.sort_bits > 1) --sizes.sort_bits;

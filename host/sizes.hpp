@@ -25,6 +25,14 @@ struct Sizes {
   std::size_t sort_bits = 1;
   std::size_t sort_group = 1;
   std::size_t sort_items = 0;
+  /// Work-group size of kernels where each work-group takes a tile of elements; 0: a work-item per chunk does
+  /// the work instead. At most kernel::LARGEST_TILE_GROUP.
+  std::size_t tile_group = 0;
+  /// A scan by work-groups: elements per work-item of a tile, how many tiles a single group may scan alone,
+  /// and the largest number of groups. All are at least 1.
+  std::size_t scan_items = 1;
+  std::size_t scan_tiles_alone = 1;
+  std::size_t scan_groups = 1;
   /// Other than 0: kernels read and write the caller's host memory instead of copies.
   std::size_t in_host_memory = 0;
   /// Other than 0: every array is a separate buffer; see Arena::separate_buffers.

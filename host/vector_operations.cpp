@@ -4,6 +4,7 @@
 
 #include "launchers/operations/pack.cl.hpp"
 #include "launchers/operations/scan.cl.hpp"
+#include "launchers/operations/scan_tiles.cl.hpp"
 #include "launchers/operations/sort.cl.hpp"
 
 namespace flaunay::host {
@@ -15,17 +16,51 @@ template <>
 struct ScanKernels<cl_uint> {
   using Reduce = kernels::scan_reduce_uint;
   using Write = kernels::scan_write_uint;
+  using SpanSums = kernels::scan_span_sums_uint;
+  using Spans = kernels::scan_spans_uint;
 };
 template <>
 struct ScanKernels<cl_uint2> {
   using Reduce = kernels::scan_reduce_uint2;
   using Write = kernels::scan_write_uint2;
+  using SpanSums = kernels::scan_span_sums_uint2;
+  using Spans = kernels::scan_spans_uint2;
 };
 template <>
 struct ScanKernels<cl_uint8> {
   using Reduce = kernels::scan_reduce_uint8;
   using Write = kernels::scan_write_uint8;
+  using SpanSums = kernels::scan_span_sums_uint8;
+  using Spans = kernels::scan_spans_uint8;
 };
+
+std::size_t divided_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
+
+// By work-groups, in at most two launches.
+template <typename T>
+void scan_by_spans(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output) {
+  const Sizes& sizes = runtime.sizes();
+  const std::size_t group = sizes.tile_group;
+  const std::size_t tile = group * sizes.scan_items;
+  const std::size_t tiles = divided_up(n, tile);
+  const std::size_t most = tiles <= sizes.scan_tiles_alone ? 1 : sizes.scan_groups;
+  const std::size_t span = divided_up(tiles, most) * tile;
+  const std::size_t spans = divided_up(n, span);
+  Arena::Scope scope(runtime.arena());
+  const auto sums = runtime.arena().allocate<T>(spans);
+  using Kernels = ScanKernels<T>;
+  if (spans > 1) {
+    runtime.launch(spans * group, group, n,
+                   typename Kernels::SpanSums{.spans = spans, .span = span, .input = input, .sums = sums});
+  }
+  runtime.launch(spans * group, group, n,
+                 typename Kernels::Spans{.spans = spans,
+                                         .span = span,
+                                         .items = sizes.scan_items,
+                                         .sums = sums,
+                                         .input = input,
+                                         .output = output});
+}
 
 }  // namespace
 
@@ -33,6 +68,10 @@ template <typename T>
 void exclusive_scan(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output) {
   if (n == 0) {
     runtime.fill(output, 1, T{});
+    return;
+  }
+  if (runtime.sizes().tile_group != 0) {
+    scan_by_spans(runtime, input, n, output);
     return;
   }
   const std::size_t chunk = runtime.sizes().chunk(n);

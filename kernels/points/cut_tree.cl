@@ -2,7 +2,7 @@
 //
 // The samples of a tree are cut in halves down to the leaves: those of each node at the median, across the longer of
 // their interquartile ranges. One work-item takes one chunk of samples of one tree: those of a leaf, or 2, 4, 8...
-// times as many.
+// times as many. cut_tree_tiles.cl does the same for devices with many lanes.
 //
 // 1. draw_samples fetches one point from each of equal parts of a set.
 // 2. sort_chunks sorts each chunk along x and along y. merge_runs merges sorted runs, in one launch per doubling.
@@ -12,9 +12,9 @@
 // So each level of nodes larger than chunks costs one pass over the samples for sorting and two for cutting. The levels
 // below cost one pass each, all in two launches.
 
-#include "shared/cut_tree.h"
 #include "shared/order.h"
 #include "shared/records.h"
+#include "shared/sampled_cuts.h"
 #include "shared/search.h"
 
 // A chunk's tree and its first sample.
@@ -33,14 +33,6 @@ static inline sample_chunk chunk_of(int c, int tree_count, global const int* fir
   return chunk;
 }
 
-// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-static inline ulong mixed(ulong x) {
-  x += 0x9e3779b97f4a7c15UL;
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9UL;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebUL;
-  return x ^ x >> 31;
-}
-
 kernel void draw_samples(int n, int tree_count, global const int* restrict first_chunks,
                          global const sampled_tree* restrict trees, global const double* restrict input,
                          global double2* restrict samples, global int* restrict indices) {
@@ -50,9 +42,7 @@ kernel void draw_samples(int n, int tree_count, global const int* restrict first
     const sampled_tree own = chunk.own;
     const int first = chunk.first;
     for (int i = first; i < first + own.chunk; ++i) {
-      const ulong k = i - own.first_sample;
-      const ulong begin = k * own.points / own.samples, end = (k + 1) * own.points / own.samples;
-      indices[i] = own.first_point + (int)(begin + mixed(k) % max(1UL, end - begin));
+      indices[i] = drawn_point(own, i - own.first_sample);
       samples[i] = vload2(indices[i], input);
     }
   }
@@ -120,44 +110,11 @@ kernel void merge_runs(int n, int tree_count, global const int* restrict first_c
   }
 }
 
-// A cut, at a sample.
-typedef struct {
-  int axis, sample;
-  double2 pivot;
-} sample_cut;
-
-// Of the node with the samples of both orders from `begin` on.
-static inline sample_cut cut_of(int begin, int size, global const double2* samples, global const int* by_x,
-                                global const int* by_y) {
-  const int low = begin + size / 4, high = begin + size - 1 - size / 4;
-  const double width = samples[by_x[high]].x - samples[by_x[low]].x;
-  const double height = samples[by_y[high]].y - samples[by_y[low]].y;
-  sample_cut cut;
-  cut.axis = height > width;
-  // In one expression, GCC 12 with its sanitizers would read another element.
-  global const int* const along = cut.axis ? by_y : by_x;
-  cut.sample = along[begin + size / 2];
-  cut.pivot = samples[cut.sample];
-  return cut;
-}
-
-static inline cut_node node_of(sample_cut cut) {
-  const ulong x = orderable(cut.pivot.x), y = orderable(cut.pivot.y);
-  cut_node node;
-  node.major = cut.axis ? y : x;
-  node.minor = cut.axis ? ~x : y;
-  node.turn = cut.axis ? ~0UL : 0UL;
-  return node;
-}
-
 static inline int goes_low(int sample, sample_cut cut, global const double2* samples) {
   const double2 p = samples[sample];
   const int is_equal = (p.x == cut.pivot.x) & (p.y == cut.pivot.y);
   return precedes(p, cut.pivot, cut.axis) | (is_equal & (sample < cut.sample));
 }
-
-// The samples of a node at a level; of a level below its leaves, fewer.
-static inline int node_samples(sampled_tree own, int level) { return own.samples >> level; }
 
 // Writes the nodes of a level, if they are larger than chunks. Counts how many samples of each chunk of the other order
 // than the one along the axis go low. order: along x, then along y.
@@ -176,7 +133,7 @@ kernel void count_low(int n, int tree_count, global const int* restrict first_ch
       const int number = (first - own.first_sample) / size;
       const int begin = own.first_sample + number * size;
       const sample_cut cut = cut_of(begin, size, samples, order, order + all_samples);
-      if (first == begin) nodes[own.first_node + (1 << level) + number] = node_of(cut);
+      if (first == begin) nodes[own.first_node + (1 << level) + number] = node_of(cut.axis, cut.pivot);
       global const int* const other = order + (cut.axis ? 0 : all_samples);
       for (int i = first; i < first + own.chunk; ++i) low += goes_low(other[i], cut, samples);
     }
@@ -243,7 +200,7 @@ kernel void cut_chunks(int n, int tree_count, global const int* restrict first_c
     for (int size = own.chunk; size > own.leaf; size /= 2) {
       for (int begin = first; begin < first + own.chunk; begin += size) {
         const sample_cut cut = cut_of(begin, size, samples, order, order + all_samples);
-        nodes[own.first_node + (own.samples + begin - own.first_sample) / size] = node_of(cut);
+        nodes[own.first_node + (own.samples + begin - own.first_sample) / size] = node_of(cut.axis, cut.pivot);
         split_run(begin, size, cut, samples, order + (cut.axis ? 0 : all_samples), spare);
       }
     }

@@ -38,6 +38,14 @@ static inline void find_leaves(int first, int last, GLOBAL const double* input, 
   for (int k = 0; k < DESCENTS; ++k) leaves[k] = node[k] - (1 << depth);
 }
 
+// The leaf of a point, counted from 0.
+static inline int leaf_of(double2 p, GLOBAL const cut_node* tree, int depth) {
+  const ulong x = orderable(p.x), y = orderable(p.y);
+  int node = 1;
+  for (int d = 0; d < depth; ++d) node = 2 * node + goes_high(x, y, tree[node]);
+  return node - (1 << depth);
+}
+
 END_SHARED
 
 #endif

@@ -11,6 +11,17 @@ INTEGER_CONSTANT(EDGES_PER_VERTEX, 6);
 // Divide and conquer ends with leaves of at most so many vertices.
 INTEGER_CONSTANT(LEAF_VERTICES, 4);
 
+// The largest work-group that takes a tile of elements, what local memory has room for.
+INTEGER_CONSTANT(LARGEST_TILE_GROUP, 256);
+// A tile of points has at most so many, and a tile of samples.
+INTEGER_CONSTANT(LARGEST_POINT_TILE, 2048);
+INTEGER_CONSTANT(LARGEST_SAMPLE_TILE, 1024);
+// A tile of points is sorted by at most so many bits of their blocks' numbers.
+INTEGER_CONSTANT(MOST_BLOCK_BITS, 10);
+// Sorted runs of samples are merged by so many.
+INTEGER_CONSTANT(MERGED_RUNS_BITS, 3);
+INTEGER_CONSTANT(MERGED_RUNS, 1 << MERGED_RUNS_BITS);
+
 // Corners of the largest region that one work-item triangulates in private memory, unless a program's build says
 // otherwise by SMALL_REGION. At most 64, the bits of a ulong.
 INTEGER_CONSTANT(DEFAULT_SMALL_REGION, 48);

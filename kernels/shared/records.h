@@ -61,6 +61,13 @@ typedef struct {
 } sampled_tree;
 ASSERT_SIZE(sampled_tree, 28);
 
+// A set whose points go to blocks: its first block, its tree's depth, and where the tree's nodes begin. Depth 0: it is
+// one block.
+typedef struct {
+  int block, depth, nodes;
+} set_of_blocks;
+ASSERT_SIZE(set_of_blocks, 12);
+
 // Points [first, last) that one work-item brings to their blocks. Of a set with a tree: its depth, where its nodes
 // begin, where the chunk's row of cursors begins, the set's first count, the chunk's number in the set, and the set's
 // number of chunks.

@@ -4,6 +4,8 @@
 
 #include "host/vector_operations.hpp"
 #include "launchers/points/cut_tree.cl.hpp"
+#include "shared/limits.h"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::points {
 
@@ -11,15 +13,16 @@ using host::Arena;
 using host::Buffer;
 
 CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, std::size_t samples_per_leaf)
-    : runtime_(runtime) {
+    : runtime_(runtime),
+      by_tiles_(runtime.sizes().tile_group != 0 && samples_per_leaf <= kernel::LARGEST_SAMPLE_TILE) {
   std::size_t leaves = 0;
   for (const SetToCut& set : sets) leaves += std::size_t{1} << set.depth;
+  const std::size_t most =
+      by_tiles_ ? tuning_of(runtime).sample_tile : runtime.sizes().chunk(leaves * samples_per_leaf);
   int chunk_depth = 0;
-  while (samples_per_leaf << (chunk_depth + 1) <= runtime.sizes().chunk(leaves * samples_per_leaf)) {
-    ++chunk_depth;
-  }
+  while (samples_per_leaf << (chunk_depth + 1) <= most) ++chunk_depth;
   std::vector<kernel::sampled_tree> trees;
-  std::vector<cl_int> first_chunks;
+  std::vector<cl_int> first_chunks, first_samples;
   for (const SetToCut& set : sets) {
     const std::size_t samples = samples_per_leaf << set.depth;
     const int above = std::max(0, set.depth - chunk_depth);
@@ -28,6 +31,7 @@ CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, st
                      static_cast<cl_int>(nodes_), static_cast<cl_int>(set.first_point),
                      static_cast<cl_int>(set.points)});
     first_chunks.push_back(static_cast<cl_int>(chunks_));
+    if (by_tiles_) first_samples.push_back(static_cast<cl_int>(samples_));
     samples_ += samples;
     nodes_ += std::size_t{1} << set.depth;
     chunks_ += std::size_t{1} << above;
@@ -37,6 +41,7 @@ CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, st
   first_chunks_ = runtime.arena().allocate<cl_int>(first_chunks.size());
   runtime.write_kept(trees_, std::move(trees));
   runtime.write_kept(first_chunks_, std::move(first_chunks));
+  first_samples_ = runtime.upload(runtime.arena(), std::move(first_samples));
 }
 
 std::size_t CutTrees::bytes(std::size_t trees, std::size_t leaves, std::size_t samples_per_leaf) {
@@ -45,7 +50,7 @@ std::size_t CutTrees::bytes(std::size_t trees, std::size_t leaves, std::size_t s
   constexpr std::size_t kBySample = sizeof(cl_double2) + 3 * sizeof(cl_int) + 4 * sizeof(cl_uint2);
   // The counts of chunks, each of which has at least one leaf, and the sums of their scan.
   constexpr std::size_t kByLeaf = 2 * sizeof(cl_uint);
-  return trees * (sizeof(kernel::sampled_tree) + sizeof(cl_int)) +
+  return trees * (sizeof(kernel::sampled_tree) + 2 * sizeof(cl_int)) +
          leaves * (samples_per_leaf * kBySample + kByLeaf);
 }
 
@@ -59,6 +64,10 @@ void CutTrees::launch(std::size_t items_per_chunk, const Kernel& kernel) const {
 CutTrees::Samples CutTrees::draw(const Buffer<cl_double>& input) const {
   const Samples samples{runtime_.arena().allocate<cl_double2>(samples_),
                         runtime_.arena().allocate<cl_int>(samples_)};
+  if (by_tiles_) {
+    draw_each(input, samples);
+    return samples;
+  }
   launch(1, kernels::draw_samples{.tree_count = trees_.size(),
                                   .first_chunks = first_chunks_,
                                   .trees = trees_,
@@ -84,6 +93,7 @@ void CutTrees::sort_chunks(const Buffer<cl_double2>& samples, const Buffer<cl_in
 }
 
 Buffer<cl_int> CutTrees::cut(const Buffer<cl_double2>& samples, const Buffer<kernel::cut_node>& nodes) const {
+  if (by_tiles_) return cut_tiles(samples, nodes);
   auto order = runtime_.arena().allocate<cl_int>(2 * samples_);
   Arena::Scope scope(runtime_.arena());
   sort_chunks(samples, order);

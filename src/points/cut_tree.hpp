@@ -50,12 +50,20 @@ class CutTrees {
   template <typename Kernel>
   void launch(std::size_t items_per_chunk, const Kernel& kernel) const;
   void sort_chunks(const host::Buffer<cl_double2>& samples, const host::Buffer<cl_int>& order) const;
+  // For devices with many lanes; see cut_tree_tiles.cpp.
+  template <typename Kernel>
+  void launch_tiles(std::size_t groups_per_tile, const Kernel& kernel) const;
+  void draw_each(const host::Buffer<cl_double>& input, const Samples& samples) const;
+  host::Buffer<cl_int> cut_tiles(const host::Buffer<cl_double2>& samples,
+                                 const host::Buffer<kernel::cut_node>& nodes) const;
 
   host::Runtime& runtime_;
+  bool by_tiles_;  // work-groups take chunks
   std::size_t samples_ = 0, nodes_ = 0, chunks_ = 0;
   int levels_above_chunks_ = 0;
   host::Buffer<kernel::sampled_tree> trees_{};
   host::Buffer<cl_int> first_chunks_{};
+  host::Buffer<cl_int> first_samples_{};
 };
 
 }  // namespace flaunay::points

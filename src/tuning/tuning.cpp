@@ -86,6 +86,48 @@ constexpr Row kTable[] = {
      {16},
      {3},
      "As chunks on a CPU; on a GPU enough to make use of the counters."},
+    {"tile_group",
+     &Tuning::tile_group,
+     {0},
+     {256},
+     {0},
+     "A CPU's core does alone what a group of a GPU shares; barriers would only cost it time."},
+    {"scan_items",
+     &Tuning::scan_items,
+     {8},
+     {8},
+     {3},
+     "As many additions as the group needs steps to scan its sums."},
+    {"scan_tiles_alone",
+     &Tuning::scan_tiles_alone,
+     {4},
+     {4},
+     {2},
+     "A few more tiles for one group take no longer than another launch."},
+    {"scan_groups",
+     &Tuning::scan_groups,
+     {1024},
+     {1024},
+     {3},
+     "About as many as large GPUs run at once; each adds up the sums of those before, 4 a work-item."},
+    {"point_tile",
+     &Tuning::point_tile,
+     {2048},
+     {2048},
+     {7},
+     "Local memory sorts a tile, so that neighbours write to neighbouring places."},
+    {"sample_tile",
+     &Tuning::sample_tile,
+     {1024},
+     {1024},
+     {6},
+     "What 32 KB of local memory hold with both orders; larger nodes cost two launches a level."},
+    {"block_bits",
+     &Tuning::block_bits,
+     {10},
+     {10},
+     {2},
+     "A tile's counts are then half as many as its points; one pass serves 2 million points."},
     {"list_workers",
      &Tuning::list_workers,
      per_unit(16),
@@ -265,6 +307,7 @@ std::optional<Tuning> kind_named(const std::string& name, const Target& target) 
   Tuning tuning = column(&Row::gpu, target);
   tuning.map_group = tuning.private_group = tuning.chunk_group = tuning.sort_group = tuning.block_group =
       *group;
+  tuning.tile_group = std::min<std::size_t>(*group, kernel::LARGEST_TILE_GROUP);
   return tuning;
 }
 
@@ -321,6 +364,16 @@ Tuning tuning_of_target(const Target& target) {
   return tuning_named(is_given ? given : tuning_by_name(target), target);
 }
 
+// Reduces sizes to what kernels have local memory for.
+void fit_tiles(Tuning& tuning) {
+  const auto fit = [](std::size_t& size, int most) {
+    size = std::clamp<std::size_t>(size, 1, static_cast<std::size_t>(most));
+  };
+  fit(tuning.point_tile, kernel::LARGEST_POINT_TILE);
+  fit(tuning.sample_tile, kernel::LARGEST_SAMPLE_TILE);
+  fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
+}
+
 }  // namespace
 
 std::string Tuning::build_options() const {
@@ -333,6 +386,7 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   auto tuning = std::make_shared<Tuning>(tuning_of_target({device.name(), is_cpu, device.compute_units()}));
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
+  fit_tiles(*tuning);
   tuning->block_group = std::min(tuning->block_group, std::max<std::size_t>(1, limits.work_group));
   return tuning;
 }
@@ -345,6 +399,7 @@ std::shared_ptr<const Tuning> native_tuning() {
   tuning->sort_bits = compiled.sort_bits;
   tuning->sort_group = compiled.sort_group;
   tuning->fetch_ahead = compiled.fetch_ahead;
+  tuning->tile_group = compiled.tile_group;
   tuning->in_host_memory = 1;
   return tuning;
 }

@@ -186,6 +186,61 @@ TYPED_TEST(Scan, IsThePlainLoop) {
   });
 }
 
+/// Runs the check with the tuning of GPUs, but with work-groups of this size and tiles and spans so small
+/// that little input has many.
+template <typename Check>
+void with_small_spans(std::size_t group, const Check& check) {
+  SCOPED_TRACE("groups of " + std::to_string(group));
+  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Tuning tuning = tuning_named("gpu");
+  tuning.tile_group = std::min(group, limits_of(find_device("")).work_group);
+  for (const auto& [items, alone, groups] : {std::array<std::size_t, 3>{1, 1, 3}, {3, 2, 5}, {8, 4, 1}}) {
+    tuning.scan_items = items;
+    tuning.scan_tiles_alone = alone;
+    tuning.scan_groups = groups;
+    runtime.set_sizes(std::make_shared<Tuning>(tuning));
+    check(runtime);
+  }
+}
+
+TYPED_TEST(SmallScan, BySpansIsThePlainLoop) {
+  Random random(12);
+  for (const std::size_t group : {1, 3}) {
+    with_small_spans(group, [&](Runtime& runtime) {
+      for (const std::size_t n : {1, 2, 3, 9, 10, 17, 18, 19, 40}) check_scan<TypeParam>(runtime, n, random);
+    });
+  }
+}
+
+TYPED_TEST(Scan, BySpansIsThePlainLoop) {
+  Random random(13);
+  for (const std::size_t group : {1, 32, 64, 256}) {
+    with_small_spans(group, [&](Runtime& runtime) {
+      for (const std::size_t n : {group - 1, group, group + 1, 3 * group, 8 * group, 24 * group + 1}) {
+        check_scan<TypeParam>(runtime, n, random);
+      }
+      for (int k = 0; k < 5; ++k) check_scan<TypeParam>(runtime, random() % 20000, random);
+    });
+  }
+}
+
+TEST(ScanLaunches, BySpansTakesTwo) {
+  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  runtime.set_sizes(std::make_shared<Tuning>(tuning_named("gpu")));
+  const std::size_t group = runtime.sizes().tile_group;
+  ASSERT_NE(group, 0u);
+  const std::size_t alone = group * runtime.sizes().scan_items * runtime.sizes().scan_tiles_alone;
+  for (const std::size_t n : {std::size_t{1}, alone, alone + 1, std::size_t{5000000}}) {
+    const Arena::Scope scope(runtime.arena());
+    const auto values = runtime.arena().allocate<cl_uint>(n + 1);
+    runtime.fill(values, n, cl_uint{1});
+    const std::size_t before = runtime.launches();
+    exclusive_scan(runtime, values, n, values);
+    EXPECT_EQ(runtime.launches() - before, n <= alone ? 1u : 2u) << n;
+    EXPECT_EQ(runtime.read_one(values, n), n);
+  }
+}
+
 std::vector<cl_int> plain_positions(const std::vector<cl_uchar>& flags, int wanted) {
   std::vector<cl_int> positions;
   for (std::size_t i = 0; i < flags.size(); ++i) {

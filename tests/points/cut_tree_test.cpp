@@ -234,6 +234,30 @@ TEST(CutTrees, AreThoseOfTheHost) {
   });
 }
 
+TEST(SmallCutTrees, OfTilesAreThoseOfTheHost) {
+  under_each_group_of_tiles([](Runtime& runtime) {
+    for (const std::size_t samples_per_leaf : {1, 3, 16}) {
+      check_device_trees(runtime, sets_of_all_depths(9, {1, 6, 2}), samples_per_leaf);
+    }
+  });
+}
+
+TEST(CutTrees, OfTilesAreThoseOfTheHost) {
+  under_each_group_of_tiles([](Runtime& runtime) {
+    check_device_trees(runtime, sets_of_all_depths(1000, {5, 1, 9, 0, 3}), 16);
+    check_device_trees(runtime, sets_of_all_depths(500, {11, 1, 13}), 1);
+    check_device_trees(runtime, sets_of_all_depths(100, {11, 0, 4}), 3);
+  });
+}
+
+/// A million points have trees of 512 leaves, 16 million of 8,192.
+TEST(CutTrees, OfTilesTakeFewLaunches) {
+  Runtime& runtime = Runtimes::get("tiles:256");
+  if (runtime.is_native()) GTEST_SKIP() << "native kernels have no work-groups";
+  EXPECT_LE(check_device_trees(runtime, {{make_fixture("uniform", 20000, 1), 9}}, 16), 10u);
+  EXPECT_LE(check_device_trees(runtime, {{make_fixture("uniform", 40000, 2), 13}}, 16), 20u);
+}
+
 TEST(CutTrees, ManySetsTakeNoMoreLaunchesThanOne) {
   under_each_tuning([](Runtime& runtime) {
     std::vector<std::pair<Coordinates, int>> sets;

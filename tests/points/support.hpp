@@ -51,9 +51,13 @@ using testing::TreeTwin;
 
 using Offsets = std::vector<std::size_t>;
 
-/// One for each tuning; "own" is the device's or what the environment names.
+/// One for each tuning; "own" is the device's or what the environment names. "tiles": work-groups take tiles
+/// so small that little input has many. "tiles:N": tiles as on GPUs, but for groups of N.
 inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
-  auto runtime = testing::make_tuned_runtime(name == "small" ? "small" : "own");
+  const bool has_tiles = name.compare(0, 5, "tiles") == 0;
+  auto runtime = testing::make_tuned_runtime(name == "small" || name == "tiles" ? "small"
+                                             : has_tiles                        ? "gpu"
+                                                                                : "own");
   Tuning tuning = tuning_of(*runtime);
   if (name == "odd") {
     // One work-item for all blocks, many chunks.
@@ -62,6 +66,8 @@ inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
     tuning.chunk_least = 2;  // as few as a scan can do with
     tuning.chunks_most = 0;
   }
+  if (has_tiles) tuning.tile_group = name == "tiles" ? 3 : std::stoul(name.substr(6));
+  if (name == "tiles") tuning.block_points = 11;
   if (name == "single") {
     // Blocks without merges of their own, in memory that is shared if it was not.
     tuning.block_points = 1;
@@ -81,10 +87,24 @@ using Runtimes = testing::SharedRuntimes<make_runtime>;
 template <typename Check>
 void under_each_tuning(const Check& check) {
   const bool chosen = std::getenv("FLAUNAY_TUNING") != nullptr;
-  for (const char* const name : {"own", "small", "odd", "single"}) {
+  for (const char* const name : {"own", "small", "odd", "single", "tiles"}) {
     if (chosen && std::string(name) != "own") continue;
     SCOPED_TRACE(std::string("tuning ") + name);
-    check(Runtimes::get(name));
+    Runtime& runtime = Runtimes::get(name);
+    // There, work-groups have one work-item each.
+    if (runtime.is_native() && std::string(name) == "tiles") continue;
+    check(runtime);
+  }
+}
+
+/// With tiles, and groups of many sizes.
+template <typename Check>
+void under_each_group_of_tiles(const Check& check) {
+  for (const char* const name : {"tiles", "tiles:1", "tiles:32", "tiles:64", "tiles:256"}) {
+    SCOPED_TRACE(std::string("tuning ") + name);
+    Runtime& runtime = Runtimes::get(name);
+    if (runtime.is_native()) GTEST_SKIP() << "native kernels have no work-groups";
+    check(runtime);
   }
 }
 

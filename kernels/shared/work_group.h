@@ -1,0 +1,35 @@
+// What the work-items of a group compute together, for kernels that work on tiles: a tile is what one work-group takes.
+// Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind the last tile, which do
+// nothing. All work-items of a group must call these functions at the same place. In OpenCL C alone.
+#ifndef FLAUNAY_WORK_GROUP_H
+#define FLAUNAY_WORK_GROUP_H
+
+#include "shared/limits.h"
+
+// Defines a function that returns the sum of the values of the work-items before this one, and writes that of all of
+// them to *total. sums: LARGEST_TILE_GROUP elements, which may be used again afterwards.
+#define SCAN_IN_GROUP(NAME, T)                                 \
+  static inline T NAME(T value, local T* sums, T* total) {     \
+    const int me = get_local_id(0), group = get_local_size(0); \
+    sums[me] = value;                                          \
+    barrier(CLK_LOCAL_MEM_FENCE);                              \
+    for (int distance = 1; distance < group; distance *= 2) {  \
+      T sum = sums[me];                                        \
+      if (me >= distance) sum += sums[me - distance];          \
+      barrier(CLK_LOCAL_MEM_FENCE);                            \
+      sums[me] = sum;                                          \
+      barrier(CLK_LOCAL_MEM_FENCE);                            \
+    }                                                          \
+    const T before = sums[me] - value;                         \
+    *total = sums[group - 1];                                  \
+    barrier(CLK_LOCAL_MEM_FENCE);                              \
+    return before;                                             \
+  }
+
+// How many of a tile's elements each work-item takes, if it takes consecutive ones.
+static inline int share_of(int elements) {
+  const int group = get_local_size(0);
+  return (elements + group - 1) / group;
+}
+
+#endif
