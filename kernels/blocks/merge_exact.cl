@@ -2,6 +2,8 @@
 // at is continued to its end. Each kernel is one pass over the states of a launch, most of which are done, with one
 // work-item per cell or merge.
 
+// Compiled in half the time, and these are called rarely.
+#define OUT_OF_LINE __attribute__((noinline))
 #include "shared/cut_tree.h"
 #include "shared/halves.h"
 #include "shared/rings_account.h"
