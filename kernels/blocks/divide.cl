@@ -8,11 +8,11 @@
 
 #include "shared/codes.h"
 #include "shared/cut_tree.h"
+#include "shared/halving.h"
 #include "shared/prefetch.h"
 #include "shared/rings.h"
+#include "shared/rings_account.h"
 
-// Where a point stands in either order.
-typedef int2 ranks;
 #define MOST_DEPTH 32
 #define FETCHED_VERTICES_AHEAD 256
 
@@ -64,20 +64,9 @@ static inline void rank(int count, block_scratch* s) {
   }
 }
 
-// Where part j begins, of the 2^depth parts into which count vertices are cut.
-static inline int part_begin(int count, int depth, int j) { return (int)(((long)j * count) >> depth); }
-
-// 1 if the part is longer in y, by its interquartile ranges.
-static inline int axis_of(int begin, int end, const block_scratch* s) {
-  const int low = begin + (end - begin) / 4, high = end - 1 - (end - begin) / 4;
-  const double width = s->points[s->by_x[high].x].x - s->points[s->by_x[low].x].x;
-  const double height = s->points[s->by_y[high].x].y - s->points[s->by_y[low].x].y;
-  return height > width;
-}
-
 // Cuts a part at its middle. The order along the axis is split by position, the other one by comparison, stably.
 static inline int cut_part(int begin, int middle, int end, const block_scratch* s) {
-  const int axis = axis_of(begin, end, s);
+  const int axis = axis_of(begin, end, s->points, s->by_x, s->by_y);
   global ranks* const order = axis ? s->by_x : s->by_y;
   const int threshold = axis ? s->by_y[middle].y : s->by_x[middle].x;
   int low = begin, high = 0;
@@ -96,8 +85,7 @@ static inline int cut_part(int begin, int middle, int end, const block_scratch* 
 // Triangulates one block, which is not empty. Writes its vertices in the order of the leaves; returns its hull's ends.
 static inline hull_ends solve_block(rings* g, int first, int count, const block_scratch* s, global double2* points,
                                     global int* source) {
-  int depth = 0;
-  while (count > LEAF_VERTICES << depth) ++depth;
+  const int depth = halving_depth(count);
   for (int d = 0; d < depth; ++d) {
     for (int j = 0; j < 1 << d; ++j) {
       s->axes[(1 << d) + j] =
@@ -127,11 +115,6 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
     stack[height++] = whole;
   }
   return stack[0];
-}
-
-static inline void add_to_account(const rings* g, global volatile uint* account) {
-  if (g->undecided > 0) atomic_add(&account[RINGS_UNDECIDED], g->undecided);
-  if (g->ties > 0) atomic_add(&account[RINGS_TIES], g->ties);
 }
 
 // Solves the blocks of more than `larger` and at most `capacity` points. Each work-item's part of the scratch arrays

@@ -5,8 +5,8 @@
 //
 // What the two languages spell differently is spelled by a macro here: GLOBAL for the address space `global`, RESTRICT,
 // VECTOR(type, components...) for a vector, INTEGER_CONSTANT(NAME, value) for a constant of type int, OUT_OF_LINE for a
-// function that is called rarely and is long, and ASSERT_SIZE(type, bytes), which does not compile unless the type has
-// that size.
+// function that is called rarely and is long (in OpenCL C nothing, unless a program chooses), and ASSERT_SIZE(type,
+// bytes), which does not compile unless the type has that size.
 //
 // double_pair is two doubles in one register, on which predicates compute side by side: with the operators + - *,
 // low and high for its elements, swapped, lows and highs for the elements of two pairs with the same place, and
@@ -134,7 +134,9 @@ END_SHARED
 #define VECTOR(type, ...) ((type)(__VA_ARGS__))
 #define INTEGER_CONSTANT(NAME, VALUE) enum { NAME = VALUE }
 #define ASSERT_SIZE(type, bytes) typedef char type##_has_its_size[sizeof(type) == (bytes) ? 1 : -1]
+#ifndef OUT_OF_LINE
 #define OUT_OF_LINE
+#endif
 
 typedef double2 double_pair;
 static inline double_pair as_pair(double2 p) { return p; }

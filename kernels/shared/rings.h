@@ -1,5 +1,6 @@
 // Delaunay triangulations as rings of edges, and Guibas and Stolfi's merge of two of them (ACM Transactions on Graphics
-// 4, 1985). RINGS_TIE breaks the ties of cocircular points.
+// 4, 1985). RINGS_TIE breaks the ties of cocircular points. With RINGS_STOP, nothing is evaluated exactly: a merge or a
+// leaf stops at a predicate that floating point cannot decide, and a program without RINGS_STOP continues it.
 #ifndef FLAUNAY_RINGS_H
 #define FLAUNAY_RINGS_H
 
@@ -14,11 +15,15 @@ BEGIN_SHARED
 
 INTEGER_CONSTANT(NO_VERTEX, -1);
 INTEGER_CONSTANT(NO_EDGE, -1);
+// How far a merge is, unless it has stopped above a base, which is an edge.
+INTEGER_CONSTANT(MERGE_IS_DONE, -1);
+INTEGER_CONSTANT(MERGE_HAS_NO_BASE, -2);
+INTEGER_CONSTANT(MERGE_IS_NEW, -3);
 // Whether d counts as inside of the circle of a, b, c if it is on it; if not, edges stay as they are. Where coordinates
 // are so coarse that ties cost nothing, polygons are small, and merges make them canonical. Otherwise they are left to
 // blocks/fans.cl, since merges that make fans of large polygons would make most of their edges again and again.
 #ifndef RINGS_TIE
-#define RINGS_TIE(a, b, c, d, bound) ((bound) == 0.0 && canonical_tie(a, b, c, d, bound) > 0)
+#define RINGS_TIE(a, b, c, d, bound) ((bound) == 0.0 && canonical_tie(a, b, c, d, 0.0) > 0)
 #endif
 
 // What one work-item works on: its own edges, all free at first.
@@ -68,17 +73,25 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
   return axis ? ends_of(least, most, low.first_y, high.last_y) : ends_of(low.first_x, high.last_x, least, most);
 }
 
+#ifdef RINGS_STOP
+#define HAS_STOPPED(g) ((g)->undecided > 0)
+#define EXACT_OR_STOPPED(sign) 0
+#else
+#define HAS_STOPPED(g) 0
+#define EXACT_OR_STOPPED(sign) (sign)
+#endif
+
 // What filters could not decide; out of line, so that merges have more registers.
 OUT_OF_LINE static inline int side_undecided(rings* g, double2 a, double2 b, double2 c) {
   ++g->undecided;
-  return orient_exact(a, b, c);
+  return EXACT_OR_STOPPED(orient_exact(a, b, c));
 }
 
 OUT_OF_LINE static inline int in_circle_undecided(rings* g, double2 a, double2 b, double2 c, double2 d, double bound) {
   int sign = 0;
   if (bound != 0.0) {
     ++g->undecided;
-    sign = circle_undecided(a, b, c, d, bound);
+    sign = EXACT_OR_STOPPED(circle_undecided(a, b, c, d, bound));
     g->ties += sign == 0;
   }
   return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, bound);
@@ -242,7 +255,7 @@ static inline void make_star(rings* g, int4 q) {
   g->vertex_edge[q.w] = e + 7;
 }
 
-// An edge from the right triangulation to the left one that has both above it.
+// An edge from the right triangulation to the left one that has both above it. Changes nothing before it is found.
 static inline int lower_tangent(rings* g, int left, int right) {
   GLOBAL const ring_edge* edges = g->edges;
   int left_edge = g->vertex_edge[left], right_edge = g->vertex_edge[right];
@@ -259,6 +272,7 @@ static inline int lower_tangent(rings* g, int left, int right) {
     } else {
       moves = 0;
     }
+    if (HAS_STOPPED(g)) return MERGE_HAS_NO_BASE;
   }
   const int base = make_edge(g, right, left);
   if (right_edge != NO_EDGE) insert_before(g, base, right_edge);
@@ -286,18 +300,16 @@ static inline int rules_out(rings* g, double_pair left, double_pair right, doubl
 
 static inline double_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
 
-// Merges two triangulations that a cut separates, named as if it were vertical. left: the left one's last vertex along
-// the axis; right: the right one's first.
+// Merges what is above a base. Returns MERGE_IS_DONE, or the base at which it stopped: the rings then are as this
+// begins with them.
 //
 // Its time is that of waiting: for memory, for predicates, and for predictions of them that were wrong. So the
 // in-circle tests over a base compare angles, which are computed once and also tell which apexes rise above it. The
 // side whose vertex stays keeps its candidate in registers.
-static inline void merge_triangulations(rings* g, int left, int right) {
+static inline int merge_above(rings* g, int base) {
   GLOBAL const ring_edge* edges = g->edges;
   const double bound = angle_bound(g->bounds.circle);
-  int base = lower_tangent(g, left, right);
-  left = edges[base].to;
-  right = edges[base ^ 1].to;
+  int left = edges[base].to, right = edges[base ^ 1].to;
   double_pair left_point = point_at(g, left), right_point = point_at(g, right);
   int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
   int left_to = edges[left_edge].to, right_to = edges[right_edge].to;
@@ -308,6 +320,7 @@ static inline void merge_triangulations(rings* g, int left, int right) {
     angle right_seen = angle_of(right_apex, left_point, right_point);
     const int left_rises = is_above(g, left_point, right_point, left_apex, left_seen);
     const int right_rises = is_above(g, left_point, right_point, right_apex, right_seen);
+    if (HAS_STOPPED(g)) return base;
     if (!left_rises && !right_rises) break;
     if (left_rises) {
       for (int then = edges[left_edge].next; then != (base ^ 1); then = edges[left_edge].next) {
@@ -335,8 +348,10 @@ static inline void merge_triangulations(rings* g, int left, int right) {
         right_seen = seen;
       }
     }
-    if (!left_rises ||
-        (right_rises && rules_out(g, left_point, right_point, left_apex, left_seen, right_apex, right_seen, bound))) {
+    const int takes_right = !left_rises || (right_rises && rules_out(g, left_point, right_point, left_apex, left_seen,
+                                                                     right_apex, right_seen, bound));
+    if (HAS_STOPPED(g)) return base;
+    if (takes_right) {
       const int from_apex = right_edge ^ 1, above_right = edges[from_apex].previous;
       right = right_to;
       right_point = right_apex;
@@ -361,7 +376,16 @@ static inline void merge_triangulations(rings* g, int left, int right) {
     }
   }
   g->vertex_edge[right] = base;
+  return MERGE_IS_DONE;
 }
+
+// Merges two triangulations that a cut separates, named as if it were vertical. left: the left one's last vertex along
+// the axis; right: the right one's first. state: how far the merge is, which is also the result.
+static inline int continue_merge(rings* g, int state, int left, int right) {
+  const int base = state < 0 ? lower_tangent(g, left, right) : state;
+  return HAS_STOPPED(g) ? base : merge_above(g, base);
+}
+static inline void merge_triangulations(rings* g, int left, int right) { continue_merge(g, MERGE_IS_NEW, left, right); }
 
 // Four vertices from v on, in the order of axis 0.
 static inline void make_four(rings* g, int v) {

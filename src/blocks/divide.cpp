@@ -59,9 +59,39 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
   }
 }
 
+// Each work-item triangulates one block after the other.
+void solve_one_by_one(Workspace& work, const Blocks& blocks, std::size_t largest,
+                      const Buffer<cl_int>& representatives, const Rings& rings, Milestones* milestones) {
+  const Tuning& tuning = tuning_of(work.runtime);
+  const std::size_t capacity = std::min(largest, tuning.large_blocks * tuning.block_points);
+  const std::size_t affordable =
+      std::max<std::size_t>(1, tuning.scratch_per_point * blocks.points / capacity);
+  solve_sizes(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
+              representatives, milestones);
+  if (largest > capacity) {
+    solve_sizes(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives,
+                nullptr);
+  }
+}
+
+void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
+                      const Rings& rings) {
+  work.runtime.launch(end - first, tuning_of(work.runtime).block_group, end - first,
+                      kernels::merge_blocks{.first_merge = first,
+                                            .merges = blocks.device_merges,
+                                            .nodes = blocks.device_nodes,
+                                            .bounds = work.bounds,
+                                            .points = blocks.vertices,
+                                            .edges = rings.edges,
+                                            .vertex_edge = rings.vertex_edge,
+                                            .solved = rings.solved,
+                                            .account = rings.device_account});
+}
+
 }  // namespace
 
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n) {
+  if (tuning.blocks_in_parallel != 0) return kParallelBytesPerPoint * n;
   constexpr std::size_t kBytes = sizeof(cl_double2) + sizeof(cl_int) + 3 * sizeof(cl_int2) + sizeof(cl_uchar);
   // The larger of two cases: many work-items solve blocks at once, or one block has all points.
   return kBytes * std::max(n, std::min(tuning.scratch_per_point * n,
@@ -83,40 +113,30 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
   for (std::size_t b = 0; b < blocks.count; ++b) {
     largest = std::max<std::size_t>(largest, blocks.offsets[b + 1] - blocks.offsets[b]);
   }
-  const Tuning& tuning = tuning_of(runtime);
-  const std::size_t capacity = std::min(largest, tuning.large_blocks * tuning.block_points);
-  const std::size_t affordable =
-      std::max<std::size_t>(1, tuning.scratch_per_point * blocks.points / capacity);
-  solve_sizes(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
-              representatives, milestones);
-  if (largest > capacity) {
-    solve_sizes(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives,
-                nullptr);
+  const bool in_parallel = tuning_of(runtime).blocks_in_parallel != 0;
+  if (in_parallel) {
+    solve_in_parallel(
+        work, {blocks.count, blocks.points, largest, blocks.device_offsets, blocks.vertices, blocks.source},
+        representatives, rings);
+    if (milestones != nullptr) milestones->set("triangulate", kBlocksSolved);
+  } else {
+    solve_one_by_one(work, blocks, largest, representatives, rings, milestones);
   }
   return rings;
 }
 
 void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones) {
-  host::Runtime& runtime = work.runtime;
+  const bool in_parallel = tuning_of(work.runtime).blocks_in_parallel != 0;
   std::size_t first = 0;
   for (const std::size_t end : blocks.level_ends) {
-    runtime.launch(end - first, tuning_of(runtime).block_group, end - first,
-                   kernels::merge_blocks{.first_merge = first,
-                                         .merges = blocks.device_merges,
-                                         .nodes = blocks.device_nodes,
-                                         .bounds = work.bounds,
-                                         .points = blocks.vertices,
-                                         .edges = rings.edges,
-                                         .vertex_edge = rings.vertex_edge,
-                                         .solved = rings.solved,
-                                         .account = rings.device_account});
+    (in_parallel ? merge_trees : merge_one_by_one)(work, blocks, first, end, rings);
     first = end;
     if (milestones != nullptr)
       milestones->set("triangulate", kBlocksSolved + (kBlocksMerged - kBlocksSolved) *
                                                          static_cast<double>(end) /
                                                          static_cast<double>(blocks.merges.size()));
   }
-  runtime.flush();
+  work.runtime.flush();
 }
 
 Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,

@@ -42,7 +42,8 @@ WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std:
   const std::size_t cutting = CutTrees::bytes(std::min(sets, leaves), leaves, tuning.samples_per_block);
   const std::size_t scaling = sets > 1 ? n * kInput + (sets + 1) * kScalingBySet : 0;
   const std::size_t moving = n * kMoving + blocks * kMovingByBlock + chunks * kMovingByChunk;
-  const std::size_t solving = solve_bytes(tuning, n);
+  // The blocks are merged in pairs, each of which has a state.
+  const std::size_t solving = std::max(solve_bytes(tuning, n), blocks / 2 * sizeof(cl_int));
   const std::size_t writing = n * kWriting + 2 * (sets + 1) * sizeof(cl_int);
   return {n * kPersistent + (blocks + 1) * kPersistentByBlock + rounding,
           std::max({n * kInput + scaling + std::max(cutting, moving), solving, writing}) + rounding};

@@ -11,8 +11,10 @@
 #include "shared/coordinates.h"
 #include "shared/cut_tree.h"
 #include "shared/halfedges.h"
+#include "shared/halving.h"
 #include "shared/prefetch.h"
 #include "shared/rings.h"
+#include "shared/rings_account.h"
 #include "shared/rows.h"
 #include "shared/search.h"
 

@@ -1,5 +1,6 @@
 // The stages of mode blocks and the data between them: divide turns blocks into edge rings, fans makes these
-// canonical, mesh turns them into triangles. Each stage is one file with the name of its kernel file.
+// canonical, mesh turns them into triangles. Each stage is one file with the name of its kernel file. On
+// devices with many lanes divide is two stages, halve and merge.
 // points/distribute.hpp makes the blocks.
 #pragma once
 
@@ -58,6 +59,42 @@ void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones
 /// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
+
+/// Blocks of points, of which the host knows how many there are at most.
+struct PointBlocks {
+  std::size_t count = 0;     ///< number of blocks; they may be empty
+  std::size_t points = 0;    ///< number of places, of which the blocks have all or the first
+  std::size_t largest = 0;   ///< an upper bound of the number of points of a block
+  Buffer<cl_int> offsets{};  ///< count + 1: the first point of each block
+  /// As in Blocks.
+  Buffer<cl_double2> vertices{};
+  Buffer<cl_int> source{};
+};
+
+/// Triangulates blocks of any points, as divide does before it merges them, on devices with many lanes: the
+/// halves of all blocks at once. rings: with all its arrays, of the sizes that divide gives them; the account
+/// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
+/// wait. Scratch memory: kParallelBytesPerPoint. Makes 5 launches and 2 per halving of the largest block.
+void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
+                       const Rings& rings);
+constexpr std::size_t kParallelBytesPerPoint = 68;
+
+/// What the stage `halve` leaves for `merge`, from the scratch arena.
+struct HalvedBlocks {
+  Buffer<cl_int> block_of_place{};
+  Buffer<cl_uchar> axes{};
+};
+
+/// Sorts each block's points, drops duplicates, and halves what is left down to leaves. Sets the vertices,
+/// the sources, the representatives of duplicates, and in `rings` the numbers of vertices and what empty
+/// blocks have.
+HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
+                   const Rings& rings);
+/// Triangulates halved blocks, from the leaves up.
+void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved, const Rings& rings);
+/// Merges the blocks of a level of the trees: merges [first, end).
+void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
+                 const Rings& rings);
 
 /// Makes the triangulations canonical, which they are already if there were no ties. Does not wait. Temporary
 /// memory: 6 bytes per point.

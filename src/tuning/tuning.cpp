@@ -146,6 +146,25 @@ constexpr Row kTable[] = {
      {32},
      {2},
      "Work-items that solve blocks diverge: a warp is enough."},
+    {"blocks_in_parallel",
+     &Tuning::blocks_in_parallel,
+     {0},
+     {1},
+     {0},
+     "A core is fastest alone with its block; thousands of lanes share the halves of all blocks."},
+    {"halve_group",
+     &Tuning::halve_group,
+     {1},
+     {256},
+     {4},
+     "Eight points of a block for each work-item; as many groups fit a multiprocessor as it has blocks."},
+    {"merge_items",
+     &Tuning::merge_items,
+     {0},
+     {65536},
+     {30},
+     "As many as a GPU has room for; where merges are fewer, each has a warp of its own and waits for no "
+     "other."},
     {"large_blocks",
      &Tuning::large_blocks,
      {4},
@@ -306,7 +325,7 @@ std::optional<Tuning> kind_named(const std::string& name, const Target& target) 
   if (!group || *group == 0) return {};
   Tuning tuning = column(&Row::gpu, target);
   tuning.map_group = tuning.private_group = tuning.chunk_group = tuning.sort_group = tuning.block_group =
-      *group;
+      tuning.halve_group = *group;
   tuning.tile_group = std::min<std::size_t>(*group, kernel::LARGEST_TILE_GROUP);
   return tuning;
 }
@@ -377,8 +396,8 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}", Sizes::build_options(), small_region,
-                     fetch_ahead);
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DHALVE_GROUP={}", Sizes::build_options(),
+                     small_region, fetch_ahead, halve_group);
 }
 
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
@@ -387,20 +406,24 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
-  tuning->block_group = std::min(tuning->block_group, std::max<std::size_t>(1, limits.work_group));
+  for (std::size_t* group : {&tuning->block_group, &tuning->halve_group}) {
+    *group = std::min(*group, std::max<std::size_t>(1, limits.work_group));
+  }
   return tuning;
 }
 
 std::shared_ptr<const Tuning> native_tuning() {
   const Target host{host::kHostName, true, host::native_threads()};
   auto tuning = std::make_shared<Tuning>(tuning_of_target(host));
-  // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory.
+  // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory,
+  // on whole blocks.
   const Tuning compiled = column(&Row::cpu, host);
   tuning->sort_bits = compiled.sort_bits;
   tuning->sort_group = compiled.sort_group;
   tuning->fetch_ahead = compiled.fetch_ahead;
   tuning->tile_group = compiled.tile_group;
   tuning->in_host_memory = 1;
+  tuning->blocks_in_parallel = 0;
   return tuning;
 }
 

@@ -17,6 +17,13 @@ struct Tuning : host::Sizes {
   /// Number of work-items that share the blocks, and the size of their work-groups.
   std::size_t block_workers = 1;
   std::size_t block_group = 1;
+  /// Other than 0: blocks are solved by halves, those of all blocks at once; else by one work-item per block.
+  std::size_t blocks_in_parallel = 0;
+  /// The largest work-group that sorts and halves a block.
+  std::size_t halve_group = 1;
+  /// A launch of merges that are fewer than this has about so many work-items, most of them idle, so that
+  /// merges are not in one warp.
+  std::size_t merge_items = 0;
   /// Blocks with more than this many times block_points points are triangulated by a single work-item, which
   /// has its own scratch memory.
   std::size_t large_blocks = 1;

@@ -1,0 +1,258 @@
+// The first half of solving blocks on devices with many lanes: each block's points are sorted along x and along y,
+// duplicates are dropped, and what is left is cut in halves down to leaves (shared/halving.h), exactly as solve_blocks
+// of blocks/divide.cl does. blocks/merge.cl does the rest.
+//
+// find_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
+// work-group per block. It sorts tiles of SORTED_TILE points by counting, then merges runs, in which each element finds
+// its place by binary search in the other run. Each cut splits the order that is not cut by position, stably, by a scan
+// over the group, for all parts of a depth at once.
+
+#include "shared/halving.h"
+#include "shared/order.h"
+#include "shared/rings.h"
+#include "shared/search.h"
+
+#ifndef HALVE_GROUP
+#define HALVE_GROUP 1
+#endif
+#define SORTED_TILE 16
+// Of a function with barriers: PoCL 3.1 loses those of a function that is called twice and not inlined.
+#define WITH_BARRIERS static inline __attribute__((always_inline))
+
+// A block's own arrays, which begin at its place in those of all points.
+typedef struct {
+  global double2* points;  // distinct, by x
+  global int* source;
+  global ranks* by_x;
+  global ranks* by_y;
+  global ranks* spare;
+  global uchar* axes;  // by node
+  global int* lows;    // by part: how many low vertices its lane has met before it
+} block_arrays;
+
+// Elements [low, high) of `count` are the work-item's.
+typedef struct {
+  int size, low, high;
+} lane_share;
+
+static inline lane_share share_of(int count) {
+  const int lanes = get_local_size(0), me = get_local_id(0);
+  lane_share share;
+  share.size = max(1, (count + lanes - 1) / lanes);
+  share.low = min(count, me * share.size);
+  share.high = min(count, share.low + share.size);
+  return share;
+}
+
+// sums[i] becomes the sum of the counts of work-items 0 to i.
+WITH_BARRIERS void scan_group(uint count, local uint* sums) {
+  const int me = get_local_id(0), lanes = get_local_size(0);
+  sums[me] = count;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int reach = 1; reach < lanes; reach *= 2) {
+    const uint before = me >= reach ? sums[me - reach] : 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    sums[me] += before;
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+}
+
+static inline uint sum_before(int lane, local const uint* sums) { return lane > 0 ? sums[lane - 1] : 0; }
+
+// Where element i comes in its tile, in which equal points stay in their order.
+static inline int place_in_tile(int i, int count, global const double2* points, int axis) {
+  const int begin = i & ~(SORTED_TILE - 1), end = min(count, begin + SORTED_TILE);
+  const double2 p = points[i];
+  int place = begin;
+  for (int j = begin; j < end; ++j) place += j < i ? !precedes(p, points[j], axis) : precedes(points[j], p, axis);
+  return place;
+}
+
+// Where element i comes when its run of `width` elements and the neighbouring one are merged.
+static inline int place_in_merge(int i, int width, int count, global const int* elements, global const double2* points,
+                                 int axis) {
+  const int is_high = (i & width) != 0;
+  const int begin = i & ~(2 * width - 1), middle = min(count, begin + width);
+  const double2 p = points[elements[i]];
+  int low = is_high ? begin : middle, high = is_high ? middle : min(count, middle + width);
+  while (low < high) {
+    const int at = low + (high - low) / 2;
+    const double2 other = points[elements[at]];
+    const int comes_first = is_high ? !precedes(p, other, axis) : precedes(other, p, axis);
+    low = comes_first ? at + 1 : low;
+    high = comes_first ? high : at;
+  }
+  return i + low - middle;
+}
+
+// Sorts the places of points stably along an axis. Both arrays have room for them; returns the one with the result.
+WITH_BARRIERS global int* sort_group(global int* elements, global int* spare, int count, global const double2* points,
+                                     int axis) {
+  const int me = get_local_id(0), lanes = get_local_size(0);
+  for (int i = me; i < count; i += lanes) elements[place_in_tile(i, count, points, axis)] = i;
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (int width = SORTED_TILE; width < count; width *= 2) {
+    for (int i = me; i < count; i += lanes) {
+      spare[place_in_merge(i, width, count, elements, points, axis)] = elements[i];
+    }
+    barrier(CLK_GLOBAL_MEM_FENCE);
+    global int* const sorted = spare;
+    spare = elements;
+    elements = sorted;
+  }
+  return elements;
+}
+
+// Whether the point at i of the order is another than the one before it.
+static inline int is_distinct(int i, global const int* elements, global const double2* points) {
+  if (i == 0) return 1;
+  const double2 p = points[elements[i - 1]], q = points[elements[i]];
+  return p.x != q.x || p.y != q.y;
+}
+
+// Writes a block's distinct points in the order of x, and returns their number.
+WITH_BARRIERS int distinct_by_x(int count, global const double2* points, global const int* source,
+                                const block_arrays* s, global int* representatives, local uint* sums) {
+  global int* const space = (global int*)s->spare;
+  global const int* const elements = sort_group(space, space + count, count, points, 0);
+  const lane_share share = share_of(count);
+  uint own = 0;
+  for (int i = share.low; i < share.high; ++i) own += is_distinct(i, elements, points);
+  scan_group(own, sums);
+  const int before = sum_before(get_local_id(0), sums), distinct = sums[get_local_size(0) - 1];
+  for (int i = share.low, place = before; i < share.high; ++i) {
+    if (is_distinct(i, elements, points)) {
+      s->points[place] = points[elements[i]];
+      s->source[place] = source[elements[i]];
+      ++place;
+    }
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
+  for (int i = share.low, place = before; i < share.high; ++i) {
+    if (is_distinct(i, elements, points)) {
+      ++place;
+    } else {
+      representatives[source[elements[i]]] = s->source[place - 1];
+    }
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  return distinct;
+}
+
+WITH_BARRIERS void rank(int count, const block_arrays* s) {
+  global int* const space = (global int*)s->spare;
+  global const int* const elements = sort_group(space, space + count, count, s->points, 1);
+  for (int r = get_local_id(0); r < count; r += get_local_size(0)) {
+    const ranks both = VECTOR(ranks, elements[r], r);
+    s->by_y[r] = both;
+    s->by_x[both.x] = both;
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE);
+}
+
+// A part that is cut, and what of it comes low: vertices whose place along the axis is below a threshold.
+typedef struct {
+  int number, begin, middle, end, axis, threshold;
+} part_to_cut;
+
+static inline part_to_cut part_with(int number, int count, int depth, const block_arrays* s) {
+  part_to_cut part;
+  part.number = number;
+  part.begin = part_begin(count, depth, number);
+  part.middle = part_begin(count, depth + 1, 2 * number + 1);
+  part.end = part_begin(count, depth, number + 1);
+  part.axis = s->axes[(1 << depth) + number];
+  part.threshold = part.axis ? s->by_y[part.middle].y : s->by_x[part.middle].x;
+  return part;
+}
+
+static inline int is_low(ranks both, part_to_cut part) { return (part.axis ? both.y : both.x) < part.threshold; }
+
+static inline global ranks* order_to_split(part_to_cut part, const block_arrays* s) {
+  return part.axis ? s->by_x : s->by_y;
+}
+
+// Cuts each part of a depth at its middle.
+WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local uint* sums) {
+  for (int j = get_local_id(0); j < 1 << depth; j += get_local_size(0)) {
+    s->axes[(1 << depth) + j] =
+        axis_of(part_begin(count, depth, j), part_begin(count, depth, j + 1), s->points, s->by_x, s->by_y);
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
+  const lane_share share = share_of(count);
+  // A lane's first part begins in its share or in one before.
+  const int first_part = part_from(count, depth, share.low + 1) - 1;
+  uint own = 0;
+  part_to_cut part = part_with(first_part, count, depth, s);
+  for (int i = share.low; i < share.high; ++i) {
+    if (i == part.end) part = part_with(part.number + 1, count, depth, s);
+    if (i == part.begin) s->lows[part.number] = own;
+    own += is_low(order_to_split(part, s)[i], part);
+  }
+  scan_group(own, sums);
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  int lows = sum_before(get_local_id(0), sums);
+  int lows_before_part = 0;
+  part.end = share.low;
+  part.number = first_part - 1;
+  for (int i = share.low; i < share.high; ++i) {
+    if (i == part.end) {
+      part = part_with(part.number + 1, count, depth, s);
+      lows_before_part = sum_before(part.begin / share.size, sums) + s->lows[part.number];
+    }
+    const ranks both = order_to_split(part, s)[i];
+    const int low = lows - lows_before_part;
+    if (is_low(both, part)) {
+      s->spare[part.begin + low] = both;
+      ++lows;
+    } else {
+      s->spare[part.middle + i - part.begin - low] = both;
+    }
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
+  part.end = share.low;
+  part.number = first_part - 1;
+  for (int i = share.low; i < share.high; ++i) {
+    if (i == part.end) part = part_with(part.number + 1, count, depth, s);
+    order_to_split(part, s)[i] = s->spare[i];
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE);
+}
+
+kernel void find_blocks(int n, int blocks, global const int* restrict offsets, global int* restrict block_of_place) {
+  const int i = get_global_id(0);
+  if (i < n) block_of_place[i] = i < offsets[blocks] ? segment_of(i, blocks, offsets) : -1;
+}
+
+// Writes the vertices of each block in the order of the leaves, their sources, the axis of each cut, and the number of
+// vertices. scratch_ranks has 3 elements per point, the other scratch arrays 1. Groups beyond the last block are idle.
+kernel void halve_blocks(int blocks, global const int* restrict offsets, global double2* points, global int* source,
+                         global int* representatives, global solved_block* solved, global int* distinct_counts,
+                         global uchar* axes, global double2* scratch_points, global int* scratch_source,
+                         global int2* scratch_ranks, global int* scratch_lows) {
+  local uint sums[HALVE_GROUP];
+  const int b = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
+  const int first = b < blocks ? offsets[b] : 0, count = b < blocks ? offsets[b + 1] - first : 0;
+  block_arrays s;
+  s.points = scratch_points + first;
+  s.source = scratch_source + first;
+  s.by_x = scratch_ranks + 3 * (long)first;
+  s.by_y = s.by_x + count;
+  s.spare = s.by_y + count;
+  s.axes = axes + first;
+  s.lows = scratch_lows + first;
+  const int distinct = distinct_by_x(count, points + first, source + first, &s, representatives, sums);
+  rank(distinct, &s);
+  const int depth = halving_depth(distinct);
+  for (int d = 0; d < depth; ++d) cut_parts(distinct, d, &s, sums);
+  for (int k = me; k < distinct; k += lanes) {
+    const int r = s.by_x[k].x;
+    points[first + k] = s.points[r];
+    source[first + k] = s.source[r];
+  }
+  if (me == 0 && b < blocks) {
+    const solved_block none = {no_ends(), {NO_EDGE, NO_EDGE}};
+    if (distinct == 0) solved[b] = none;
+    distinct_counts[b] = distinct;
+  }
+}

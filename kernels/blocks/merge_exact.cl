@@ -1,0 +1,36 @@
+// Leaves and merges at which floating point could not decide, with exact predicates: what blocks/merge.cl has stopped
+// at is continued to its end. Each kernel is one pass over the states of a launch, most of which are done, with one
+// work-item per cell or merge.
+
+// Compiled in half the time, and these are called rarely.
+#define OUT_OF_LINE __attribute__((noinline))
+#include "shared/cut_tree.h"
+#include "shared/halves.h"
+#include "shared/rings_account.h"
+
+kernel void finish_parts(int n, int height, int places, global const int* restrict offsets,
+                         global const int* restrict distinct, global const int* restrict block_of_place,
+                         global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
+                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
+                         global solved_block* solved, global int* restrict states, global volatile uint* account) {
+  const int cell = get_global_id(0);
+  if (cell < n && states[cell] != MERGE_IS_DONE) {
+    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    rings g = rings_on(edges, points, vertex_edge, bounds);
+    states[cell] = do_cell(&g, &blocks, height, cell, states[cell]);
+    add_to_account(&g, account);
+  }
+}
+
+kernel void finish_trees(int n, int first_merge, global const block_merge* restrict merges,
+                         global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
+                         global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
+                         global int* restrict states, global volatile uint* account) {
+  const int m = get_global_id(0);
+  if (m < n && states[m] != MERGE_IS_DONE) {
+    const block_merge merge = merges[first_merge + m];
+    rings g = rings_on(edges, points, vertex_edge, bounds);
+    states[m] = merge_two_blocks(&g, solved, merge, cut_axis(nodes[merge.node]), states[m]);
+    add_to_account(&g, account);
+  }
+}
