@@ -2,7 +2,7 @@
 // duplicates are dropped, and what is left is cut in halves down to leaves (shared/halving.h), exactly as solve_blocks
 // of blocks/divide.cl does. blocks/merge.cl does the rest.
 //
-// find_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
+// name_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
 // work-group per block. It sorts tiles of SORTED_TILE points by counting, then merges runs, in which each element finds
 // its place by binary search in the other run. Each cut splits the order that is not cut by position, stably, by a scan
 // over the group, for all parts of a depth at once.
@@ -219,7 +219,7 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
   barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
-kernel void find_blocks(int n, int blocks, global const int* restrict offsets, global int* restrict block_of_place) {
+kernel void name_blocks(int n, int blocks, global const int* restrict offsets, global int* restrict block_of_place) {
   const int i = get_global_id(0);
   if (i < n) block_of_place[i] = i < offsets[blocks] ? segment_of(i, blocks, offsets) : -1;
 }

@@ -45,13 +45,13 @@ static inline int circle_through(double2 a, double2 b, double2 c, circle_found* 
   const double doubt = 4.0 * ROUNDOFF * (fabs(left) + fabs(right));
   if (!(fabs(doubled) > 4.0 * doubt)) return 0;
   const double pp = px * px + py * py, qq = qx * qx + qy * qy;
-  const double half = 0.5 / doubled;
-  circle->x = (qy * pp - py * qq) * half;
-  circle->y = (px * qq - qx * pp) * half;
+  const double scale = 0.5 / doubled;
+  circle->x = (qy * pp - py * qq) * scale;
+  circle->y = (px * qq - qx * pp) * scale;
   const double terms = (fabs(qy) + fabs(qx)) * pp + (fabs(py) + fabs(px)) * qq;
   const double extent = fabs(circle->x) + fabs(circle->y);
   circle->centre = VECTOR(double2, a.x + circle->x, a.y + circle->y);
-  circle->error = 32.0 * ROUNDOFF * terms * fabs(half) + 4.0 * extent * (doubt * 2.0 * fabs(half)) +
+  circle->error = 32.0 * ROUNDOFF * terms * fabs(scale) + 4.0 * extent * (doubt * 2.0 * fabs(scale)) +
                   4.0 * ROUNDOFF * (extent + fabs(a.x) + fabs(a.y));
   return 1;
 }

@@ -26,7 +26,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   const HalvedBlocks halved{scratch.allocate<cl_int>(blocks.points),
                             scratch.allocate<cl_uchar>(blocks.points)};
   Arena::Scope scope(scratch);
-  runtime.map(blocks.points, kernels::find_blocks{.blocks = blocks.count,
+  runtime.map(blocks.points, kernels::name_blocks{.blocks = blocks.count,
                                                   .offsets = blocks.offsets,
                                                   .block_of_place = halved.block_of_place});
   const std::size_t group = group_for(tuning_of(runtime), blocks);
