@@ -355,7 +355,8 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
     Arena::Scope scope(work.scratch());
     if (!is_first)
       blocks =
-          make_blocks_of(work, open.points, open.offsets, merges ? tuning.block_points : tuning.round_points);
+          make_blocks_of(work, open.points, open.offsets, merges ? tuning.block_points : tuning.round_points,
+                         merges ? Cuts::at_medians : Cuts::in_gaps);
     Round round{is_first, merges, open, open.offsets, blocks, solve(work, blocks, representatives)};
     if (merges) merge(work, blocks, round.rings);
     if (is_first) exchange.while_device_computes();

@@ -30,6 +30,7 @@ CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, st
                      static_cast<cl_int>(samples_per_leaf), static_cast<cl_int>(samples >> above),
                      static_cast<cl_int>(nodes_), static_cast<cl_int>(set.first_point),
                      static_cast<cl_int>(set.points)});
+    depths_.push_back(set.depth);
     first_chunks.push_back(static_cast<cl_int>(chunks_));
     if (by_tiles_) first_samples.push_back(static_cast<cl_int>(samples_));
     samples_ += samples;

@@ -43,6 +43,11 @@ class CutTrees {
   host::Buffer<cl_int> cut(const host::Buffer<cl_double2>& samples,
                            const host::Buffer<kernel::cut_node>& nodes) const;
 
+  /// Computes the nodes for points that lie along the cuts of an earlier tree, on a device that has groups
+  /// for tiles (Sizes::tile_group): each is cut in its widest gap. O(m log m).
+  void cut_at_gaps(const host::Buffer<cl_double2>& samples,
+                   const host::Buffer<kernel::cut_node>& nodes) const;
+
   /// An upper bound of the memory for this many trees with this many leaves in total, without alignment.
   static std::size_t bytes(std::size_t trees, std::size_t leaves, std::size_t samples_per_leaf);
 
@@ -54,6 +59,11 @@ class CutTrees {
   template <typename Kernel>
   void launch_tiles(std::size_t groups_per_tile, const Kernel& kernel) const;
   void draw_each(const host::Buffer<cl_double>& input, const Samples& samples) const;
+  /// The numbers of the samples in the orders along x and y, and for each sample its places in both.
+  struct Sorted {
+    host::Buffer<cl_int> order, spare, ranks;
+  };
+  Sorted sort_tiles(const host::Buffer<cl_double2>& samples) const;
   host::Buffer<cl_int> cut_tiles(const host::Buffer<cl_double2>& samples,
                                  const host::Buffer<kernel::cut_node>& nodes) const;
 
@@ -61,6 +71,7 @@ class CutTrees {
   bool by_tiles_;  // work-groups take chunks
   std::size_t samples_ = 0, nodes_ = 0, chunks_ = 0;
   int levels_above_chunks_ = 0;
+  std::vector<int> depths_;
   host::Buffer<kernel::sampled_tree> trees_{};
   host::Buffer<cl_int> first_chunks_{};
   host::Buffer<cl_int> first_samples_{};

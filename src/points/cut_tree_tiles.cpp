@@ -3,6 +3,7 @@
 
 #include "host/runtime.hpp"
 #include "launchers/points/cut_tree_tiles.cl.hpp"
+#include "launchers/points/gaps.cl.hpp"
 #include "points/cut_tree.hpp"
 #include "shared/limits.h"
 
@@ -27,22 +28,18 @@ void CutTrees::draw_each(const Buffer<cl_double>& input, const Samples& samples)
                                                    .indices = samples.indices});
 }
 
-Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
-                                   const Buffer<kernel::cut_node>& nodes) const {
+CutTrees::Sorted CutTrees::sort_tiles(const Buffer<cl_double2>& samples) const {
   Arena& arena = runtime_.arena();
-  auto order = arena.allocate<cl_int>(2 * samples_);
-  Arena::Scope scope(arena);
-  auto sorted = arena.allocate<cl_int>(2 * samples_);
-  auto spare = arena.allocate<cl_int>(2 * samples_);
-  const auto ranks = arena.allocate<cl_int>(2 * samples_);
+  Sorted all{arena.allocate<cl_int>(2 * samples_), arena.allocate<cl_int>(2 * samples_),
+             arena.allocate<cl_int>(2 * samples_)};
   launch_tiles(2, kernels::sort_tiles{.tiles = chunks_,
                                       .tree_count = trees_.size(),
                                       .first_chunks = first_chunks_,
                                       .trees = trees_,
                                       .all_samples = samples_,
                                       .samples = samples,
-                                      .order = sorted,
-                                      .ranks = ranks});
+                                      .order = all.order,
+                                      .ranks = all.ranks});
   for (int widenings = 0; widenings * kernel::MERGED_RUNS_BITS < levels_above_chunks_; ++widenings) {
     runtime_.map(2 * samples_, kernels::merge_tiles{.tree_count = trees_.size(),
                                                     .first_samples = first_samples_,
@@ -50,11 +47,20 @@ Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
                                                     .all_samples = samples_,
                                                     .widenings = widenings,
                                                     .samples = samples,
-                                                    .from = sorted,
-                                                    .to = spare,
-                                                    .ranks = ranks});
-    std::swap(sorted, spare);
+                                                    .from = all.order,
+                                                    .to = all.spare,
+                                                    .ranks = all.ranks});
+    std::swap(all.order, all.spare);
   }
+  return all;
+}
+
+Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
+                                   const Buffer<kernel::cut_node>& nodes) const {
+  Arena& arena = runtime_.arena();
+  auto order = arena.allocate<cl_int>(2 * samples_);
+  Arena::Scope scope(arena);
+  const auto [sorted, spare, ranks] = sort_tiles(samples);
   const auto counts = arena.allocate<cl_uint>(chunks_);
   auto from = sorted, to = spare, other = order;
   for (int level = 0; level < levels_above_chunks_; ++level) {
@@ -95,6 +101,38 @@ Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
                                      .nodes = nodes,
                                      .order = order});
   return order;
+}
+
+void CutTrees::cut_at_gaps(const Buffer<cl_double2>& samples, const Buffer<kernel::cut_node>& nodes) const {
+  Arena& arena = runtime_.arena();
+  Arena::Scope scope(arena);
+  auto [from, to, ranks] = sort_tiles(samples);
+  const auto ranges = arena.allocate<cl_int2>(nodes_);
+  const std::size_t group = runtime_.sizes().tile_group;
+  const int depth = *std::max_element(depths_.begin(), depths_.end());
+  for (int level = 0; level < depth; ++level) {
+    std::vector<cl_int> first_groups;
+    std::size_t groups = 0;
+    for (const int tree_depth : depths_) {
+      first_groups.push_back(static_cast<cl_int>(groups));
+      if (tree_depth > level) groups += std::size_t{1} << level;
+    }
+    const auto device_first_groups = runtime_.upload(arena, std::move(first_groups));
+    runtime_.launch(groups * group, group,
+                    kernels::cut_at_gaps{.groups = groups,
+                                         .level = level,
+                                         .tree_count = trees_.size(),
+                                         .first_groups = device_first_groups,
+                                         .trees = trees_,
+                                         .all_samples = samples_,
+                                         .samples = samples,
+                                         .ranks = ranks,
+                                         .from = from,
+                                         .to = to,
+                                         .ranges = ranges,
+                                         .nodes = nodes});
+    std::swap(from, to);
+  }
 }
 
 }  // namespace flaunay::points

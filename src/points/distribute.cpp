@@ -54,23 +54,30 @@ Plan make_plan(std::size_t block_points, const std::vector<std::size_t>& offsets
 }
 
 // Computes the nodes of the trees, which the merges of blocks read later.
-void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& input, Blocks& blocks) {
+void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& input, Cuts cuts,
+                Blocks& blocks) {
   if (plan.cut.empty()) return;
+  const Tuning& tuning = tuning_of(work.runtime);
   blocks.device_nodes = work.persistent.allocate<kernel::cut_node>(plan.nodes);
   Arena::Scope scope(work.scratch());
-  const CutTrees trees(work.runtime, plan.cut, tuning_of(work.runtime).samples_per_block);
-  trees.cut(trees.draw(input).points, blocks.device_nodes);
+  if (cuts == Cuts::in_gaps && tuning.tile_group != 0) {
+    const CutTrees trees(work.runtime, plan.cut, tuning.samples_per_gap_block);
+    trees.cut_at_gaps(trees.draw(input).points, blocks.device_nodes);
+  } else {
+    const CutTrees trees(work.runtime, plan.cut, tuning.samples_per_block);
+    trees.cut(trees.draw(input).points, blocks.device_nodes);
+  }
 }
 
 // Writes blocks. coordinates: x0 y0 x1 y1 ..., to be multiplied by blocks.scale.
 void distribute(Workspace& work, const Buffer<cl_double>& coordinates,
-                const std::vector<std::size_t>& offsets, std::size_t block_points,
+                const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts,
                 const Buffer<cl_int>& representatives, Blocks& blocks) {
   blocks.sets = offsets.size() - 1;
   blocks.points = offsets.back();
   const host::Runtime::Settled settled(work.runtime);
   const Plan plan = make_plan(block_points, offsets, blocks);
-  make_trees(work, plan, coordinates, blocks);
+  make_trees(work, plan, coordinates, cuts, blocks);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
@@ -89,18 +96,18 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
   const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
   work.bounds = uniform.scaling.bounds;
   blocks.scale = uniform.scaling.powers();
-  distribute(work, uniform.coordinates, offsets, tuning_of(work.runtime).block_points, representatives,
-             blocks);
+  distribute(work, uniform.coordinates, offsets, tuning_of(work.runtime).block_points, Cuts::at_medians,
+             representatives, blocks);
   return blocks;
 }
 
 Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
-                      const std::vector<std::size_t>& offsets, std::size_t block_points) {
+                      const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts) {
   Blocks blocks;
   Arena::Scope scope(work.scratch());
   // Not needed: these points have no duplicates.
   const auto representatives = work.scratch().allocate<cl_int>(offsets.back());
-  distribute(work, points.as<cl_double>(), offsets, block_points, representatives, blocks);
+  distribute(work, points.as<cl_double>(), offsets, block_points, cuts, representatives, blocks);
   return blocks;
 }
 

@@ -55,6 +55,8 @@ struct Tuning : host::Sizes {
   /// The largest number of points of a block in rounds after the first, as a rule; 0: blocks are merged
   /// instead of rounds.
   std::size_t round_points = 0;
+  /// Samples per block, for the trees that cut in gaps; at most kernel::LARGEST_SAMPLE_TILE.
+  std::size_t samples_per_gap_block = 1;
   /// If a round leaves more than so many percent of its points, the next one is the last: its blocks are
   /// merged.
   std::size_t merge_from_percent = 1;
