@@ -1,8 +1,9 @@
 // Makes the edge rings of cocircular points canonical: their polygons become fans from their first vertices along x.
 //
 // Merges leave such polygons as they meet them (shared/rings.h): a merge of two fans would rebuild one of them. These
-// passes follow the last merge, if there were ties:
-// 1. find_inside, with one work-item per pair of edges, marks the edges inside of polygons.
+// passes follow the last merge. They do nothing if there were no ties, by the account of the merges:
+// 1. find_inside, with one work-item per pair of edges, marks the edges inside of polygons; find_inside_exactly decides
+//    what floating point could not.
 // 2. leave_inside, with one work-item per vertex, makes the vertices' own edges ones that stay.
 // 3. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that one
 //    comes before both of its neighbours on the polygon. It says so at one edge inside of the polygon: the first one at
@@ -10,6 +11,7 @@
 // 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes nothing but what lies
 //    inside of one polygon.
 
+#include "shared/codes.h"
 #include "shared/prefetch.h"
 #include "shared/rings.h"
 
@@ -20,12 +22,6 @@ static inline int apex_left_of(int e, global const ring_edge* edges) {
   return edges[edges[e ^ 1].previous].to == apex ? apex : NO_VERTEX;
 }
 
-// c and d lie on either side of the edge from a to b.
-static inline int are_cocircular(double2 a, double2 b, double2 c, double2 d, double bound) {
-  const int sign = angle_compared(angle_at(d, a, b), angle_at(c, a, b), bound);
-  return (sign == UNDECIDED ? circle_undecided(a, b, c, d, bound) : sign) == 0;
-}
-
 // Edges lead anywhere within a block.
 static inline void fetch_edges(int pair, int pairs, global const ring_edge* edges) {
   fetch(&edges[2 * min(pairs - 1, pair + FETCH_AHEAD)]);
@@ -34,34 +30,53 @@ static inline void fetch_points(int pair, int pairs, global const double2* point
   fetch(&points[2 * min(pairs - 1, pair + FETCH_AHEAD) / EDGES_PER_VERTEX]);
 }
 
-// n pairs of edges.
-kernel void find_inside(int n, double bound, global const double2* restrict points,
+#define NOT_INSIDE 0
+#define INSIDE 1
+#define UNSURE_INSIDE 2
+
+// Whether the ends of pair k and the third corners of the triangles on either side are cocircular. Where there is a
+// triangle on either side, these are the vertices behind the next edges; whether there is, is seldom worth asking.
+static inline int inside_of(int k, double bound, int exactly, global const double2* points,
+                            global const ring_edge* edges) {
+  const int from = edges[2 * k + 1].to, to = edges[2 * k].to;
+  const int left = edges[edges[2 * k].next].to, right = edges[edges[2 * k + 1].next].to;
+  if (left == right) return NOT_INSIDE;
+  const double2 a = points[from], b = points[to], c = points[left], d = points[right];
+  const int sign =
+      exactly ? circle_undecided(a, b, c, d, bound) : angle_compared(angle_at(d, a, b), angle_at(c, a, b), bound);
+  if (sign == 1 || sign == -1) return NOT_INSIDE;
+  if (apex_left_of(2 * k, edges) == NO_VERTEX || apex_left_of(2 * k + 1, edges) == NO_VERTEX) return NOT_INSIDE;
+  return sign == 0 ? INSIDE : UNSURE_INSIDE;
+}
+
+// n pairs of edges; account: of the merges.
+kernel void find_inside(int n, double bound, global const uint* restrict account, global const double2* restrict points,
                         global const ring_edge* restrict edges, global uchar* restrict inside) {
   const int k = get_global_id(0);
-  if (k < n) {
+  if (k < n && account[RINGS_TIES] > 0) {
     fetch_edges(k, n, edges);
     fetch_points(k, n, points);
-    const int from = edges[2 * k + 1].to, to = edges[2 * k].to;
-    int found = 0;
-    if (to != NO_VERTEX) {
-      // Where there is a triangle on either side, these are their third corners; whether there is, is seldom worth
-      // asking.
-      const int left = edges[edges[2 * k].next].to, right = edges[edges[2 * k + 1].next].to;
-      found = left != right &&
-              are_cocircular(points[from], points[to], points[left], points[right], angle_bound(bound)) &&
-              apex_left_of(2 * k, edges) != NO_VERTEX && apex_left_of(2 * k + 1, edges) != NO_VERTEX;
-    }
-    inside[k] = found;
+    inside[k] = edges[2 * k].to == NO_VERTEX ? NOT_INSIDE : inside_of(k, angle_bound(bound), 0, points, edges);
+  }
+}
+
+// n pairs of edges.
+kernel void find_inside_exactly(int n, double bound, global const uint* restrict account,
+                                global const double2* restrict points, global const ring_edge* restrict edges,
+                                global uchar* restrict inside) {
+  const int k = get_global_id(0);
+  if (k < n && account[RINGS_TIES] > 0 && inside[k] == UNSURE_INSIDE) {
+    inside[k] = inside_of(k, angle_bound(bound), 1, points, edges);
   }
 }
 
 static inline int is_inside(int e, global const uchar* inside) { return inside[e >> 1]; }
 
 // n vertices.
-kernel void leave_inside(int n, global const ring_edge* restrict edges, global const uchar* restrict inside,
-                         global int* restrict vertex_edge) {
+kernel void leave_inside(int n, global const uint* restrict account, global const ring_edge* restrict edges,
+                         global const uchar* restrict inside, global int* restrict vertex_edge) {
   const int v = get_global_id(0);
-  if (v < n) {
+  if (v < n && account[RINGS_TIES] > 0) {
     int e = vertex_edge[v];
     if (e != NO_EDGE && is_inside(e, inside)) {
       while (is_inside(e, inside)) e = edges[e].next;
@@ -95,10 +110,11 @@ static inline int is_opposite_of_fan(int e, global const double2* points, global
 #define AT_APEX 4
 
 // n pairs of edges.
-kernel void find_fans(int n, global const double2* restrict points, global const ring_edge* restrict edges,
-                      global const uchar* restrict inside, global uchar* restrict found) {
+kernel void find_fans(int n, global const uint* restrict account, global const double2* restrict points,
+                      global const ring_edge* restrict edges, global const uchar* restrict inside,
+                      global uchar* restrict found) {
   const int k = get_global_id(0);
-  if (k < n) {
+  if (k < n && account[RINGS_TIES] > 0) {
     fetch_edges(k, n, edges);
     int where = NOT_HERE;
     for (int odd = 0; inside[k] && odd < 2; ++odd) {
@@ -124,10 +140,10 @@ static inline void flip_towards(rings* g, int e, int opposite) {
 }
 
 // n pairs of edges.
-kernel void build_fans(int n, global const uchar* restrict inside, global const uchar* restrict found,
-                       global ring_edge* edges) {
+kernel void build_fans(int n, global const uint* restrict account, global const uchar* restrict inside,
+                       global const uchar* restrict found, global ring_edge* edges) {
   const int k = get_global_id(0);
-  if (k < n) fetch_edges(k, n, edges);
+  if (k < n && account[RINGS_TIES] > 0) fetch_edges(k, n, edges);
   if (k < n && found[k] != NOT_HERE) {
     const filter_bounds no_bounds = {0.0, 0.0, 0.0};
     rings g = rings_on(edges, 0, 0, no_bounds);

@@ -122,6 +122,9 @@ py::dict to_dict(const Statistics& statistics) {
   result["device_allocations"] = statistics.device_allocations;
   result["device_bytes_peak"] = statistics.device_bytes_peak;
   result["undecided"] = statistics.undecided;
+  result["rounds"] = statistics.rounds;
+  result["round_points"] = statistics.round_points;
+  result["merged_points"] = statistics.merged_points;
   result["phases"] = phases;
   return result;
 }

@@ -9,15 +9,28 @@ void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings) {
   const std::size_t pairs = rings.edges.size() / 2;
   const auto inside = work.scratch().allocate<cl_uchar>(pairs);
   const auto found = work.scratch().allocate<cl_uchar>(pairs);
+  const auto& account = rings.device_account;
+  runtime.map(pairs, kernels::find_inside{.bound = work.bounds.circle,
+                                          .account = account,
+                                          .points = blocks.vertices,
+                                          .edges = rings.edges,
+                                          .inside = inside});
+  runtime.map(pairs, kernels::find_inside_exactly{.bound = work.bounds.circle,
+                                                  .account = account,
+                                                  .points = blocks.vertices,
+                                                  .edges = rings.edges,
+                                                  .inside = inside});
   runtime.map(
-      pairs,
-      kernels::find_inside{
-          .bound = work.bounds.circle, .points = blocks.vertices, .edges = rings.edges, .inside = inside});
-  runtime.map(blocks.points, kernels::leave_inside{
-                                 .edges = rings.edges, .inside = inside, .vertex_edge = rings.vertex_edge});
-  runtime.map(pairs, kernels::find_fans{
-                         .points = blocks.vertices, .edges = rings.edges, .inside = inside, .found = found});
-  runtime.map(pairs, kernels::build_fans{.inside = inside, .found = found, .edges = rings.edges});
+      blocks.points,
+      kernels::leave_inside{
+          .account = account, .edges = rings.edges, .inside = inside, .vertex_edge = rings.vertex_edge});
+  runtime.map(pairs, kernels::find_fans{.account = account,
+                                        .points = blocks.vertices,
+                                        .edges = rings.edges,
+                                        .inside = inside,
+                                        .found = found});
+  runtime.map(
+      pairs, kernels::build_fans{.account = account, .inside = inside, .found = found, .edges = rings.edges});
 }
 
 }  // namespace flaunay::blocks

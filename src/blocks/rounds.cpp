@@ -6,6 +6,7 @@
 
 #include "host/vector_operations.hpp"
 #include "launchers/blocks/rounds.cl.hpp"
+#include "points/device_mesh.hpp"
 #include "shared/open_sectors.h"
 #include "tuning/tuning.hpp"
 
@@ -33,15 +34,23 @@ struct OpenPoints {
   Buffer<kernel::open_edge> edges{};
 
   std::size_t count() const { return offsets.back(); }
+  // Makes room, where there is not enough; persistent memory, for rounds use two of these in turn.
+  void reserve(Arena& persistent, std::size_t edge_count) {
+    if (points.size() < count()) {
+      points = persistent.allocate<cl_double2>(count());
+      vertices = persistent.allocate<cl_int>(count());
+      offsets_of_edges = persistent.allocate<cl_int>(count() + 1);
+    }
+    if (edges.size() < edge_count) edges = persistent.allocate<kernel::open_edge>(edge_count);
+  }
 };
 
 // One round: its blocks, their triangulations and what is emitted of them.
 struct Round {
   bool is_first;
   bool is_merged;          // whether each set has one triangulation
-  const OpenPoints& open;  // what its points are made from; empty in the first round
-  const std::vector<std::size_t>& offsets;
-  Blocks blocks;
+  const OpenPoints& open;  // what its points are made from; of the first round, the offsets alone
+  const Blocks& blocks;
   Rings rings;
   Buffer<cl_int> vertices{};  // by place in the blocks
   Buffer<cl_int> states{};    // by edge
@@ -145,11 +154,11 @@ void emit(Workspace& work, Round& round, const Emitted& emitted) {
                                                                .links = emitted.links});
 }
 
-// The points around which something is missing after a round. Waits once. Memory is persistent.
-OpenPoints open_after(Workspace& work, const Round& round, const Emitted& emitted) {
+// Finds the points around which something is missing after a round. Waits once, also for the numbers in the
+// round's rings.
+void find_open(Workspace& work, Arena& persistent, Round& round, const Emitted& emitted, OpenPoints& next) {
   host::Runtime& runtime = work.runtime;
   const Blocks& blocks = round.blocks;
-  OpenPoints next;
   Arena::Scope scope(work.scratch());
   std::vector<cl_uint2> sizes(blocks.sets + 1);
   const host::Runtime::Settled settled(runtime);
@@ -172,17 +181,15 @@ OpenPoints open_after(Workspace& work, const Round& round, const Emitted& emitte
                                                  .counts = counts});
   host::exclusive_scan(runtime, counts, blocks.points, counts);
   const auto device_sizes = work.scratch().allocate<cl_uint2>(sizes.size());
-  const auto set_points =
-      runtime.upload(work.scratch(), std::vector<cl_int>(round.offsets.begin(), round.offsets.end()));
+  const auto set_points = runtime.upload(work.scratch(), integers(round.open.offsets));
   runtime.map(sizes.size(),
               kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
-  runtime.read(device_sizes, 0, sizes.size(), sizes.data());
+  runtime.read_later(device_sizes, 0, sizes.size(), sizes.data());
+  await_rings(work, blocks, round.rings);
+  next.offsets.clear();
   for (const cl_uint2& size : sizes) next.offsets.push_back(size.s[0]);
-  if (next.count() == 0) return next;
-  next.points = work.persistent.allocate<cl_double2>(next.count());
-  next.vertices = work.persistent.allocate<cl_int>(next.count());
-  next.offsets_of_edges = work.persistent.allocate<cl_int>(next.count() + 1);
-  next.edges = work.persistent.allocate<kernel::open_edge>(std::max(1u, sizes.back().s[1]));
+  if (next.count() == 0) return;
+  next.reserve(persistent, std::max(1u, sizes.back().s[1]));
   runtime.map(blocks.points, kernels::write_open{.is_first = round.is_first,
                                                  .points = blocks.vertices,
                                                  .edges = round.rings.edges,
@@ -197,7 +204,6 @@ OpenPoints open_after(Workspace& work, const Round& round, const Emitted& emitte
                                                  .next_vertices = next.vertices,
                                                  .next_offsets = next.offsets_of_edges,
                                                  .next_edges = next.edges});
-  return next;
 }
 
 // Rows and hulls from what is emitted.
@@ -205,7 +211,7 @@ class Results {
  public:
   Results(Workspace& work, const Emitted& emitted, const std::vector<std::size_t>& offsets)
       : work_(work), emitted_(emitted), sets_(offsets.size() - 1), n_(offsets.back()) {
-    set_points_ = work.runtime.upload(work.scratch(), std::vector<cl_int>(offsets.begin(), offsets.end()));
+    set_points_ = work.runtime.upload(work.scratch(), integers(offsets));
     rows_ = work.scratch().allocate<cl_uint>(2 * n_ + 1);
     hull_places_ = work.scratch().allocate<cl_uint>(n_ + 1);
   }
@@ -284,8 +290,7 @@ class Results {
       runtime.map(count, kernels::rank_hull{.from = ahead, .to = farther});
       std::swap(ahead, farther);
     }
-    const auto offsets = runtime.upload(
-        work_.scratch(), std::vector<cl_int>(sizes.hull_offsets.begin(), sizes.hull_offsets.end()));
+    const auto offsets = runtime.upload(work_.scratch(), integers(sizes.hull_offsets));
     runtime.map(count, kernels::write_hull{.sets = sets_,
                                            .hull_offsets = offsets,
                                            .hull_vertices = vertices,
@@ -345,29 +350,39 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
   phases.end("blocks");
 
   phases.progress("triangulate", kBlocksMade);
-  Emitted emitted = make_emitted(work, blocks, true);
-  OpenPoints open;
-  open.offsets = offsets;
+  const Emitted emitted = make_emitted(work, blocks, exchange.wants_links());
+  // What a round needs is given back when it ends.
+  Workspace rounds_work{runtime, runtime.arena(), work.bounds};
+  OpenPoints lists[2];
+  lists[0].offsets = offsets;
   std::vector<std::size_t> vertices;
   Outcome outcome;
-  bool merges = false;
-  for (bool is_first = true; is_first || open.count() > 0; is_first = false) {
+  bool is_merged = false;
+  for (std::size_t r = 0; lists[r % 2].count() > 0; ++r) {
+    const OpenPoints& open = lists[r % 2];
+    OpenPoints& next = lists[(r + 1) % 2];
     Arena::Scope scope(work.scratch());
-    if (!is_first)
-      blocks =
-          make_blocks_of(work, open.points, open.offsets, merges ? tuning.block_points : tuning.round_points,
-                         merges ? Cuts::at_medians : Cuts::in_gaps);
-    Round round{is_first, merges, open, open.offsets, blocks, solve(work, blocks, representatives)};
-    if (merges) merge(work, blocks, round.rings);
-    if (is_first) exchange.while_device_computes();
-    await_rings(work, blocks, round.rings);
-    if (round.rings.ties > 0) make_fans(work, blocks, round.rings);
+    if (r > 0) {
+      blocks = make_blocks_of(rounds_work, open.points, open.offsets,
+                              is_merged ? tuning.block_points : tuning.round_points,
+                              is_merged ? Cuts::at_medians : Cuts::in_gaps);
+    }
+    Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives)};
+    if (is_merged) merge(rounds_work, blocks, round.rings);
+    // Coarse coordinates have no ties: merges break them.
+    if (work.bounds.circle != 0.0) make_fans(rounds_work, blocks, round.rings);
+    if (r == 0) exchange.while_device_computes();
+    emit(rounds_work, round, emitted);
+    find_open(rounds_work, persistent, round, emitted, next);
+    if (r == 0) vertices = vertices_of_sets(blocks, round.rings);
+    ++outcome.rounds;
     outcome.undecided += round.rings.undecided;
-    if (is_first) vertices = vertices_of_sets(blocks, round.rings);
-    emit(work, round, emitted);
-    OpenPoints next = open_after(work, round, emitted);
-    merges = 100 * next.count() > tuning.merge_from_percent * open.count() || next.count() == open.count();
-    open = std::move(next);
+    outcome.round_points += open.count();
+    if (is_merged) outcome.merged_points = open.count();
+    is_merged = 100 * next.count() > tuning.merge_from_percent * open.count() || next.count() == open.count();
+    phases.progress("triangulate", kBlocksMerged - (kBlocksMerged - kBlocksMade) *
+                                                       static_cast<double>(next.count()) /
+                                                       static_cast<double>(offsets.back()));
   }
   phases.end("triangulate");
 

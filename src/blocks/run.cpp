@@ -9,6 +9,9 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.points = n;
   statistics.duplicates = n - sizes.vertices;
   statistics.undecided = undecided;
+  statistics.rounds = rounds;
+  statistics.round_points = round_points;
+  statistics.merged_points = merged_points;
   statistics.triangles = sizes.triangles();
   statistics.hull_vertices = sizes.hull_vertices();
 }
@@ -38,7 +41,9 @@ Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::si
   phases.end("triangulate");
 
   phases.progress("output", kBlocksMerged);
-  Outcome outcome{count_mesh(work, blocks, rings), rings.undecided};
+  Outcome outcome;
+  outcome.sizes = count_mesh(work, blocks, rings);
+  outcome.undecided = rings.undecided;
   phases.progress("output", kMeshCounted);
   write_mesh(work, blocks, rings, outcome.sizes, exchange.mesh(outcome.sizes), &milestones);
   milestones.report();

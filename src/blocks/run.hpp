@@ -22,6 +22,8 @@ class Exchange {
   virtual Buffer<cl_int> representatives() = 0;
   /// Called while the device computes, for work of the host that needs no results.
   virtual void while_device_computes() {}
+  /// Whether neighbours or halfedges are wanted.
+  virtual bool wants_links() const = 0;
   /// The arrays for the parts of the mesh, called when its size is known. Parts that are not wanted have no
   /// memory.
   virtual MeshBuffers mesh(const MeshSizes& sizes) = 0;
@@ -30,7 +32,10 @@ class Exchange {
 /// What the host knows about a result when run returns.
 struct Outcome {
   MeshSizes sizes;
-  std::size_t undecided = 0;  ///< predicates that were evaluated exactly
+  std::size_t undecided = 0;      ///< predicates that were evaluated exactly
+  std::size_t rounds = 0;         ///< rounds of blocks; 0 if blocks were merged without
+  std::size_t round_points = 0;   ///< points of all rounds
+  std::size_t merged_points = 0;  ///< points of the round whose blocks were merged
 
   /// Writes it to the statistics of a call on n points.
   void write(std::size_t n, Statistics& statistics) const;

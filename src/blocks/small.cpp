@@ -129,10 +129,12 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
     const auto for_each_pair = [pairs](const auto& work) {
       for_each_item(static_cast<std::size_t>(pairs), work);
     };
-    for_each_pair([&] { kernel::find_inside(pairs, scalings.bounds.circle, vertices, edges, inside); });
-    for_each_item(n, [&] { kernel::leave_inside(point_count, edges, inside, vertex_edge); });
-    for_each_pair([&] { kernel::find_fans(pairs, vertices, edges, inside, found); });
-    for_each_pair([&] { kernel::build_fans(pairs, inside, found, edges); });
+    const double bound = scalings.bounds.circle;
+    for_each_pair([&] { kernel::find_inside(pairs, bound, account, vertices, edges, inside); });
+    for_each_pair([&] { kernel::find_inside_exactly(pairs, bound, account, vertices, edges, inside); });
+    for_each_item(n, [&] { kernel::leave_inside(point_count, account, edges, inside, vertex_edge); });
+    for_each_pair([&] { kernel::find_fans(pairs, account, vertices, edges, inside, found); });
+    for_each_pair([&] { kernel::build_fans(pairs, account, inside, found, edges); });
   }
 
   kernel::uint* const first_rows = sized(s.first_rows, n + 1);

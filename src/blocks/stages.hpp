@@ -96,8 +96,8 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
 void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
                  const Rings& rings);
 
-/// Makes the triangulations canonical, which they are already if there were no ties. Does not wait. Temporary
-/// memory: 6 bytes per point.
+/// Makes the triangulations canonical, unless the account says that there were no ties: then they are
+/// already. Does not wait. Temporary memory: 6 bytes per point.
 void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings);
 
 /// The size of a mesh.

@@ -110,6 +110,9 @@ void StatisticsView::show(const Statistics& statistics) {
   view_.device_allocations = statistics.device_allocations;
   view_.device_bytes_peak = statistics.device_bytes_peak;
   view_.undecided = statistics.undecided;
+  view_.rounds = statistics.rounds;
+  view_.round_points = statistics.round_points;
+  view_.merged_points = statistics.merged_points;
   view_.phases = elements(phases_);
   view_.phase_count = phases_.size();
   view_.kernels = elements(kernels_);

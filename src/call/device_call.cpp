@@ -38,6 +38,9 @@ class DeviceExchange : public blocks::Exchange {
   Buffer<cl_int> representatives() override {
     return wants_representatives_ ? representatives_ : self_.persistent.allocate<cl_int>(points_.count);
   }
+  bool wants_links() const override {
+    return mesh_.neighbors.memory() != nullptr || mesh_.halfedges.memory() != nullptr;
+  }
   blocks::MeshBuffers mesh(const blocks::MeshSizes&) override { return mesh_; }
 
  private:

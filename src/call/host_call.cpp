@@ -58,7 +58,8 @@ class HostExchange : public blocks::Exchange {
         result_(result),
         rows_{{runtime, result.triangles, true},
               {runtime, result.neighbors, options.neighbors},
-              {runtime, result.halfedges, options.halfedges}} {}
+              {runtime, result.halfedges, options.halfedges}},
+        wants_links_(options.neighbors || options.halfedges) {}
 
   Buffer<cl_double> points() override {
     if (points_.wide != nullptr) return runtime_.view(points_.wide, 2 * n_);
@@ -77,6 +78,8 @@ class HostExchange : public blocks::Exchange {
   void while_device_computes() override {
     for (Rows& rows : rows_) rows.reserve(blocks::kMostTrianglesPerPoint * n_);
   }
+
+  bool wants_links() const override { return wants_links_; }
 
   blocks::MeshBuffers mesh(const blocks::MeshSizes& sizes) override {
     result_.hull.resize(sizes.hull_vertices());
@@ -98,6 +101,7 @@ class HostExchange : public blocks::Exchange {
   std::size_t n_;
   Triangulation& result_;
   Rows rows_[3];
+  bool wants_links_;
   Buffer<cl_int> representatives_{}, hull_{};
 };
 

@@ -167,6 +167,9 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
           ? 0.0
           : static_cast<double>(statistics.device_bytes_peak) / static_cast<double>(statistics.points);
   json["undecided_predicates"] = statistics.undecided;
+  json["rounds"] = statistics.rounds;
+  json["round_points"] = statistics.round_points;
+  json["merged_points"] = statistics.merged_points;
   json["phases"] = Json::array();
   for (const PhaseStatistics& phase : statistics.phases) {
     json["phases"].push_back({{"name", phase.name}, {"seconds", phase.seconds}});

@@ -27,6 +27,7 @@ class SampleExchange : public blocks::Exchange {
 
   Buffer<cl_double> points() override { return coordinates_; }
   Buffer<cl_int> representatives() override { return representatives_; }
+  bool wants_links() const override { return true; }
   blocks::MeshBuffers mesh(const blocks::MeshSizes& sizes) override {
     mesh_.triangles = arena_.allocate<cl_int>(3 * sizes.triangles());
     mesh_.neighbors = arena_.allocate<cl_int>(3 * sizes.triangles());

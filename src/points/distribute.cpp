@@ -55,10 +55,9 @@ Plan make_plan(std::size_t block_points, const std::vector<std::size_t>& offsets
 
 // Computes the nodes of the trees, which the merges of blocks read later.
 void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& input, Cuts cuts,
-                Blocks& blocks) {
+                const Blocks& blocks) {
   if (plan.cut.empty()) return;
   const Tuning& tuning = tuning_of(work.runtime);
-  blocks.device_nodes = work.persistent.allocate<kernel::cut_node>(plan.nodes);
   Arena::Scope scope(work.scratch());
   if (cuts == Cuts::in_gaps && tuning.tile_group != 0) {
     const CutTrees trees(work.runtime, plan.cut, tuning.samples_per_gap_block);
@@ -69,20 +68,26 @@ void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& inpu
   }
 }
 
-// Writes blocks. coordinates: x0 y0 x1 y1 ..., to be multiplied by blocks.scale.
-void distribute(Workspace& work, const Buffer<cl_double>& coordinates,
-                const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts,
-                const Buffer<cl_int>& representatives, Blocks& blocks) {
+// The host's part of blocks, and memory for the others.
+Plan begin_blocks(Workspace& work, const std::vector<std::size_t>& offsets, std::size_t block_points,
+                  Blocks& blocks) {
   blocks.sets = offsets.size() - 1;
   blocks.points = offsets.back();
-  const host::Runtime::Settled settled(work.runtime);
-  const Plan plan = make_plan(block_points, offsets, blocks);
-  make_trees(work, plan, coordinates, cuts, blocks);
+  Plan plan = make_plan(block_points, offsets, blocks);
+  if (plan.nodes > 0) blocks.device_nodes = work.persistent.allocate<kernel::cut_node>(plan.nodes);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
   blocks.device_set_blocks = work.runtime.upload(work.persistent, blocks.set_blocks);
   blocks.device_merges = work.runtime.upload(work.persistent, blocks.merges);
+  return plan;
+}
+
+// coordinates: x0 y0 x1 y1 ..., to be multiplied by blocks.scale.
+void fill_blocks(Workspace& work, const Plan& plan, const Buffer<cl_double>& coordinates,
+                 const std::vector<std::size_t>& offsets, Cuts cuts, const Buffer<cl_int>& representatives,
+                 Blocks& blocks) {
+  make_trees(work, plan, coordinates, cuts, blocks);
   const bool by_tiles = work.runtime.sizes().tile_group != 0;
   (by_tiles ? move_by_tiles : move_by_chunks)(work, plan, offsets, coordinates, representatives, blocks);
 }
@@ -92,22 +97,25 @@ void distribute(Workspace& work, const Buffer<cl_double>& coordinates,
 Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
                    const Buffer<cl_int>& representatives) {
   Blocks blocks;
+  const host::Runtime::Settled settled(work.runtime);
+  const Plan plan = begin_blocks(work, offsets, tuning_of(work.runtime).block_points, blocks);
   Arena::Scope scope(work.scratch());
   const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
   work.bounds = uniform.scaling.bounds;
   blocks.scale = uniform.scaling.powers();
-  distribute(work, uniform.coordinates, offsets, tuning_of(work.runtime).block_points, Cuts::at_medians,
-             representatives, blocks);
+  fill_blocks(work, plan, uniform.coordinates, offsets, Cuts::at_medians, representatives, blocks);
   return blocks;
 }
 
 Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
                       const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts) {
   Blocks blocks;
+  const host::Runtime::Settled settled(work.runtime);
+  const Plan plan = begin_blocks(work, offsets, block_points, blocks);
   Arena::Scope scope(work.scratch());
   // Not needed: these points have no duplicates.
-  const auto representatives = work.scratch().allocate<cl_int>(offsets.back());
-  distribute(work, points.as<cl_double>(), offsets, block_points, cuts, representatives, blocks);
+  const auto representatives = work.scratch().allocate<cl_int>(blocks.points);
+  fill_blocks(work, plan, points.as<cl_double>(), offsets, cuts, representatives, blocks);
   return blocks;
 }
 

@@ -145,7 +145,7 @@ void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::siz
                                                        .representatives = representatives});
   // Each set is one block.
   std::copy(offsets.begin(), offsets.end(), blocks.offsets.begin());
-  work.runtime.write(blocks.device_offsets, 0, blocks.count + 1, blocks.offsets.data());
+  work.runtime.write_kept(blocks.device_offsets, blocks.offsets);
 }
 
 }  // namespace flaunay::points

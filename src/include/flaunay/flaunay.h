@@ -179,22 +179,25 @@ typedef struct flaunay_kernel {
 
 /// What a call did and how long it took.
 typedef struct flaunay_statistics {
-  const char* device;           ///< name of the device; "host" in the modes that run on the host
-  size_t points;                ///< input points
-  size_t duplicates;            ///< input points that are not their own representative
-  size_t triangles;             ///< number of triangles over all sets
-  size_t hull_vertices;         ///< number of hull vertices over all sets
-  double seconds;               ///< from points to results; for device memory, until everything was enqueued
-  double build_seconds;         ///< compiling kernels; part of no other time
-  size_t kernel_launches;       ///< kernels enqueued on the device
-  size_t host_waits;            ///< times the host waited for the device
-  size_t bytes_to_device;       ///< copied to the device; memory that is used in place does not count
-  size_t bytes_to_host;         ///< copied to the host; memory that is used in place does not count
-  size_t device_allocations;    ///< OpenCL buffers created, without sub-buffers
-  size_t device_bytes_peak;     ///< most device memory held at the same time
-  size_t undecided;             ///< predicates that needed exact evaluation
-  const flaunay_phase* phases;  ///< in the order in which they ran
-  size_t phase_count;           ///< number of phases
+  const char* device;         ///< name of the device; "host" in the modes that run on the host
+  size_t points;              ///< input points
+  size_t duplicates;          ///< input points that are not their own representative
+  size_t triangles;           ///< number of triangles over all sets
+  size_t hull_vertices;       ///< number of hull vertices over all sets
+  double seconds;             ///< from points to results; for device memory, until everything was enqueued
+  double build_seconds;       ///< compiling kernels; part of no other time
+  size_t kernel_launches;     ///< kernels enqueued on the device
+  size_t host_waits;          ///< times the host waited for the device
+  size_t bytes_to_device;     ///< copied to the device; memory that is used in place does not count
+  size_t bytes_to_host;       ///< copied to the host; memory that is used in place does not count
+  size_t device_allocations;  ///< OpenCL buffers created, without sub-buffers
+  size_t device_bytes_peak;   ///< most device memory held at the same time
+  size_t undecided;           ///< predicates that needed exact evaluation
+  size_t rounds;              ///< rounds of blocks; 0 if blocks were merged up the trees of cuts instead
+  size_t round_points;        ///< points of all rounds together
+  size_t merged_points;       ///< points of a last round whose blocks were merged, because too many were left
+  const flaunay_phase* phases;    ///< in the order in which they ran
+  size_t phase_count;             ///< number of phases
   const flaunay_kernel* kernels;  ///< the slowest first; none without profile
   size_t kernel_count;            ///< number of kernels
 } flaunay_statistics;

@@ -84,14 +84,20 @@ struct Statistics {
   std::size_t hull_vertices = 0;  ///< number of hull vertices over all sets
   double seconds = 0;        ///< from points to results; for device memory, until everything was enqueued
   double build_seconds = 0;  ///< compiling kernels; part of no other time
-  std::size_t kernel_launches = 0;      ///< kernels enqueued on the device
-  std::size_t host_waits = 0;           ///< times the host waited for the device
-  std::size_t bytes_to_device = 0;      ///< copied to the device; memory that is used in place does not count
-  std::size_t bytes_to_host = 0;        ///< copied to the host; memory that is used in place does not count
-  std::size_t device_allocations = 0;   ///< OpenCL buffers created, without sub-buffers
-  std::size_t device_bytes_peak = 0;    ///< most device memory held at the same time
-  std::size_t undecided = 0;            ///< predicates that needed exact evaluation
-  std::vector<PhaseStatistics> phases;  ///< in the order in which they ran
+  std::size_t kernel_launches = 0;     ///< kernels enqueued on the device
+  std::size_t host_waits = 0;          ///< times the host waited for the device
+  std::size_t bytes_to_device = 0;     ///< copied to the device; memory that is used in place does not count
+  std::size_t bytes_to_host = 0;       ///< copied to the host; memory that is used in place does not count
+  std::size_t device_allocations = 0;  ///< OpenCL buffers created, without sub-buffers
+  std::size_t device_bytes_peak = 0;   ///< most device memory held at the same time
+  std::size_t undecided = 0;           ///< predicates that needed exact evaluation
+  /// On devices with many lanes, mode blocks triangulates in rounds: each emits what is final and hands on
+  /// the other points. The number of rounds; 0 if blocks were merged up the trees of cuts instead.
+  std::size_t rounds = 0;
+  std::size_t round_points = 0;  ///< points of all rounds together; the first has all points
+  /// Points of a last round whose blocks were merged up the trees, because the round before left too many.
+  std::size_t merged_points = 0;
+  std::vector<PhaseStatistics> phases;    ///< in the order in which they ran
   std::vector<KernelStatistics> kernels;  ///< the slowest first; empty without Options::profile
 };
 
