@@ -10,6 +10,8 @@ BEGIN_SHARED
 INTEGER_CONSTANT(EDGES_PER_VERTEX, 6);
 // Divide and conquer ends with leaves of at most so many vertices.
 INTEGER_CONSTANT(LEAF_VERTICES, 4);
+// Sorts begin with tiles of so many points, a power of two, in which each point is compared with all others.
+INTEGER_CONSTANT(SORTED_TILE, 16);
 
 // Corners of the largest region that one work-item triangulates in private memory, unless a program's build says
 // otherwise by SMALL_REGION. At most 64, the bits of a ulong.
