@@ -10,13 +10,11 @@
 // position, stably, by a scan over the group, for all parts of a depth at once.
 
 #include "shared/halving.h"
+#include "shared/limits.h"
 #include "shared/order.h"
 #include "shared/rings.h"
 #include "shared/search.h"
 
-#ifndef HALVE_GROUP
-#define HALVE_GROUP 1
-#endif
 // Of a function with barriers: PoCL 3.1 loses those of a function that is called twice and not inlined.
 #define WITH_BARRIERS static inline __attribute__((always_inline))
 
@@ -173,6 +171,11 @@ static inline global ranks* order_to_split(part_to_cut part, const block_arrays*
   return part.axis ? s->by_x : s->by_y;
 }
 
+// How many low vertices there are before a part, when all work-items with shares of this size have counted theirs.
+static inline int lows_before(part_to_cut part, int share, const block_arrays* s, local const uint* sums) {
+  return sum_before(part.begin / share, sums) + s->lows[part.number];
+}
+
 // Cuts each part of a depth at its middle.
 WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local uint* sums) {
   for (int j = get_local_id(0); j < 1 << depth; j += get_local_size(0)) {
@@ -181,8 +184,8 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
   }
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
   const lane_share share = share_of(count);
-  // A lane's first part begins in its share or in one before.
-  const int first_part = part_from(count, depth, share.low + 1) - 1;
+  // A work-item's first part begins in its share or in one before; without a share, any part will do.
+  const int first_part = part_from(count, depth, min(share.low, count - 1) + 1) - 1;
   uint own = 0;
   part_to_cut part = part_with(first_part, count, depth, s);
   for (int i = share.low; i < share.high; ++i) {
@@ -193,16 +196,15 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
   scan_group(own, sums);
   barrier(CLK_GLOBAL_MEM_FENCE);
   int lows = sum_before(get_local_id(0), sums);
-  int lows_before_part = 0;
-  part.end = share.low;
-  part.number = first_part - 1;
+  part = part_with(first_part, count, depth, s);
+  int first_low = lows_before(part, share.size, s, sums);
   for (int i = share.low; i < share.high; ++i) {
     if (i == part.end) {
       part = part_with(part.number + 1, count, depth, s);
-      lows_before_part = sum_before(part.begin / share.size, sums) + s->lows[part.number];
+      first_low = lows_before(part, share.size, s, sums);
     }
     const ranks both = order_to_split(part, s)[i];
-    const int low = lows - lows_before_part;
+    const int low = lows - first_low;
     if (is_low(both, part)) {
       s->spare[part.begin + low] = both;
       ++lows;
@@ -211,8 +213,7 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
     }
   }
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
-  part.end = share.low;
-  part.number = first_part - 1;
+  part = part_with(first_part, count, depth, s);
   for (int i = share.low; i < share.high; ++i) {
     if (i == part.end) part = part_with(part.number + 1, count, depth, s);
     order_to_split(part, s)[i] = s->spare[i];
@@ -305,7 +306,7 @@ kernel void halve_blocks(int blocks, int capacity, global const int* restrict of
                          global int* representatives, global solved_block* solved, global int* distinct_counts,
                          global uchar* axes, global double2* scratch_points, global int* scratch_source,
                          global int2* scratch_ranks, global int* scratch_lows) {
-  local uint sums[HALVE_GROUP];
+  local uint sums[LARGEST_GROUP];
   const int b = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
   const int first = b < blocks ? offsets[b] : 0, count = b < blocks ? offsets[b + 1] - first : 0;
   block_arrays s;

@@ -13,6 +13,9 @@ INTEGER_CONSTANT(LEAF_VERTICES, 4);
 // Sorts begin with tiles of so many points, a power of two, in which each point is compared with all others.
 INTEGER_CONSTANT(SORTED_TILE, 16);
 
+// Work-items of the largest work-group that a kernel with local memory per work-item is made for.
+INTEGER_CONSTANT(LARGEST_GROUP, 1024);
+
 // Corners of the largest region that one work-item triangulates in private memory, unless a program's build says
 // otherwise by SMALL_REGION. At most 64, the bits of a ulong.
 INTEGER_CONSTANT(DEFAULT_SMALL_REGION, 48);

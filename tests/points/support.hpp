@@ -70,6 +70,15 @@ inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
     tuning.chunks_most = 11;
     if (runtime->memory().in_host_memory) tuning.in_host_memory = !tuning.in_host_memory;
   }
+  if (name == "lanes" || name == "small lanes") {
+    // As a GPU solves blocks; with small groups and blocks, too.
+    const bool is_small = name == "small lanes";
+    tuning.blocks_in_parallel = 1;
+    tuning.halve_group = is_small ? 4 : 64;
+    tuning.block_group = is_small ? 2 : 32;
+    tuning.merge_items = is_small ? 30 : 1000;
+    if (is_small) tuning.block_points = 13;
+  }
   runtime->set_sizes(std::make_shared<Tuning>(tuning));
   return runtime;
 }
@@ -81,9 +90,10 @@ using Runtimes = testing::SharedRuntimes<make_runtime>;
 template <typename Check>
 void under_each_tuning(const Check& check) {
   const bool chosen = std::getenv("FLAUNAY_TUNING") != nullptr;
-  for (const char* const name : {"own", "small", "odd", "single"}) {
-    if (chosen && std::string(name) != "own") continue;
-    SCOPED_TRACE(std::string("tuning ") + name);
+  for (const std::string name : {"own", "small", "odd", "single", "lanes", "small lanes"}) {
+    if (chosen && name != "own") continue;
+    if (testing::tests_native() && name.find("lanes") != std::string::npos) continue;
+    SCOPED_TRACE("tuning " + name);
     check(Runtimes::get(name));
   }
 }
