@@ -73,7 +73,7 @@ struct PointBlocks {
 /// and some more if blocks may have more than large_blocks times block_points points.
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings);
-constexpr std::size_t kParallelBytesPerPoint = 72;
+constexpr std::size_t kParallelBytesPerPoint = 58;
 
 /// What the stage `halve` leaves for `merge`, from the scratch arena.
 struct HalvedBlocks {
