@@ -4,18 +4,17 @@
 //
 // name_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
 // work-group per block. It sorts tiles of SORTED_TILE points by counting, then merges runs, in which each element finds
-// its place by binary search in the other run. Each cut splits the order that is not cut by position, stably, by a scan
-// over the group, for all parts of a depth at once.
+// its place by binary search in the other run. For blocks of more than `capacity` points, which have many equal points
+// as a rule, launches over all places do the same before: sort_large_tiles, merge_large_runs for each width of runs,
+// flag_distinct, a scan of its flags, move_distinct and name_duplicates. Each cut splits the order that is not cut by
+// position, stably, by a scan over the group, for all parts of a depth at once.
 
 #include "shared/halving.h"
+#include "shared/limits.h"
 #include "shared/order.h"
 #include "shared/rings.h"
 #include "shared/search.h"
 
-#ifndef HALVE_GROUP
-#define HALVE_GROUP 1
-#endif
-#define SORTED_TILE 16
 // Of a function with barriers: PoCL 3.1 loses those of a function that is called twice and not inlined.
 #define WITH_BARRIERS static inline __attribute__((always_inline))
 
@@ -172,6 +171,11 @@ static inline global ranks* order_to_split(part_to_cut part, const block_arrays*
   return part.axis ? s->by_x : s->by_y;
 }
 
+// How many low vertices there are before a part, when all work-items with shares of this size have counted theirs.
+static inline int lows_before(part_to_cut part, int share, const block_arrays* s, local const uint* sums) {
+  return sum_before(part.begin / share, sums) + s->lows[part.number];
+}
+
 // Cuts each part of a depth at its middle.
 WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local uint* sums) {
   for (int j = get_local_id(0); j < 1 << depth; j += get_local_size(0)) {
@@ -180,8 +184,8 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
   }
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
   const lane_share share = share_of(count);
-  // A lane's first part begins in its share or in one before.
-  const int first_part = part_from(count, depth, share.low + 1) - 1;
+  // A work-item's first part begins in its share or in one before; without a share, any part will do.
+  const int first_part = part_from(count, depth, min(share.low, count - 1) + 1) - 1;
   uint own = 0;
   part_to_cut part = part_with(first_part, count, depth, s);
   for (int i = share.low; i < share.high; ++i) {
@@ -192,16 +196,15 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
   scan_group(own, sums);
   barrier(CLK_GLOBAL_MEM_FENCE);
   int lows = sum_before(get_local_id(0), sums);
-  int lows_before_part = 0;
-  part.end = share.low;
-  part.number = first_part - 1;
+  part = part_with(first_part, count, depth, s);
+  int first_low = lows_before(part, share.size, s, sums);
   for (int i = share.low; i < share.high; ++i) {
     if (i == part.end) {
       part = part_with(part.number + 1, count, depth, s);
-      lows_before_part = sum_before(part.begin / share.size, sums) + s->lows[part.number];
+      first_low = lows_before(part, share.size, s, sums);
     }
     const ranks both = order_to_split(part, s)[i];
-    const int low = lows - lows_before_part;
+    const int low = lows - first_low;
     if (is_low(both, part)) {
       s->spare[part.begin + low] = both;
       ++lows;
@@ -210,8 +213,7 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
     }
   }
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
-  part.end = share.low;
-  part.number = first_part - 1;
+  part = part_with(first_part, count, depth, s);
   for (int i = share.low; i < share.high; ++i) {
     if (i == part.end) part = part_with(part.number + 1, count, depth, s);
     order_to_split(part, s)[i] = s->spare[i];
@@ -219,18 +221,92 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
   barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
+// A place of a large block, by the block's first place and number of points; first is -1 for other places.
+typedef struct {
+  int first, count;
+} large_place;
+
+static inline large_place large_place_at(int i, int n, int capacity, global const int* block_of_place,
+                                         global const int* offsets) {
+  large_place at = {-1, 0};
+  const int b = i < n ? block_of_place[i] : -1;
+  if (b >= 0 && offsets[b + 1] - offsets[b] > capacity) {
+    at.first = offsets[b];
+    at.count = offsets[b + 1] - at.first;
+  }
+  return at;
+}
+
 kernel void name_blocks(int n, int blocks, global const int* restrict offsets, global int* restrict block_of_place) {
   const int i = get_global_id(0);
   if (i < n) block_of_place[i] = i < offsets[blocks] ? segment_of(i, blocks, offsets) : -1;
 }
 
+// order: by place of a large block, the point that stands there, counted from the block's first.
+kernel void sort_large_tiles(int n, int capacity, global const int* restrict offsets,
+                             global const int* restrict block_of_place, global const double2* restrict points,
+                             global int* restrict order) {
+  const int i = get_global_id(0);
+  const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
+  if (at.first >= 0) {
+    order[at.first + place_in_tile(i - at.first, at.count, points + at.first, 0)] = i - at.first;
+  }
+}
+
+kernel void merge_large_runs(int n, int capacity, int width, global const int* restrict offsets,
+                             global const int* restrict block_of_place, global const double2* restrict points,
+                             global const int* restrict order, global int* restrict merged) {
+  const int i = get_global_id(0);
+  const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
+  if (at.first >= 0) {
+    merged[at.first + place_in_merge(i - at.first, width, at.count, order + at.first, points + at.first, 0)] = order[i];
+  }
+}
+
+kernel void flag_distinct(int n, int capacity, global const int* restrict offsets,
+                          global const int* restrict block_of_place, global const double2* restrict points,
+                          global const int* restrict order, global uint* restrict flags) {
+  const int i = get_global_id(0);
+  const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
+  if (i < n) flags[i] = at.first >= 0 && is_distinct(i - at.first, order + at.first, points + at.first);
+}
+
+// scanned: the prefix sums of the flags.
+kernel void move_distinct(int n, int capacity, global const int* restrict offsets,
+                          global const int* restrict block_of_place, global const double2* restrict points,
+                          global const int* restrict source, global const int* restrict order,
+                          global const uint* restrict scanned, global double2* restrict distinct_points,
+                          global int* restrict distinct_source) {
+  const int i = get_global_id(0);
+  const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
+  if (at.first >= 0 && scanned[i + 1] != scanned[i]) {
+    const int from = at.first + order[i], to = at.first + scanned[i] - scanned[at.first];
+    distinct_points[to] = points[from];
+    distinct_source[to] = source[from];
+  }
+}
+
+kernel void name_duplicates(int n, int capacity, global const int* restrict offsets,
+                            global const int* restrict block_of_place, global const int* restrict source,
+                            global const int* restrict order, global const uint* restrict scanned,
+                            global const int* restrict distinct_source, global int* restrict representatives) {
+  const int i = get_global_id(0);
+  const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
+  if (at.first >= 0 && scanned[i + 1] == scanned[i]) {
+    representatives[source[at.first + order[i]]] = distinct_source[at.first + scanned[i] - scanned[at.first] - 1];
+  }
+}
+
 // Writes the vertices of each block in the order of the leaves, their sources, the axis of each cut, and the number of
 // vertices. scratch_ranks has 3 elements per point, the other scratch arrays 1. Groups beyond the last block are idle.
-kernel void halve_blocks(int blocks, global const int* restrict offsets, global double2* points, global int* source,
+// Large blocks have their distinct points in scratch_points and scratch_source; their number is a difference in
+// scanned.
+kernel void halve_blocks(int blocks, int capacity, global const int* restrict offsets,
+                         global const uint* restrict scanned, global double2* points, global int* source,
                          global int* representatives, global solved_block* solved, global int* distinct_counts,
                          global uchar* axes, global double2* scratch_points, global int* scratch_source,
                          global int2* scratch_ranks, global int* scratch_lows) {
-  local uint sums[HALVE_GROUP];
+  local uint sums[LARGEST_GROUP];
   const int b = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
   const int first = b < blocks ? offsets[b] : 0, count = b < blocks ? offsets[b + 1] - first : 0;
   block_arrays s;
@@ -241,7 +317,9 @@ kernel void halve_blocks(int blocks, global const int* restrict offsets, global 
   s.spare = s.by_y + count;
   s.axes = axes + first;
   s.lows = scratch_lows + first;
-  const int distinct = distinct_by_x(count, points + first, source + first, &s, representatives, sums);
+  const int is_large = count > capacity;
+  int distinct = distinct_by_x(is_large ? 0 : count, points + first, source + first, &s, representatives, sums);
+  if (is_large) distinct = scanned[first + count] - scanned[first];
   rank(distinct, &s);
   const int depth = halving_depth(distinct);
   for (int d = 0; d < depth; ++d) cut_parts(distinct, d, &s, sums);

@@ -10,6 +10,11 @@ BEGIN_SHARED
 INTEGER_CONSTANT(EDGES_PER_VERTEX, 6);
 // Divide and conquer ends with leaves of at most so many vertices.
 INTEGER_CONSTANT(LEAF_VERTICES, 4);
+// Sorts begin with tiles of so many points, a power of two, in which each point is compared with all others.
+INTEGER_CONSTANT(SORTED_TILE, 16);
+
+// Work-items of the largest work-group that a kernel with local memory per work-item is made for.
+INTEGER_CONSTANT(LARGEST_GROUP, 1024);
 
 // The largest work-group that takes a tile of elements, what local memory has room for.
 INTEGER_CONSTANT(LARGEST_TILE_GROUP, 256);

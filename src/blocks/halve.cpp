@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <utility>
 
 #include "blocks/stages.hpp"
+#include "host/vector_operations.hpp"
 #include "launchers/blocks/halve.cl.hpp"
+#include "shared/limits.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -17,11 +20,68 @@ std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks) {
   return std::min(group, tuning.halve_group);
 }
 
+// The arrays in which blocks are sorted.
+struct SortedPoints {
+  Buffer<cl_double2> points{};
+  Buffer<cl_int> source{};
+  Buffer<cl_uint> scanned{};  ///< how many distinct points large blocks have before each place
+};
+
+// Drops the duplicates of blocks of more than `capacity` points.
+void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
+                     std::size_t capacity, const Buffer<cl_int>& representatives,
+                     const SortedPoints& sorted) {
+  host::Runtime& runtime = work.runtime;
+  Arena::Scope scope(work.scratch());
+  auto order = work.scratch().allocate<cl_int>(blocks.points);
+  auto merged = work.scratch().allocate<cl_int>(blocks.points);
+  runtime.map(blocks.points, kernels::sort_large_tiles{.capacity = capacity,
+                                                       .offsets = blocks.offsets,
+                                                       .block_of_place = halved.block_of_place,
+                                                       .points = blocks.vertices,
+                                                       .order = order});
+  for (std::size_t width = kernel::SORTED_TILE; width < blocks.largest; width *= 2) {
+    runtime.map(blocks.points, kernels::merge_large_runs{.capacity = capacity,
+                                                         .width = width,
+                                                         .offsets = blocks.offsets,
+                                                         .block_of_place = halved.block_of_place,
+                                                         .points = blocks.vertices,
+                                                         .order = order,
+                                                         .merged = merged});
+    std::swap(order, merged);
+  }
+  runtime.map(blocks.points, kernels::flag_distinct{.capacity = capacity,
+                                                    .offsets = blocks.offsets,
+                                                    .block_of_place = halved.block_of_place,
+                                                    .points = blocks.vertices,
+                                                    .order = order,
+                                                    .flags = sorted.scanned});
+  host::exclusive_scan(runtime, sorted.scanned, blocks.points, sorted.scanned);
+  runtime.map(blocks.points, kernels::move_distinct{.capacity = capacity,
+                                                    .offsets = blocks.offsets,
+                                                    .block_of_place = halved.block_of_place,
+                                                    .points = blocks.vertices,
+                                                    .source = blocks.source,
+                                                    .order = order,
+                                                    .scanned = sorted.scanned,
+                                                    .distinct_points = sorted.points,
+                                                    .distinct_source = sorted.source});
+  runtime.map(blocks.points, kernels::name_duplicates{.capacity = capacity,
+                                                      .offsets = blocks.offsets,
+                                                      .block_of_place = halved.block_of_place,
+                                                      .source = blocks.source,
+                                                      .order = order,
+                                                      .scanned = sorted.scanned,
+                                                      .distinct_source = sorted.source,
+                                                      .representatives = representatives});
+}
+
 }  // namespace
 
 HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                    const Rings& rings) {
   host::Runtime& runtime = work.runtime;
+  const Tuning& tuning = tuning_of(runtime);
   Arena& scratch = work.scratch();
   const HalvedBlocks halved{scratch.allocate<cl_int>(blocks.points),
                             scratch.allocate<cl_uchar>(blocks.points)};
@@ -29,18 +89,26 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   runtime.map(blocks.points, kernels::name_blocks{.blocks = blocks.count,
                                                   .offsets = blocks.offsets,
                                                   .block_of_place = halved.block_of_place});
-  const std::size_t group = group_for(tuning_of(runtime), blocks);
+  const std::size_t capacity = tuning.large_blocks * tuning.block_points;
+  const bool has_large = blocks.largest > capacity;
+  const SortedPoints sorted{scratch.allocate<cl_double2>(blocks.points),
+                            scratch.allocate<cl_int>(blocks.points),
+                            scratch.allocate<cl_uint>(has_large ? blocks.points + 1 : 1)};
+  if (has_large) drop_duplicates(work, blocks, halved, capacity, representatives, sorted);
+  const std::size_t group = group_for(tuning, blocks);
   runtime.launch(group * blocks.count, group,
                  kernels::halve_blocks{.blocks = blocks.count,
+                                       .capacity = capacity,
                                        .offsets = blocks.offsets,
+                                       .scanned = sorted.scanned,
                                        .points = blocks.vertices,
                                        .source = blocks.source,
                                        .representatives = representatives,
                                        .solved = rings.solved,
                                        .distinct_counts = rings.device_distinct,
                                        .axes = halved.axes,
-                                       .scratch_points = scratch.allocate<cl_double2>(blocks.points),
-                                       .scratch_source = scratch.allocate<cl_int>(blocks.points),
+                                       .scratch_points = sorted.points,
+                                       .scratch_source = sorted.source,
                                        .scratch_ranks = scratch.allocate<cl_int2>(3 * blocks.points),
                                        .scratch_lows = scratch.allocate<cl_int>(blocks.points)});
   return halved;

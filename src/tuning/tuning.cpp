@@ -18,7 +18,7 @@ namespace {
 using host::DeviceError;
 
 constexpr std::size_t kSmallRegion = kernel::DEFAULT_SMALL_REGION;
-constexpr std::size_t kLargestGroup = 1024;
+constexpr std::size_t kLargestGroup = kernel::LARGEST_GROUP;
 constexpr std::size_t kLargestValue = std::size_t{1} << 30;
 
 // A value of the table: a number, or a number per compute unit of the device.
@@ -402,8 +402,8 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DHALVE_GROUP={}", Sizes::build_options(),
-                     small_region, fetch_ahead, halve_group);
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}", Sizes::build_options(), small_region,
+                     fetch_ahead);
 }
 
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
@@ -413,7 +413,7 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
   for (std::size_t* group : {&tuning->block_group, &tuning->halve_group}) {
-    *group = std::min(*group, std::max<std::size_t>(1, limits.work_group));
+    *group = std::clamp<std::size_t>(*group, 1, std::clamp<std::size_t>(limits.work_group, 1, kLargestGroup));
   }
   return tuning;
 }

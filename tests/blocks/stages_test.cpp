@@ -287,15 +287,24 @@ TEST(Stages, ResultsDoNotDependOnTuning) {
 TEST(Kernels, AllAreLaunched) {
   // Those of points/inspect.cl are in the same program; inspect_test.cpp launches them.
   std::set<std::string> launched{"inspect", "inspect_sets", "scale_sets", "widen_points"};
-  Runtime& runtime = Runtimes::get("odd");
-  runtime.set_profiling(true);
-  Met met;
-  check_stages(runtime, make_fixture("uniform", 100, 22), met);
-  check_stages(runtime, make_fixture("integer-star", 200, 23), met);
-  for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
-  runtime.set_profiling(false);
+  std::vector<std::string> files{"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"};
+  std::vector<std::string> tunings{"odd"};
+  if (!testing::tests_native()) {
+    files.insert(files.end(), {"blocks/halve", "blocks/merge", "blocks/merge_exact"});
+    tunings.emplace_back("small lanes");
+  }
+  for (const std::string& tuning : tunings) {
+    Runtime& runtime = Runtimes::get(tuning);
+    runtime.set_profiling(true);
+    Met met;
+    check_stages(runtime, make_fixture("uniform", 100, 22), met);
+    check_stages(runtime, make_fixture("integer-star", 200, 23), met);
+    check_stages(runtime, Coordinates(200, 0.5), met);
+    for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
+    runtime.set_profiling(false);
+  }
   std::size_t kernels = 0;
-  for (const char* const file : {"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"}) {
+  for (const std::string& file : files) {
     const std::string source = host::kernel_source(file);
     const std::regex pattern("\nkernel void (\\w+)\\(");
     for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
@@ -303,7 +312,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 25u);
+  EXPECT_EQ(kernels, testing::tests_native() ? 25u : 36u);
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 #include <CL/cl.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "blocks/stages.hpp"
@@ -28,5 +32,43 @@ void check_mesh(Call& call, const Blocks& blocks, const Rings& rings, bool neigh
 Triangulation check_stages(Runtime& runtime, const Coordinates& coordinates, const Offsets& offsets, Met& met,
                            bool exact = false);
 void check_stages(Runtime& runtime, const Coordinates& coordinates, Met& met, bool exact = false);
+
+/// Blocks of any points, as rounds have them: with places behind the last block.
+struct BlockPoints {
+  std::vector<cl_int> offsets{0};
+  std::vector<cl_double2> vertices;
+
+  void add(const Coordinates& points) {
+    for (const cl_double2& p : points_of(points)) vertices.push_back(p);
+    offsets.push_back(static_cast<cl_int>(vertices.size()));
+  }
+  void add_places_behind(std::size_t count) { vertices.resize(vertices.size() + count, {{-7, -7}}); }
+
+  std::size_t count() const { return offsets.size() - 1; }
+  std::size_t points() const { return vertices.size(); }
+  std::size_t first(std::size_t block) const { return static_cast<std::size_t>(offsets[block]); }
+  std::size_t size(std::size_t block) const { return first(block + 1) - first(block); }
+  std::size_t largest() const;
+  /// The number of a point in the input: any order will do.
+  cl_int source(std::size_t place) const { return static_cast<cl_int>(points() - 1 - place); }
+  std::vector<cl_int> sources() const;
+};
+
+/// Empty blocks, single points, many tiny blocks, equal, collinear and cocircular points, grids; the largest
+/// have n points.
+std::vector<std::pair<std::string, BlockPoints>> nasty_blocks(std::size_t n, std::uint64_t seed);
+
+/// Such blocks and rings in device memory. largest: what the host knows of them.
+struct DeviceBlocks {
+  PointBlocks blocks;
+  Buffer<cl_int> representatives;
+  Rings rings;
+
+  DeviceBlocks(Call& call, const BlockPoints& points);
+};
+
+/// Calls check with a runtime that solves blocks by halves, for groups of several sizes, and so that blocks
+/// of more than `capacity` points are large.
+void with_groups(std::size_t capacity, const std::function<void(Runtime&)>& check);
 
 }  // namespace flaunay::blocks

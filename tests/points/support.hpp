@@ -76,6 +76,15 @@ inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
     tuning.chunks_most = 11;
     if (runtime->memory().in_host_memory) tuning.in_host_memory = !tuning.in_host_memory;
   }
+  if (name == "lanes" || name == "small lanes") {
+    // As a GPU solves blocks; with small groups and blocks, too.
+    const bool is_small = name == "small lanes";
+    tuning.blocks_in_parallel = 1;
+    tuning.halve_group = is_small ? 4 : 64;
+    tuning.block_group = is_small ? 2 : 32;
+    tuning.merge_items = is_small ? 30 : 1000;
+    if (is_small) tuning.block_points = 13;
+  }
   runtime->set_sizes(std::make_shared<Tuning>(tuning));
   return runtime;
 }
@@ -87,13 +96,13 @@ using Runtimes = testing::SharedRuntimes<make_runtime>;
 template <typename Check>
 void under_each_tuning(const Check& check) {
   const bool chosen = std::getenv("FLAUNAY_TUNING") != nullptr;
-  for (const char* const name : {"own", "small", "odd", "single", "tiles"}) {
-    if (chosen && std::string(name) != "own") continue;
-    SCOPED_TRACE(std::string("tuning ") + name);
-    Runtime& runtime = Runtimes::get(name);
+  for (const std::string name : {"own", "small", "odd", "single", "lanes", "small lanes", "tiles"}) {
+    if (chosen && name != "own") continue;
     // There, work-groups have one work-item each.
-    if (runtime.is_native() && std::string(name) == "tiles") continue;
-    check(runtime);
+    const bool has_groups = name == "tiles" || name.find("lanes") != std::string::npos;
+    if (testing::tests_native() && has_groups) continue;
+    SCOPED_TRACE("tuning " + name);
+    check(Runtimes::get(name));
   }
 }
 

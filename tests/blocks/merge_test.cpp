@@ -1,0 +1,232 @@
+// The stage `merge`: blocks that are solved by halves, all at once, beside blocks that are solved one by one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <vector>
+
+#include "launchers/blocks/divide.cl.hpp"
+#include "shared/bounds.h"
+#include "shared/codes.h"
+#include "tests/blocks/support.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+using testing::download;
+using testing::kNone;
+
+/// What solving blocks leaves behind.
+struct Solution {
+  HostRings g;
+  std::vector<cl_int> representatives;
+  std::vector<kernel::solved_block> solved;
+  std::vector<cl_uint> account;
+
+  Solution(Call& call, const BlockPoints& points, const DeviceBlocks& on_device) {
+    const std::size_t n = points.points();
+    Runtime& runtime = call.runtime;
+    g.offsets = points.offsets;
+    g.vertices = download(runtime, on_device.blocks.vertices, n);
+    g.source = download(runtime, on_device.blocks.source, n);
+    g.edges = download(runtime, on_device.rings.edges, kernel::EDGES_PER_VERTEX * n);
+    g.vertex_edge = download(runtime, on_device.rings.vertex_edge, n);
+    g.distinct = download(runtime, on_device.rings.device_distinct, points.count());
+    representatives = download(runtime, on_device.representatives, n);
+    solved = download(runtime, on_device.rings.solved, points.count());
+    account = download(runtime, on_device.rings.device_account, std::size_t{kernel::RINGS_NUMBERS});
+  }
+
+  /// The neighbours of a vertex in their order, from the one that its edge leads to.
+  std::vector<cl_int> ring(cl_int v) const {
+    std::vector<cl_int> ring;
+    const cl_int start = g.edge_of(v);
+    if (start == kNone) return ring;
+    cl_int e = start;
+    do {
+      ring.push_back(g.to(e));
+      e = g.edge(e).next;
+    } while (e != start && ring.size() <= g.vertices.size());
+    return ring;
+  }
+
+  /// What is wrong with the edges of a block that are not in use, or "".
+  std::string broken_free_list(std::size_t b) const {
+    const cl_int first = kernel::EDGES_PER_VERTEX * g.offsets[b];
+    const cl_int end = kernel::EDGES_PER_VERTEX * g.offsets[b + 1];
+    std::set<cl_int> free;
+    for (cl_int e = first; e < end; e += 2) {
+      if (g.used(e) != g.used(e ^ 1)) return "an edge is half used";
+      if (!g.used(e)) free.insert(e);
+    }
+    const kernel::free_edges list = solved[b].unused;
+    if (free.empty()) return list.first == kNone && list.last == kNone ? "" : "a list of no edges";
+    for (cl_int e = list.first; e != kNone; e = g.edge(e).next) {
+      if (free.erase(e) == 0) return "an edge is in the list and should not";
+      if ((e == list.last) != (g.edge(e).next == kNone)) return "the list has another end";
+    }
+    return free.empty() ? "" : "an edge is not in the list";
+  }
+};
+
+Solution solve_one_by_one(Call& call, const BlockPoints& points) {
+  const DeviceBlocks on_device(call, points);
+  Runtime& runtime = call.runtime;
+  Arena& arena = runtime.arena();
+  const std::size_t capacity = std::max<std::size_t>(1, points.largest());
+  const auto next = testing::upload(runtime, std::vector<cl_int>{0});
+  runtime.launch(1, 1,
+                 kernels::solve_blocks{.workers = 1,
+                                       .blocks = points.count(),
+                                       .capacity = capacity,
+                                       .larger = -1,
+                                       .offsets = on_device.blocks.offsets,
+                                       .bounds = call.work.bounds,
+                                       .next = next,
+                                       .points = on_device.blocks.vertices,
+                                       .source = on_device.blocks.source,
+                                       .representatives = on_device.representatives,
+                                       .edges = on_device.rings.edges,
+                                       .vertex_edge = on_device.rings.vertex_edge,
+                                       .solved = on_device.rings.solved,
+                                       .distinct_counts = on_device.rings.device_distinct,
+                                       .account = on_device.rings.device_account,
+                                       .scratch_points = arena.allocate<cl_double2>(capacity),
+                                       .scratch_source = arena.allocate<cl_int>(capacity),
+                                       .scratch_ranks = arena.allocate<cl_int2>(3 * capacity),
+                                       .scratch_axes = arena.allocate<cl_uchar>(capacity)});
+  return {call, points, on_device};
+}
+
+Solution solve_by_halves(Call& call, const BlockPoints& points) {
+  const DeviceBlocks on_device(call, points);
+  solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
+  return {call, points, on_device};
+}
+
+void compare(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& met) {
+  Call call(runtime);
+  call.work.bounds = bounds;
+  const Solution expected = solve_one_by_one(call, points), found = solve_by_halves(call, points);
+  ASSERT_TRUE(same(found.g.distinct, expected.g.distinct));
+  ASSERT_TRUE(same(found.g.source, expected.g.source));
+  ASSERT_TRUE(same(found.representatives, expected.representatives));
+  ASSERT_TRUE(same(found.account, expected.account));
+  met.ties += found.account[kernel::RINGS_TIES];
+  for (std::size_t b = 0; b < points.count(); ++b) {
+    ASSERT_EQ(testing::numbers_of(found.solved[b].ends), testing::numbers_of(expected.solved[b].ends)) << b;
+    ASSERT_EQ(found.broken_free_list(b), "") << "block " << b;
+    for (cl_int v = points.offsets[b]; v < points.offsets[b + 1]; ++v) {
+      const auto i = static_cast<std::size_t>(v);
+      ASSERT_EQ(found.g.vertices[i].s[0], expected.g.vertices[i].s[0]);
+      ASSERT_EQ(found.g.vertices[i].s[1], expected.g.vertices[i].s[1]);
+      ASSERT_TRUE(same(found.ring(v), expected.ring(v))) << "vertex " << v << " of block " << b;
+      met.triangles += found.ring(v).size();
+    }
+  }
+}
+
+const Bounds kUsualBounds{HULL_DEPTH_BOUND, ORIENT_BOUND, CIRCLE_BOUND};
+/// No filter decides anything.
+const Bounds kNoBounds{2, 2, 2};
+
+TEST(SmallMerge, NastyBlocks) {
+  with_groups(10, [](Runtime& runtime) {
+    Met met;
+    for (const auto& [name, points] : nasty_blocks(14, 40)) {
+      SCOPED_TRACE(name);
+      compare(runtime, points, kUsualBounds, met);
+    }
+    EXPECT_GT(met.triangles, 100u);
+    EXPECT_GT(met.ties, 10u);
+  });
+}
+
+TEST(Merge, NastyBlocks) {
+  with_groups(700, [](Runtime& runtime) {
+    Met met;
+    for (const std::size_t n : {60, 701, 1500}) {
+      for (const auto& [name, points] : nasty_blocks(n, n)) {
+        SCOPED_TRACE(name);
+        compare(runtime, points, kUsualBounds, met);
+      }
+    }
+    EXPECT_GT(met.ties, 1000u);
+  });
+}
+
+/// Each leaf and each merge stops, at its first predicate.
+TEST(Merge, NothingIsDecidedByFilters) {
+  with_groups(700, [](Runtime& runtime) {
+    Met met;
+    for (const auto& [name, points] : nasty_blocks(200, 41)) {
+      SCOPED_TRACE(name);
+      compare(runtime, points, kNoBounds, met);
+    }
+  });
+}
+
+/// Ties are broken at once, and nothing stops.
+TEST(Merge, CoarseCoordinates) {
+  with_groups(700, [](Runtime& runtime) {
+    Met met;
+    FixtureRandom random(42);
+    for (const std::int64_t width : {3, 16, 60}) {
+      BlockPoints points;
+      for (const std::size_t n : {1000, 30, 7}) points.add(coarse(n, width, 2 * width, random));
+      compare(runtime, points, {0, 0, 0}, met);
+    }
+    EXPECT_EQ(met.ties, 0u);
+    EXPECT_GT(met.triangles, 5000u);
+  });
+}
+
+TEST(Merge, AllSizesOfSmallBlocks) {
+  with_groups(100, [](Runtime& runtime) {
+    BlockPoints points;
+    FixtureRandom random(43);
+    for (std::size_t n = 0; n < 90; ++n) {
+      points.add(make_fixture("uniform", n, n));
+      points.add(coarse(n, 5, 5, random));
+    }
+    Met met;
+    compare(runtime, points, kUsualBounds, met);
+  });
+}
+
+/// What a GPU is asked to do: see solve_in_parallel.
+TEST(Merge, LaunchesAreFew) {
+  with_groups(1 << 20, [](Runtime& runtime) {
+    BlockPoints points;
+    for (int b = 0; b < 4; ++b) points.add(make_fixture("uniform", 2048, 44));
+    Call call(runtime);
+    call.work.bounds = kUsualBounds;
+    const DeviceBlocks on_device(call, points);
+    const std::size_t launches = runtime.launches(), waits = runtime.waits();
+    solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
+    EXPECT_EQ(runtime.launches() - launches, 2u + 2 * (1 + 9));
+    EXPECT_EQ(runtime.waits(), waits);
+  });
+}
+
+TEST(Merge, ScratchMemory) {
+  for (const std::size_t capacity : {20000, 100}) {  // the block is large or not
+    with_groups(capacity, [](Runtime& runtime) {
+      BlockPoints points;
+      points.add(make_fixture("uniform", 20000, 45));
+      Arena& arena = runtime.arena();
+      arena.reset_peak();
+      Call call(runtime);
+      const DeviceBlocks on_device(call, points);
+      const std::size_t before = arena.peak_bytes();
+      solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
+      const std::size_t arrays = 20;  // each is rounded up
+      EXPECT_LE(arena.peak_bytes() - before, kParallelBytesPerPoint * 20000 + arrays * arena.alignment());
+    });
+  }
+}
+
+}  // namespace
+
+}  // namespace flaunay::blocks
