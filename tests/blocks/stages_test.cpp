@@ -294,8 +294,18 @@ TEST(Kernels, AllAreLaunched) {
   check_stages(runtime, make_fixture("integer-star", 200, 23), met);
   for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
   runtime.set_profiling(false);
+  std::vector<std::string> files{"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"};
+  Runtime& tiles = Runtimes::get("tiles");
+  if (!tiles.is_native()) {
+    files.emplace_back("points/distribute_tiles");
+    tiles.set_profiling(true);
+    check_stages(tiles, make_fixture("uniform", 400, 24), met);
+    check_stages(tiles, make_fixture("uniform", 5, 25), met);
+    for (const auto& [name, time] : tiles.kernel_times()) launched.insert(name);
+    tiles.set_profiling(false);
+  }
   std::size_t kernels = 0;
-  for (const char* const file : {"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"}) {
+  for (const std::string& file : files) {
     const std::string source = host::kernel_source(file);
     const std::regex pattern("\nkernel void (\\w+)\\(");
     for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
@@ -303,7 +313,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 25u);
+  EXPECT_EQ(kernels, tiles.is_native() ? 25u : 37u);
 }
 
 }  // namespace

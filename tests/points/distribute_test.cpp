@@ -78,6 +78,58 @@ TEST(SmallDistribute, BadInputIsRefused) {
   EXPECT_NE(message({0x1p300, 0, 1, 0x1p-300, 0, 1}).find("magnitudes differ too much"), std::string::npos);
 }
 
+/// Blocks of these sets, made by tiles, against their twin.
+void check_blocks_of_tiles(Runtime& runtime, const Nested& sets) {
+  Call call(runtime);
+  HostRings g;
+  Met met;
+  const std::size_t n = sets.offsets.back();
+  const auto representatives = call.work.persistent.allocate<cl_int>(n);
+  const auto input = testing::upload(runtime, sets.coordinates);
+  const Blocks blocks = make_blocks(call.work, input, sets.offsets, representatives);
+  check_blocks(call, sets.coordinates, sets.offsets, blocks, representatives, g, met);
+}
+
+Coordinates first_of(const Coordinates& points, std::size_t count) {
+  return Coordinates(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(2 * count));
+}
+
+TEST(SmallDistribute, ByTiles) {
+  under_each_group_of_tiles([](Runtime& runtime) {
+    for (const auto& [name, points] : awkward(60, 41)) {
+      SCOPED_TRACE(name);
+      Nested sets;
+      sets.add(points);
+      check_blocks_of_tiles(runtime, sets);
+      sets.add({});
+      sets.add(first_of(points, 7));
+      sets.add(points);
+      sets.add({});
+      check_blocks_of_tiles(runtime, sets);
+    }
+  });
+}
+
+/// Blocks' numbers of one digit and of two, tiles that end within sets, and sets without a tree among others.
+TEST(Distribute, ByTiles) {
+  under_each_group_of_tiles([](Runtime& runtime) {
+    for (const std::size_t n : {2047, 2048, 2049, 9000, 30000}) {
+      SCOPED_TRACE(std::to_string(n) + " points");
+      Nested sets;
+      sets.add(make_fixture("uniform", n, n));
+      check_blocks_of_tiles(runtime, sets);
+    }
+    for (const auto& [name, points] : awkward(5000, 43)) {
+      SCOPED_TRACE(name);
+      Nested sets;
+      for (std::size_t s = 0; s < 50; ++s) sets.add(first_of(points, s % 13));
+      sets.add(points);
+      sets.add(first_of(points, 700));
+      check_blocks_of_tiles(runtime, sets);
+    }
+  });
+}
+
 }  // namespace
 
 }  // namespace flaunay::points

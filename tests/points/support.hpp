@@ -67,7 +67,7 @@ inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
     tuning.chunks_most = 0;
   }
   if (has_tiles) tuning.tile_group = name == "tiles" ? 3 : std::stoul(name.substr(6));
-  if (name == "tiles") tuning.block_points = 11;
+  if (has_tiles) tuning.block_points = 11;
   if (name == "single") {
     // Blocks without merges of their own, in memory that is shared if it was not.
     tuning.block_points = 1;
