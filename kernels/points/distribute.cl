@@ -5,8 +5,8 @@
 // are one block each. For chunks with a tree, count_blocks finds the block of each point and counts points per block,
 // in one row of `cursors` per chunk. The counts, in the order of blocks and then of chunks, are scanned. move_points
 // scales all points and brings them and their indices to their blocks, in the order of the input. block_offsets writes
-// where blocks begin. That makes two passes over the points, or one where there is no tree. distribute_tiles.cl does the
-// same for devices with many lanes.
+// where blocks begin. That makes two passes over the points, or one where there is no tree. distribute_tiles.cl does
+// the same for devices with many lanes.
 
 #include "points/cut_tree.cl"
 #include "points/inspect.cl"

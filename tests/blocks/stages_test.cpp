@@ -313,7 +313,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, tiles.is_native() ? 25u : 37u);
+  EXPECT_EQ(kernels, tiles.is_native() ? 25u : 38u);
 }
 
 }  // namespace
