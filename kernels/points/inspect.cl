@@ -20,13 +20,14 @@ kernel void widen_points(int n, ulong first, global const float* restrict narrow
 // Adds the points [low, high) to an account.
 static inline void inspect_points(int low, int high, global const double* input, global volatile int* account) {
   bit_account bits = no_bits();
+  int bad = NO_BAD;
   for (int i = low; i < high; ++i) {
     fetch(&input[2 * min(high - 1, i + STREAM_AHEAD)]);
-    account_for_point(i, input, &bits);
+    account_for_point(i, input, &bits, &bad);
   }
   atomic_max(&account[INSPECT_LARGEST], largest_exponent(bits));
   atomic_min(&account[INSPECT_LOWEST], bits.lowest);
-  atomic_min(&account[INSPECT_BAD], bits.bad);
+  atomic_min(&account[INSPECT_BAD], bad);
 }
 
 kernel void inspect(int n, int chunk, global const double* restrict input, global volatile int* restrict account) {

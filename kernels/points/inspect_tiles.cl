@@ -15,13 +15,14 @@ kernel void inspect_tiles(int n, int workers, global const double* restrict inpu
   }
   barrier(CLK_LOCAL_MEM_FENCE);
   bit_account bits = no_bits();
+  int bad = NO_BAD;
   const int w = get_global_id(0);
   if (w < workers) {
-    for (int i = w; i < n; i += workers) account_for_point(i, input, &bits);
+    for (int i = w; i < n; i += workers) account_for_point(i, input, &bits, &bad);
   }
   atomic_max(&own[INSPECT_LARGEST], largest_exponent(bits));
   atomic_min(&own[INSPECT_LOWEST], bits.lowest);
-  atomic_min(&own[INSPECT_BAD], bits.bad);
+  atomic_min(&own[INSPECT_BAD], bad);
   barrier(CLK_LOCAL_MEM_FENCE);
   if (is_first) {
     atomic_max(&account[INSPECT_LARGEST], own[INSPECT_LARGEST]);

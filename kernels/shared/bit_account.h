@@ -8,11 +8,10 @@
 
 BEGIN_SHARED
 
-// What coordinates have in common: the largest magnitude, as its bits, and the exponent of the lowest set bit; and the
-// first point that is not finite, which does not count for these.
+// What coordinates have in common: the largest magnitude, as its bits, and the exponent of the lowest set bit.
 typedef struct {
   ulong most;
-  int lowest, bad;
+  int lowest;
 } bit_account;
 
 #define MAGNITUDE_BITS 0x7fffffffffffffffUL
@@ -20,7 +19,7 @@ typedef struct {
 #define HIDDEN_BIT 0x0010000000000000UL
 
 static inline bit_account no_bits(void) {
-  const bit_account none = {0, NO_LOWEST, NO_BAD};
+  const bit_account none = {0, NO_LOWEST};
   return none;
 }
 
@@ -39,13 +38,14 @@ static inline void account_for(double x, bit_account* account) {
   }
 }
 
-static inline void account_for_point(int i, GLOBAL const double* input, bit_account* account) {
+// bad: becomes the point, if it is not finite and comes before.
+static inline void account_for_point(int i, GLOBAL const double* input, bit_account* account, int* bad) {
   const double2 p = vload2(i, input);  // which need not be aligned as pairs
   if (isfinite(p.x) && isfinite(p.y)) {
     account_for(p.x, account);
     account_for(p.y, account);
   } else {
-    account->bad = min(account->bad, i);
+    *bad = min(*bad, i);
   }
 }
 
