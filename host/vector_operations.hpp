@@ -12,7 +12,8 @@
 namespace flaunay::host {
 
 /// Writes the n exclusive prefix sums, and the total at output[n]. output may be input. T: cl_uint, cl_uint2
-/// or cl_uint8, which are added componentwise. Temporary memory: a few values per chunk.
+/// or cl_uint8, which are added componentwise. Temporary memory: a few values per chunk. If work-groups take
+/// tiles (Sizes::tile_group), at most two launches.
 template <typename T>
 void exclusive_scan(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output);
 
