@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "launchers/operations/pack.cl.hpp"
+#include "launchers/operations/scan_tiles.cl.hpp"
 #include "launchers/operations/sort.cl.hpp"
 #include "launchers/segmented.cl.hpp"
 #include "tests/host/support.hpp"
@@ -222,6 +223,25 @@ TYPED_TEST(Scan, BySpansIsThePlainLoop) {
       for (int k = 0; k < 5; ++k) check_scan<TypeParam>(runtime, random() % 20000, random);
     });
   }
+}
+
+/// There are such groups if the device runs a kernel in smaller groups than it was told.
+TEST(SmallScanLaunches, GroupsBehindTheLastSpanDoNothing) {
+  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  const Arena::Scope scope(runtime.arena());
+  const std::vector<cl_uint> values{5, 1, 0, 7, 2, 3, 9};
+  const std::size_t n = values.size(), span = 4, spans = 2, groups = 5, group = 3;
+  const auto input = upload(runtime, values);
+  const auto sums = guarded<cl_uint>(runtime, spans);
+  const auto output = guarded<cl_uint>(runtime, n + 1);
+  runtime.launch(groups * group, group, n,
+                 kernels::scan_span_sums_uint{.spans = spans, .span = span, .input = input, .sums = sums});
+  expect_same(download(runtime, sums, spans), {13, 14}, "sums");
+  runtime.launch(
+      groups * group, group, n,
+      kernels::scan_spans_uint{
+          .spans = spans, .span = span, .items = 1, .sums = sums, .input = input, .output = output});
+  expect_same(download(runtime, output, n + 1), plain_scan(values), "scan");
 }
 
 TEST(ScanLaunches, BySpansTakesTwo) {
