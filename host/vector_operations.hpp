@@ -18,7 +18,7 @@ template <typename T>
 void exclusive_scan(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output);
 
 /// Writes the positions i < n with flags[i] == wanted, ascending, to positions, and their number to count[0].
-/// positions must have room for all of them.
+/// positions must have room for all of them. At most two launches where a scan takes as many.
 void pack_positions(Runtime& runtime, const Buffer<cl_uchar>& flags, std::size_t n, int wanted,
                     const Buffer<cl_int>& positions, const Buffer<cl_uint>& count);
 /// Returns the positions i < n with flags[i] == wanted, ascending, and their number. The positions are
