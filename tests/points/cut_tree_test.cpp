@@ -236,9 +236,12 @@ TEST(CutTrees, AreThoseOfTheHost) {
 }
 
 TEST(SmallCutTrees, OfTilesAreThoseOfTheHost) {
-  under_each_group_of_tiles([](Runtime& runtime) {
-    for (const std::size_t samples_per_leaf : {1, 3, 16}) {
-      check_device_trees(runtime, sets_of_all_depths(9, {1, 6, 2}), samples_per_leaf);
+  under_tiles("tiles", [](Runtime& runtime) {
+    check_device_trees(runtime, {{make_fixture("uniform", 40, 1), 6}}, 1);
+    check_device_trees(runtime, {{make_fixture("grid", 9, 1), 0}, {make_fixture("uniform", 40, 2), 3}}, 3);
+    for (const auto& [name, points] : awkward(20, 35)) {
+      SCOPED_TRACE(name);
+      check_device_trees(runtime, {{points, 4}}, 1);
     }
   });
 }
@@ -248,6 +251,7 @@ TEST(CutTrees, OfTilesAreThoseOfTheHost) {
     check_device_trees(runtime, sets_of_all_depths(1000, {5, 1, 9, 0, 3}), 16);
     check_device_trees(runtime, sets_of_all_depths(500, {11, 1, 13}), 1);
     check_device_trees(runtime, sets_of_all_depths(100, {11, 0, 4}), 3);
+    check_device_trees(runtime, sets_of_all_depths(9, {1, 6, 2}), 3);
   });
 }
 
