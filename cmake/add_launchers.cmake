@@ -9,6 +9,7 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
     foreach(INCLUDE IN LISTS INCLUDES)
       string(REGEX REPLACE "^#include \"(.*)\"$" "\\1" INCLUDED "${INCLUDE}")
       string(REGEX REPLACE "\\.cl$" "" PROGRAM_OF_${INCLUDED} ${FILE})
+      list(APPEND INCLUDED_BY_${FILE} ${DIRECTORY}/${INCLUDED})
     endforeach()
   endforeach()
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/launchers.cmake)
@@ -29,7 +30,7 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
       OUTPUT ${OUTPUT}/${FILE}.hpp ${NATIVE_FILE}
       COMMAND ${CMAKE_COMMAND} -DDIRECTORY=${DIRECTORY} -DFILE=${FILE} -DPROGRAM=${PROGRAM}
               -DOUTPUT=${OUTPUT}/${FILE}.hpp ${NATIVE_ARGUMENT} -P ${SCRIPT}
-      DEPENDS ${DIRECTORY}/${FILE} ${SCRIPT}
+      DEPENDS ${DIRECTORY}/${FILE} ${INCLUDED_BY_${FILE}} ${SCRIPT}
       VERBATIM)
     list(APPEND LAUNCHERS ${OUTPUT}/${FILE}.hpp)
   endforeach()

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+#include <vector>
+
 #include "launchers/operations/pack.cl.hpp"
+#include "launchers/operations/pack_tiles.cl.hpp"
 #include "launchers/operations/scan.cl.hpp"
 #include "launchers/operations/scan_tiles.cl.hpp"
 #include "launchers/operations/sort.cl.hpp"
@@ -36,30 +40,72 @@ struct ScanKernels<cl_uint8> {
 
 std::size_t divided_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
-// By work-groups, in at most two launches.
-template <typename T>
-void scan_by_spans(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output) {
-  const Sizes& sizes = runtime.sizes();
-  const std::size_t group = sizes.tile_group;
-  const std::size_t tile = group * sizes.scan_items;
+// What work-groups take of n elements: `count` spans, each a whole number of tiles.
+struct Spans {
+  std::size_t length, count;
+};
+
+Spans spans_of(const Sizes& sizes, std::size_t n) {
+  const std::size_t tile = sizes.tile_group * sizes.scan_items;
   const std::size_t tiles = divided_up(n, tile);
   const std::size_t most = tiles <= sizes.scan_tiles_alone ? 1 : sizes.scan_groups;
-  const std::size_t span = divided_up(tiles, most) * tile;
-  const std::size_t spans = divided_up(n, span);
+  const std::size_t length = divided_up(tiles, most) * tile;
+  return {length, divided_up(n, length)};
+}
+
+template <typename Kernel>
+void launch_spans(Runtime& runtime, const Spans& spans, std::size_t n, const Kernel& kernel) {
+  runtime.launch(spans.count * runtime.sizes().tile_group, runtime.sizes().tile_group, n, kernel);
+}
+
+// In at most two launches.
+template <typename T>
+void scan_by_spans(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output) {
+  const Spans spans = spans_of(runtime.sizes(), n);
   Arena::Scope scope(runtime.arena());
-  const auto sums = runtime.arena().allocate<T>(spans);
+  const auto sums = runtime.arena().allocate<T>(spans.count);
   using Kernels = ScanKernels<T>;
-  if (spans > 1) {
-    runtime.launch(spans * group, group, n,
-                   typename Kernels::SpanSums{.spans = spans, .span = span, .input = input, .sums = sums});
+  if (spans.count > 1) {
+    launch_spans(
+        runtime, spans, n,
+        typename Kernels::SpanSums{.spans = spans.count, .span = spans.length, .input = input, .sums = sums});
   }
-  runtime.launch(spans * group, group, n,
-                 typename Kernels::Spans{.spans = spans,
-                                         .span = span,
-                                         .items = sizes.scan_items,
-                                         .sums = sums,
-                                         .input = input,
-                                         .output = output});
+  launch_spans(runtime, spans, n,
+               typename Kernels::Spans{.spans = spans.count,
+                                       .span = spans.length,
+                                       .items = runtime.sizes().scan_items,
+                                       .sums = sums,
+                                       .input = input,
+                                       .output = output});
+}
+
+// Flags, of which those that have a value are packed.
+struct Flags {
+  const Buffer<cl_uchar>& values;
+  std::size_t count;
+  int wanted;
+};
+
+void count_in_spans(Runtime& runtime, const Spans& spans, const Flags& flags, const Buffer<cl_uint>& counts) {
+  launch_spans(runtime, spans, flags.count,
+               kernels::pack_span_counts{.spans = spans.count,
+                                         .span = spans.length,
+                                         .flags = flags.values,
+                                         .wanted = flags.wanted,
+                                         .counts = counts});
+}
+
+void pack_by_spans(Runtime& runtime, const Spans& spans, const Flags& flags, const Buffer<cl_uint>& counts,
+                   const Buffer<cl_int>& positions, const Buffer<cl_uint>& total) {
+  launch_spans(runtime, spans, flags.count,
+               kernels::pack_spans{.spans = spans.count,
+                                   .span = spans.length,
+                                   .items = runtime.sizes().scan_items,
+                                   .flags = flags.values,
+                                   .wanted = flags.wanted,
+                                   .counts = counts,
+                                   .positions = positions,
+                                   .total = total});
 }
 
 }  // namespace
@@ -98,6 +144,13 @@ void pack_positions(Runtime& runtime, const Buffer<cl_uchar>& flags, std::size_t
     return;
   }
   Arena::Scope scope(runtime.arena());
+  if (runtime.sizes().tile_group != 0) {
+    const Spans spans = spans_of(runtime.sizes(), n);
+    const auto counts = runtime.arena().allocate<cl_uint>(spans.count);
+    if (spans.count > 1) count_in_spans(runtime, spans, {flags, n, wanted}, counts);
+    pack_by_spans(runtime, spans, {flags, n, wanted}, counts, positions, count);
+    return;
+  }
   const std::size_t chunk = runtime.sizes().chunk(n);
   const std::size_t chunk_count = (n + chunk - 1) / chunk;
   const auto counts = runtime.arena().allocate<cl_uint>(chunk_count + 1);
@@ -113,6 +166,19 @@ std::pair<Buffer<cl_int>, std::size_t> pack_positions(Runtime& runtime, const Bu
                                                       std::size_t n, int wanted) {
   if (n == 0) return {runtime.arena().allocate<cl_int>(0), 0};
   Arena& arena = runtime.arena();
+  if (runtime.sizes().tile_group != 0) {
+    const Spans spans = spans_of(runtime.sizes(), n);
+    const auto counts = arena.allocate<cl_uint>(spans.count);
+    count_in_spans(runtime, spans, {flags, n, wanted}, counts);
+    std::vector<cl_uint> found(spans.count);
+    runtime.read(counts, 0, spans.count, found.data());
+    const std::size_t total = std::accumulate(found.begin(), found.end(), std::size_t{0});
+    const auto positions = arena.allocate<cl_int>(total);
+    if (total > 0) {
+      pack_by_spans(runtime, spans, {flags, n, wanted}, counts, positions, arena.allocate<cl_uint>(1));
+    }
+    return {positions, total};
+  }
   const std::size_t chunk = runtime.sizes().chunk(n);
   const std::size_t chunk_count = (n + chunk - 1) / chunk;
   const auto counts = arena.allocate<cl_uint>(chunk_count + 1);

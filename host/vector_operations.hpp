@@ -12,12 +12,13 @@
 namespace flaunay::host {
 
 /// Writes the n exclusive prefix sums, and the total at output[n]. output may be input. T: cl_uint, cl_uint2
-/// or cl_uint8, which are added componentwise. Temporary memory: a few values per chunk.
+/// or cl_uint8, which are added componentwise. Temporary memory: a few values per chunk. If work-groups take
+/// tiles (Sizes::tile_group), at most two launches.
 template <typename T>
 void exclusive_scan(Runtime& runtime, const Buffer<T>& input, std::size_t n, const Buffer<T>& output);
 
 /// Writes the positions i < n with flags[i] == wanted, ascending, to positions, and their number to count[0].
-/// positions must have room for all of them.
+/// positions must have room for all of them. At most two launches where a scan takes as many.
 void pack_positions(Runtime& runtime, const Buffer<cl_uchar>& flags, std::size_t n, int wanted,
                     const Buffer<cl_int>& positions, const Buffer<cl_uint>& count);
 /// Returns the positions i < n with flags[i] == wanted, ascending, and their number. The positions are

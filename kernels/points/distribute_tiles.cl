@@ -1,10 +1,11 @@
-// Points to blocks as in distribute.cl, for devices with many lanes: by work-groups. cut_tree_tiles.cl, a part of this
-// program, makes the trees.
+// Points to blocks as in distribute.cl, for devices with many lanes: by work-groups. cut_tree_tiles.cl and
+// inspect_tiles.cl are parts of this program.
 //
 // The points are sorted stably by the numbers of their blocks, a digit of `bits` bits at a time, the lowest first; a
 // million points have a single digit. A tile of points is what one work-group takes.
 //
-// 1. find_blocks finds each point's block, and counts the lowest digits of each tile into table[digit][tile]. For each
+// 1. count_tile_blocks finds each point's block, and counts the lowest digits of each tile into table[digit][tile]. For
+// each
 //    further digit, count_digits counts. Each table is scanned.
 // 2. move_keys brings blocks and indices of points to their places by a digit; for the last one, move_tiles brings the
 //    points themselves, scaled. Both sort their tile in local memory first, so that neighbours write to neighbouring
@@ -14,6 +15,7 @@
 // That makes two passes over the points for each digit. Where no set has a tree, copy_points makes the only pass.
 
 #include "points/cut_tree_tiles.cl"
+#include "points/inspect_tiles.cl"
 #include "shared/coordinates.h"
 #include "shared/cut_tree.h"
 #include "shared/limits.h"
@@ -39,12 +41,12 @@ static inline point_tile points_of(int n, int size) {
 
 static inline int digit_at(int block, int shift, int bits) { return block >> shift & ((1 << bits) - 1); }
 
-static inline void clear_counts(local uint* counts, int bits) {
+WITH_BARRIERS void clear_counts(local uint* counts, int bits) {
   for (int d = get_local_id(0); d < 1 << bits; d += get_local_size(0)) counts[d] = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
 }
 
-static inline void write_counts(point_tile tile, local const uint* counts, int bits, global uint* table) {
+WITH_BARRIERS void write_counts(point_tile tile, local const uint* counts, int bits, global uint* table) {
   barrier(CLK_LOCAL_MEM_FENCE);
   if (tile.number < tile.count) {
     for (int d = get_local_id(0); d < 1 << bits; d += get_local_size(0))
@@ -53,10 +55,10 @@ static inline void write_counts(point_tile tile, local const uint* counts, int b
 }
 
 // set_offsets: the first point of each set.
-kernel void find_blocks(int n, int size, int set_count, global const int* restrict set_offsets,
-                        global const set_of_blocks* restrict sets, global const double* restrict input,
-                        global const cut_node* restrict nodes, int bits, global int* restrict block_of_point,
-                        global int* restrict representatives, global uint* restrict table) {
+kernel void count_tile_blocks(int n, int size, int set_count, global const int* restrict set_offsets,
+                              global const set_of_blocks* restrict sets, global const double* restrict input,
+                              global const cut_node* restrict nodes, int bits, global int* restrict block_of_point,
+                              global int* restrict representatives, global uint* restrict table) {
   local uint counts[1 << MOST_BLOCK_BITS];
   const point_tile tile = points_of(n, size);
   clear_counts(counts, bits);
@@ -96,7 +98,7 @@ static inline int padded(int i) { return i + i / 32; }
 static inline int field_of(uint element, int shift) { return (int)(element >> (PLACE_BITS + shift) & 3) * 16; }
 
 // Sorts the tile's elements stably by their digits. Returns where in `elements` the result begins.
-static inline int sort_digits(local uint* elements, int count, int bits, local ulong* sums) {
+WITH_BARRIERS int sort_digits(local uint* elements, int count, int bits, local ulong* sums) {
   const int share = share_of(count);
   const int first = min(count, (int)get_local_id(0) * share), last = min(count, first + share);
   int from = 0;
@@ -121,7 +123,7 @@ static inline int sort_digits(local uint* elements, int count, int bits, local u
 
 // What a tile is sorted with: starts[d] is where its elements of digit d go, less the place of the first one in the
 // tile. So place i of the sorted tile goes to starts[d] + i.
-static inline int sort_tile(point_tile tile, int shift, int bits, global const int* blocks, global const uint* scanned,
+WITH_BARRIERS int sort_tile(point_tile tile, int shift, int bits, global const int* blocks, global const uint* scanned,
                             local uint* elements, local int* starts, local ulong* sums) {
   const int me = get_local_id(0), group = get_local_size(0);
   const int count = tile.last - tile.first;

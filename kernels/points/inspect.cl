@@ -2,38 +2,14 @@
 //
 // inspect reads every coordinate once, with one work-item per chunk of points. If the magnitudes of sets differ too
 // much for one scaling, inspect_sets makes an account per set, and scale_sets scales each set by its own; the latter
-// has one work-item per point. widen_points converts floats to doubles, with one work-item per point.
+// has one work-item per point. widen_points converts floats to doubles, with one work-item per point. For devices with
+// many lanes, inspect_tiles.cl takes the place of inspect.
 
+#include "shared/bit_account.h"
 #include "shared/codes.h"
 #include "shared/coordinates.h"
 #include "shared/prefetch.h"
 #include "shared/search.h"
-
-// What coordinates have in common: the largest magnitude, as its bits, and the exponent of the lowest set
-// bit.
-typedef struct {
-  ulong most;
-  int lowest;
-} bit_account;
-
-#define MAGNITUDE_BITS 0x7fffffffffffffffUL
-#define MANTISSA_BITS 0x000fffffffffffffUL
-#define HIDDEN_BIT 0x0010000000000000UL
-
-// The exponent of the last bit that a double of this magnitude has room for.
-static inline int unit_of(ulong magnitude) { return max(1, (int)(magnitude >> 52)) - 1075; }
-static inline ulong mantissa_of(ulong magnitude) {
-  return (magnitude & MANTISSA_BITS) | (magnitude > MANTISSA_BITS ? HIDDEN_BIT : 0);
-}
-
-static inline void account_for(double x, bit_account* account) {
-  const ulong magnitude = as_ulong(x) & MAGNITUDE_BITS;
-  account->most = max(account->most, magnitude);
-  if (magnitude != 0) {
-    const ulong mantissa = mantissa_of(magnitude);
-    account->lowest = min(account->lowest, unit_of(magnitude) + 63 - (int)clz(mantissa & (~mantissa + 1)));
-  }
-}
 
 // Points of single precision from `first` on.
 kernel void widen_points(int n, ulong first, global const float* restrict narrow, global double* restrict points) {
@@ -43,20 +19,13 @@ kernel void widen_points(int n, ulong first, global const float* restrict narrow
 
 // Adds the points [low, high) to an account.
 static inline void inspect_points(int low, int high, global const double* input, global volatile int* account) {
-  bit_account bits = {0, NO_LOWEST};
+  bit_account bits = no_bits();
   int bad = NO_BAD;
   for (int i = low; i < high; ++i) {
     fetch(&input[2 * min(high - 1, i + STREAM_AHEAD)]);
-    const double2 p = vload2(i, input);  // which need not be aligned as pairs
-    if (isfinite(p.x) && isfinite(p.y)) {
-      account_for(p.x, &bits);
-      account_for(p.y, &bits);
-    } else {
-      bad = min(bad, i);
-    }
+    account_for_point(i, input, &bits, &bad);
   }
-  const int largest = bits.most == 0 ? NO_LARGEST : unit_of(bits.most) + 63 - (int)clz(mantissa_of(bits.most));
-  atomic_max(&account[INSPECT_LARGEST], largest);
+  atomic_max(&account[INSPECT_LARGEST], largest_exponent(bits));
   atomic_min(&account[INSPECT_LOWEST], bits.lowest);
   atomic_min(&account[INSPECT_BAD], bad);
 }

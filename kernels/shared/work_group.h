@@ -6,10 +6,13 @@
 
 #include "shared/limits.h"
 
+// For functions with barriers: PoCL 3.1 loses those of functions that are called twice and are not inlined.
+#define WITH_BARRIERS static inline __attribute__((always_inline))
+
 // Defines a function that returns the sum of the values of the work-items before this one, and writes that of all of
 // them to *total. sums: LARGEST_TILE_GROUP elements, which may be used again afterwards.
 #define SCAN_IN_GROUP(NAME, T)                                 \
-  static inline T NAME(T value, local T* sums, T* total) {     \
+  WITH_BARRIERS T NAME(T value, local T* sums, T* total) {     \
     const int me = get_local_id(0), group = get_local_size(0); \
     sums[me] = value;                                          \
     barrier(CLK_LOCAL_MEM_FENCE);                              \

@@ -26,6 +26,8 @@ constexpr std::size_t kMoving = 4 * sizeof(cl_int);
 // Per block: a place, the first count of its set, and the further values of the last chunk of its set.
 constexpr std::size_t kMovingByBlock = 6 * sizeof(cl_int);
 constexpr std::size_t kMovingByChunk = 9 * sizeof(cl_int);
+// Per point, if blocks' numbers have more than two digits: one more block and index.
+constexpr std::size_t kMovingByDigits = 2 * sizeof(cl_int);
 // Per point, while triangles are written: first rows with the sums of their scan, and the corner of each
 // edge.
 constexpr std::size_t kWriting = (2 + kernel::EDGES_PER_VERTEX) * sizeof(cl_int);
@@ -41,7 +43,8 @@ WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std:
   const std::size_t rounding = kArrays * runtime.arena().alignment();
   const std::size_t cutting = CutTrees::bytes(std::min(sets, leaves), leaves, tuning.samples_per_block);
   const std::size_t scaling = sets > 1 ? n * kInput + (sets + 1) * kScalingBySet : 0;
-  const std::size_t moving = n * kMoving + blocks * kMovingByBlock + chunks * kMovingByChunk;
+  const std::size_t digits = blocks >> (2 * tuning.block_bits) > 0 ? n * kMovingByDigits : 0;
+  const std::size_t moving = n * kMoving + digits + blocks * kMovingByBlock + chunks * kMovingByChunk;
   // The blocks are merged in pairs, each of which has a state.
   const std::size_t solving = std::max(solve_bytes(tuning, n), blocks / 2 * sizeof(cl_int));
   const std::size_t writing = n * kWriting + 2 * (sets + 1) * sizeof(cl_int);

@@ -7,6 +7,7 @@
 #include "blocks/stages.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/native/opencl.hpp"
+#include "shared/bit_account.h"
 #include "shared/codes.h"
 #include "shared/coordinates.h"
 #include "shared/cut_tree.h"

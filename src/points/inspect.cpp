@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "launchers/points/inspect.cl.hpp"
+#include "launchers/points/inspect_tiles.cl.hpp"
 #include "points/device_mesh.hpp"
 #include "shared/codes.h"
 
@@ -43,7 +44,14 @@ Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points
   Magnitudes magnitudes;
   const auto account = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS);
   runtime.write(account, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
-  runtime.chunks(n, runtime.sizes().chunk(n), kernels::inspect{.input = points, .account = account});
+  const host::Sizes& sizes = runtime.sizes();
+  if (sizes.tile_group != 0) {
+    const std::size_t workers = std::min(n, sizes.tile_group * sizes.scan_groups);
+    runtime.launch(workers, sizes.tile_group, n,
+                   kernels::inspect_tiles{.workers = workers, .input = points, .account = account});
+  } else {
+    runtime.chunks(n, sizes.chunk(n), kernels::inspect{.input = points, .account = account});
+  }
   runtime.read(account, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
   return magnitudes;
 }

@@ -54,22 +54,22 @@ Keys allocate_keys(Workspace& work, std::size_t points) {
   return {work.scratch().allocate<cl_int>(points), work.scratch().allocate<cl_int>(points)};
 }
 
-void find_blocks(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
-                 const Buffer<cl_double>& input, const Buffer<kernel::cut_node>& nodes, const Tiles& tiles,
-                 const Buffer<cl_int>& block_of_point, const Buffer<cl_int>& representatives) {
+void count_tile_blocks(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& input, const Buffer<kernel::cut_node>& nodes, const Tiles& tiles,
+                       const Buffer<cl_int>& block_of_point, const Buffer<cl_int>& representatives) {
   const auto set_offsets =
       work.runtime.upload(work.scratch(), std::vector<cl_int>(offsets.begin(), offsets.end()));
   const auto sets = work.runtime.upload(work.scratch(), plan.sets);
-  tiles.launch(work.runtime, kernels::find_blocks{.size = tiles.size,
-                                                  .set_count = plan.sets.size(),
-                                                  .set_offsets = set_offsets,
-                                                  .sets = sets,
-                                                  .input = input,
-                                                  .nodes = nodes,
-                                                  .bits = tiles.digits.bits,
-                                                  .block_of_point = block_of_point,
-                                                  .representatives = representatives,
-                                                  .table = tiles.table});
+  tiles.launch(work.runtime, kernels::count_tile_blocks{.size = tiles.size,
+                                                        .set_count = plan.sets.size(),
+                                                        .set_offsets = set_offsets,
+                                                        .sets = sets,
+                                                        .input = input,
+                                                        .nodes = nodes,
+                                                        .bits = tiles.digits.bits,
+                                                        .block_of_point = block_of_point,
+                                                        .representatives = representatives,
+                                                        .table = tiles.table});
   tiles.scan(work.runtime);
 }
 
@@ -105,7 +105,7 @@ void sort_into_blocks(Workspace& work, const Plan& plan, const std::vector<std::
                       const Buffer<cl_double>& input, const Buffer<cl_int>& representatives, Blocks& blocks) {
   const Tiles tiles(work, blocks);
   const auto block_of_point = work.scratch().allocate<cl_int>(blocks.points);
-  find_blocks(work, plan, offsets, input, blocks.device_nodes, tiles, block_of_point, representatives);
+  count_tile_blocks(work, plan, offsets, input, blocks.device_nodes, tiles, block_of_point, representatives);
   const Keys keys = sort_by_lower_digits(work, tiles, {block_of_point, block_of_point});
   const int lower_digits = tiles.digits.count - 1;
   // With several digits, the blocks as they were found first are not needed any more.

@@ -290,8 +290,9 @@ TEST(Kernels, AllAreLaunched) {
   std::vector<std::string> files{"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"};
   std::vector<std::string> tunings{"odd"};
   if (!testing::tests_native()) {
-    files.insert(files.end(), {"blocks/halve", "blocks/merge", "blocks/merge_exact"});
-    tunings.emplace_back("small lanes");
+    files.insert(files.end(),
+                 {"blocks/halve", "blocks/merge", "blocks/merge_exact", "points/distribute_tiles"});
+    tunings.insert(tunings.end(), {"small lanes", "tiles"});
   }
   for (const std::string& tuning : tunings) {
     Runtime& runtime = Runtimes::get(tuning);
@@ -300,6 +301,8 @@ TEST(Kernels, AllAreLaunched) {
     check_stages(runtime, make_fixture("uniform", 100, 22), met);
     check_stages(runtime, make_fixture("integer-star", 200, 23), met);
     check_stages(runtime, Coordinates(200, 0.5), met);
+    check_stages(runtime, make_fixture("uniform", 400, 24), met);
+    check_stages(runtime, make_fixture("uniform", 5, 25), met);
     for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
     runtime.set_profiling(false);
   }
@@ -312,7 +315,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, testing::tests_native() ? 25u : 36u);
+  EXPECT_EQ(kernels, testing::tests_native() ? 26u : 50u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/vector_operations.hpp"
+#include "shared/limits.h"
 #include "tests/host/support.hpp"
 
 namespace flaunay::host {
@@ -51,8 +52,15 @@ TEST(SmallTuning, GroupsOfAGivenSize) {
     EXPECT_EQ(tuning.private_group, group);
     EXPECT_EQ(tuning.chunk_group, group);
     EXPECT_EQ(tuning.sort_group, group);
+    EXPECT_EQ(tuning.tile_group, group);
     EXPECT_EQ(tuning.sort_bits, tuning_named("gpu").sort_bits);
   }
+}
+
+TEST(SmallTuning, GroupsThatTakeTilesHaveALimit) {
+  EXPECT_LE(tuning_named("gpu:1024").tile_group, static_cast<std::size_t>(kernel::LARGEST_TILE_GROUP));
+  EXPECT_LE(tuning_named("gpu,tile_group=999").tile_group,
+            static_cast<std::size_t>(kernel::LARGEST_TILE_GROUP));
 }
 
 TEST(SmallTuning, FitsTheDevice) {
@@ -67,6 +75,10 @@ TEST(SmallTuning, FitsTheDevice) {
   EXPECT_EQ(small.private_group, 64u);
   EXPECT_EQ(small.chunk_group, 64u);
   EXPECT_EQ(small.sort_group, 64u);
+  EXPECT_EQ(small.tile_group, 64u);
+  EXPECT_EQ(fitted(gpu, {1024, 32 * kilobyte}).tile_group, gpu.tile_group);
+  EXPECT_EQ(fitted(gpu, {1024, 32 * kilobyte - 1}).tile_group, 0u) << "too little local memory for tiles";
+  EXPECT_EQ(fitted(tuning_named("cpu"), {1024, 64 * kilobyte}).tile_group, 0u);
   small = fitted(gpu, {1, 64 * kilobyte});
   EXPECT_EQ(small.map_group, 1u);
   EXPECT_EQ(small.sort_group, 1u);
@@ -78,6 +90,18 @@ TEST(SmallTuning, FitsTheDevice) {
     EXPECT_GE(small.sort_bits, 1u);
     EXPECT_GE(small.sort_group, 1u);
     EXPECT_EQ(small.map_group, gpu.map_group);
+  }
+}
+
+TEST(SmallTuning, SizesOfTilesFitTheKernels) {
+  const Tuning most = tuning_named("gpu,point_tile=99999,sample_tile=99999,block_bits=30");
+  EXPECT_EQ(most.point_tile, static_cast<std::size_t>(kernel::LARGEST_POINT_TILE));
+  EXPECT_EQ(most.sample_tile, static_cast<std::size_t>(kernel::LARGEST_SAMPLE_TILE));
+  EXPECT_EQ(most.block_bits, static_cast<std::size_t>(kernel::MOST_BLOCK_BITS));
+  const Tuning least = tuning_named("gpu,point_tile=0,sample_tile=0,block_bits=0,scan_items=0,scan_groups=0");
+  for (const std::size_t size :
+       {least.point_tile, least.sample_tile, least.block_bits, least.scan_items, least.scan_groups}) {
+    EXPECT_EQ(size, 1u);
   }
 }
 

@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "launchers/operations/pack.cl.hpp"
+#include "launchers/operations/pack_tiles.cl.hpp"
+#include "launchers/operations/scan_tiles.cl.hpp"
 #include "launchers/operations/sort.cl.hpp"
 #include "launchers/segmented.cl.hpp"
 #include "tests/host/support.hpp"
@@ -224,6 +226,44 @@ TYPED_TEST(Scan, BySpansIsThePlainLoop) {
   }
 }
 
+/// There are such groups if the device runs a kernel in smaller groups than it was told.
+TEST(SmallSpans, GroupsBehindTheLastSpanDoNothing) {
+  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  const Arena::Scope scope(runtime.arena());
+  const std::vector<cl_uint> values{5, 1, 0, 7, 2, 3, 9};
+  const std::size_t n = values.size(), span = 4, spans = 2, groups = 5, group = 3;
+  const auto input = upload(runtime, values);
+  const auto sums = guarded<cl_uint>(runtime, spans);
+  const auto output = guarded<cl_uint>(runtime, n + 1);
+  runtime.launch(groups * group, group, n,
+                 kernels::scan_span_sums_uint{.spans = spans, .span = span, .input = input, .sums = sums});
+  expect_same(download(runtime, sums, spans), {13, 14}, "sums");
+  runtime.launch(
+      groups * group, group, n,
+      kernels::scan_spans_uint{
+          .spans = spans, .span = span, .items = 1, .sums = sums, .input = input, .output = output});
+  expect_same(download(runtime, output, n + 1), plain_scan(values), "scan");
+
+  const auto flags = upload(runtime, std::vector<cl_uchar>{1, 1, 0, 1, 0, 1, 0});
+  runtime.launch(
+      groups * group, group, n,
+      kernels::pack_span_counts{.spans = spans, .span = span, .flags = flags, .wanted = 1, .counts = sums});
+  expect_same(download(runtime, sums, spans), {3, 1}, "counts");
+  const auto positions = guarded<cl_int>(runtime, 4);
+  const auto total = guarded<cl_uint>(runtime, 1);
+  runtime.launch(groups * group, group, n,
+                 kernels::pack_spans{.spans = spans,
+                                     .span = span,
+                                     .items = 1,
+                                     .flags = flags,
+                                     .wanted = 1,
+                                     .counts = sums,
+                                     .positions = positions,
+                                     .total = total});
+  expect_same(download(runtime, positions, 4), {0, 1, 3, 5}, "positions");
+  expect_same(download(runtime, total, 1), {4}, "number of positions");
+}
+
 TEST(ScanLaunches, BySpansTakesTwo) {
   Runtime runtime(find_device(""), tuning_for(find_device("")));
   runtime.set_sizes(std::make_shared<Tuning>(tuning_named("gpu")));
@@ -293,6 +333,29 @@ TEST(Pack, IsThePlainLoop) {
     check_pack(runtime, random_flags(1000003, 2, random), 1);
     check_pack(runtime, random_flags(1000003, 256, random), 255);
   });
+}
+
+TEST(SmallPack, BySpansIsThePlainLoop) {
+  Random random(14);
+  for (const std::size_t group : {1, 3}) {
+    with_small_spans(group, [&](Runtime& runtime) {
+      for (const std::size_t n : {1, 2, 3, 9, 10, 18, 19, 40}) {
+        check_pack(runtime, random_flags(n, 3, random), 1);
+      }
+    });
+  }
+}
+
+TEST(Pack, BySpansIsThePlainLoop) {
+  Random random(15);
+  for (const std::size_t group : {1, 32, 64, 256}) {
+    with_small_spans(group, [&](Runtime& runtime) {
+      for (const std::size_t n : {group, 3 * group, 8 * group, 24 * group + 1, random() % 20000}) {
+        const std::vector<cl_uchar> flags = random_flags(n + 1, 3, random);
+        for (const int wanted : {0, 2, 3}) check_pack(runtime, flags, wanted);
+      }
+    });
+  }
 }
 
 TEST(Pack, FindsAllNoneFirstAndLast) {

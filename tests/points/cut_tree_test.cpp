@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "launchers/points/cut_tree_tiles.cl.hpp"
 #include "tests/points/support.hpp"
 
 namespace flaunay::points {
@@ -235,9 +236,12 @@ TEST(CutTrees, AreThoseOfTheHost) {
 }
 
 TEST(SmallCutTrees, OfTilesAreThoseOfTheHost) {
-  under_each_group_of_tiles([](Runtime& runtime) {
-    for (const std::size_t samples_per_leaf : {1, 3, 16}) {
-      check_device_trees(runtime, sets_of_all_depths(9, {1, 6, 2}), samples_per_leaf);
+  under_tiles("tiles", [](Runtime& runtime) {
+    check_device_trees(runtime, {{make_fixture("uniform", 40, 1), 6}}, 1);
+    check_device_trees(runtime, {{make_fixture("grid", 9, 1), 0}, {make_fixture("uniform", 40, 2), 3}}, 3);
+    for (const auto& [name, points] : awkward(20, 35)) {
+      SCOPED_TRACE(name);
+      check_device_trees(runtime, {{points, 4}}, 1);
     }
   });
 }
@@ -247,7 +251,99 @@ TEST(CutTrees, OfTilesAreThoseOfTheHost) {
     check_device_trees(runtime, sets_of_all_depths(1000, {5, 1, 9, 0, 3}), 16);
     check_device_trees(runtime, sets_of_all_depths(500, {11, 1, 13}), 1);
     check_device_trees(runtime, sets_of_all_depths(100, {11, 0, 4}), 3);
+    check_device_trees(runtime, sets_of_all_depths(9, {1, 6, 2}), 3);
   });
+}
+
+/// There are such groups if the device runs a kernel in smaller groups than it was told.
+TEST(SmallCutTrees, GroupsBehindTheLastTileDoNothing) {
+  Runtime& runtime = Runtimes::get("tiles");
+  if (runtime.is_native()) GTEST_SKIP() << "native kernels have no work-groups";
+  const Arena::Scope scope(runtime.arena());
+  // One tree with leaves of 2 samples, in two tiles of 4.
+  const cl_int m = 8;
+  const std::size_t tiles = 2, groups = 5, group = 3;
+  std::vector<cl_double2> samples;
+  for (cl_int i = 0; i < m; ++i) samples.push_back({{static_cast<double>(i * 5 % m), 0.1 * i}});
+  const auto points = testing::upload(runtime, samples);
+  const auto trees = testing::upload(runtime, std::vector<kernel::sampled_tree>{{0, m, 2, 4, 0, 0, m}});
+  const auto zero = testing::upload(runtime, std::vector<cl_int>{0});
+  const auto order = testing::guarded<cl_int>(runtime, 2 * m),
+             sorted = testing::guarded<cl_int>(runtime, 2 * m);
+  const auto ranks = testing::guarded<cl_int>(runtime, 2 * m),
+             spare = testing::guarded<cl_int>(runtime, 2 * m);
+  const auto nodes = testing::guarded<kernel::cut_node>(runtime, 4);
+  const auto counts = testing::guarded<cl_uint>(runtime, tiles);
+  runtime.launch(2 * groups * group, group,
+                 kernels::sort_tiles{.tiles = tiles,
+                                     .tree_count = 1,
+                                     .first_chunks = zero,
+                                     .trees = trees,
+                                     .all_samples = m,
+                                     .samples = points,
+                                     .order = order,
+                                     .ranks = ranks});
+  EXPECT_EQ(testing::download(runtime, order, 2 * m),
+            (std::vector<cl_int>{0, 2, 1, 3, 5, 7, 4, 6, 0, 1, 2, 3, 4, 5, 6, 7}));
+  runtime.map(2 * samples.size(), kernels::merge_tiles{.tree_count = 1,
+                                                       .first_samples = zero,
+                                                       .trees = trees,
+                                                       .all_samples = m,
+                                                       .widenings = 0,
+                                                       .samples = points,
+                                                       .from = order,
+                                                       .to = sorted,
+                                                       .ranks = ranks});
+  EXPECT_EQ(testing::download(runtime, sorted, 2 * m),
+            (std::vector<cl_int>{0, 5, 2, 7, 4, 1, 6, 3, 0, 1, 2, 3, 4, 5, 6, 7}));
+  runtime.launch(groups * group, group,
+                 kernels::count_tiles{.tiles = tiles,
+                                      .tree_count = 1,
+                                      .first_chunks = zero,
+                                      .trees = trees,
+                                      .all_samples = m,
+                                      .level = 0,
+                                      .samples = points,
+                                      .order = sorted,
+                                      .ranks = ranks,
+                                      .nodes = nodes,
+                                      .counts = counts});
+  EXPECT_EQ(testing::download(runtime, counts, tiles), (std::vector<cl_uint>{2, 2}));
+  runtime.launch(groups * group, group,
+                 kernels::split_tiles{.tiles = tiles,
+                                      .tree_count = 1,
+                                      .first_chunks = zero,
+                                      .trees = trees,
+                                      .all_samples = m,
+                                      .level = 0,
+                                      .samples = points,
+                                      .counts = counts,
+                                      .from = sorted,
+                                      .ranks = ranks,
+                                      .to = spare});
+  EXPECT_EQ(testing::download(runtime, spare, 2 * m),
+            (std::vector<cl_int>{0, 5, 2, 7, 4, 1, 6, 3, 0, 2, 5, 7, 1, 3, 4, 6}));
+  runtime.launch(groups * group, group,
+                 kernels::cut_tiles{.tiles = tiles,
+                                    .tree_count = 1,
+                                    .first_chunks = zero,
+                                    .trees = trees,
+                                    .all_samples = m,
+                                    .samples = points,
+                                    .sorted = sorted,
+                                    .ranks = ranks,
+                                    .from = spare,
+                                    .nodes = nodes,
+                                    .order = order});
+  EXPECT_EQ(testing::download(runtime, order, 2 * m),
+            (std::vector<cl_int>{0, 5, 2, 7, 4, 1, 6, 3, 0, 5, 2, 7, 1, 4, 3, 6}));
+  const auto found = testing::download(runtime, nodes, 4);
+  const TreeTwin twin = testing::tree_twin(samples, 2);
+  for (std::size_t k = 1; k < found.size(); ++k) {
+    EXPECT_EQ(testing::decoded(found[k]).axis, twin.nodes[k].axis) << k;
+    for (const int c : {0, 1})
+      EXPECT_EQ(testing::decoded(found[k]).pivot.s[c], twin.nodes[k].pivot.s[c]) << k;
+  }
 }
 
 /// A million points have trees of 512 leaves, 16 million of 8,192.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "launchers/points/distribute_tiles.cl.hpp"
 #include "tests/points/support.hpp"
 #include "tests/support/ingest_twin.hpp"
 #include "tuning/tuning.hpp"
@@ -76,6 +77,120 @@ TEST(SmallDistribute, BadInputIsRefused) {
             std::string::npos);
   EXPECT_NE(message({0, 0, -HUGE_VAL, 0, 0, 1, 1, 1}).find("point 1 is not finite"), std::string::npos);
   EXPECT_NE(message({0x1p300, 0, 1, 0x1p-300, 0, 1}).find("magnitudes differ too much"), std::string::npos);
+}
+
+/// Blocks of these sets, made by tiles, against their twin.
+void check_blocks_of_tiles(Runtime& runtime, const Nested& sets) {
+  Call call(runtime);
+  HostRings g;
+  Met met;
+  const std::size_t n = sets.offsets.back();
+  const auto representatives = call.work.persistent.allocate<cl_int>(n);
+  const auto input = testing::upload(runtime, sets.coordinates);
+  const Blocks blocks = make_blocks(call.work, input, sets.offsets, representatives);
+  check_blocks(call, sets.coordinates, sets.offsets, blocks, representatives, g, met);
+}
+
+Coordinates first_of(const Coordinates& points, std::size_t count) {
+  return Coordinates(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(2 * count));
+}
+
+TEST(SmallDistribute, ByTiles) {
+  under_tiles("tiles", [](Runtime& runtime) {
+    for (const auto& [name, points] : awkward(30, 41)) {
+      SCOPED_TRACE(name);
+      Nested sets;
+      sets.add({});
+      sets.add(first_of(points, 7));
+      sets.add(points);
+      sets.add({});
+      check_blocks_of_tiles(runtime, sets);
+    }
+  });
+}
+
+/// Blocks' numbers of one digit and of two, tiles that end within sets, and sets without a tree among others.
+TEST(Distribute, ByTiles) {
+  under_each_group_of_tiles([](Runtime& runtime) {
+    for (const std::size_t n : {2047, 2048, 2049, 9000, 30000}) {
+      SCOPED_TRACE(std::to_string(n) + " points");
+      Nested sets;
+      sets.add(make_fixture("uniform", n, n));
+      check_blocks_of_tiles(runtime, sets);
+    }
+    for (const auto& [name, points] : awkward(5000, 43)) {
+      SCOPED_TRACE(name);
+      Nested sets;
+      for (std::size_t s = 0; s < 50; ++s) sets.add(first_of(points, s % 13));
+      sets.add(points);
+      sets.add(first_of(points, 700));
+      check_blocks_of_tiles(runtime, sets);
+    }
+  });
+}
+
+/// There are such groups if the device runs a kernel in smaller groups than it was told.
+TEST(SmallDistribute, GroupsBehindTheLastTileDoNothing) {
+  Runtime& runtime = Runtimes::get("tiles");
+  if (runtime.is_native()) GTEST_SKIP() << "native kernels have no work-groups";
+  const Arena::Scope scope(runtime.arena());
+  // Four sets of a block each, in tiles of 4 points: 2 digits of one bit.
+  const std::size_t n = 7, size = 4, tiles = 2, groups = 5, group = 3;
+  Coordinates coordinates;
+  for (std::size_t i = 0; i < n; ++i) coordinates.insert(coordinates.end(), {0.5 * i, -1.0 * i});
+  const auto input = testing::upload(runtime, coordinates);
+  const std::vector<cl_int> offsets{0, 2, 2, 5};
+  const auto set_offsets = testing::upload(runtime, offsets);
+  const auto sets = testing::upload(
+      runtime, std::vector<kernel::set_of_blocks>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  const auto nodes = testing::guarded<kernel::cut_node>(runtime, 1);
+  const auto found = testing::guarded<cl_int>(runtime, n);
+  const auto representatives = testing::guarded<cl_int>(runtime, n);
+  const auto table = testing::guarded<cl_uint>(runtime, 2 * tiles);
+  runtime.launch(groups * group, group, n,
+                 kernels::count_tile_blocks{.size = size,
+                                            .set_count = offsets.size(),
+                                            .set_offsets = set_offsets,
+                                            .sets = sets,
+                                            .input = input,
+                                            .nodes = nodes,
+                                            .bits = 1,
+                                            .block_of_point = found,
+                                            .representatives = representatives,
+                                            .table = table});
+  EXPECT_EQ(testing::download(runtime, found, n), (std::vector<cl_int>{0, 0, 2, 2, 2, 3, 3}));
+  EXPECT_EQ(testing::download(runtime, representatives, n), (std::vector<cl_int>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(testing::download(runtime, table, 2 * tiles), (std::vector<cl_uint>{4, 1, 0, 2}));
+  // By the higher digit, from blocks in another order.
+  const std::vector<cl_int> blocks{2, 0, 2, 0, 2, 3, 3}, indices{6, 5, 4, 3, 2, 1, 0};
+  const auto keys = testing::upload(runtime, blocks);
+  runtime.launch(groups * group, group, n,
+                 kernels::count_digits{.size = size, .shift = 1, .bits = 1, .blocks = keys, .table = table});
+  EXPECT_EQ(testing::download(runtime, table, 2 * tiles), (std::vector<cl_uint>{2, 0, 2, 3}));
+  const auto scanned = testing::upload(runtime, std::vector<cl_uint>{0, 2, 2, 4});
+  const auto moved = testing::guarded<cl_int>(runtime, n), source = testing::guarded<cl_int>(runtime, n);
+  const auto points = testing::guarded<cl_double2>(runtime, n);
+  runtime.launch(groups * group, group, n,
+                 kernels::move_tiles{.size = size,
+                                     .shift = 1,
+                                     .bits = 1,
+                                     .is_first = false,
+                                     .blocks = keys,
+                                     .indices = testing::upload(runtime, indices),
+                                     .scanned = scanned,
+                                     .input = input,
+                                     .scale = kernel::scaling{2, 1, 1},
+                                     .moved_blocks = moved,
+                                     .points = points,
+                                     .source = source});
+  EXPECT_EQ(testing::download(runtime, moved, n), (std::vector<cl_int>{0, 0, 2, 2, 2, 3, 3}));
+  const std::vector<cl_int> order{5, 3, 6, 4, 2, 1, 0};
+  EXPECT_EQ(testing::download(runtime, source, n), order);
+  const auto scaled = testing::download(runtime, points, n);
+  for (std::size_t k = 0; k < n; ++k) {
+    EXPECT_EQ(scaled[k].s[0], order[k]);
+    EXPECT_EQ(scaled[k].s[1], -2 * order[k]);
+  }
 }
 
 }  // namespace
