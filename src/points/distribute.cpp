@@ -121,6 +121,7 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
   Arena::Scope scope(scratch);
   const auto chunks = runtime.upload(scratch, plan.chunks);
   const auto chunk_first = runtime.upload(scratch, plan.chunk_first);
+  const std::size_t chunk = tuning_of(runtime).chunk(blocks.points);
   const bool has_trees = plan.counts > 0;
   const auto block_of_point = scratch.allocate<cl_int>(has_trees ? blocks.points : 0);
   const auto cursors = scratch.allocate<cl_int>(plan.cursors);
@@ -128,6 +129,7 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
   const std::size_t group = runtime.sizes().chunk_group;
   const auto chunk_count = static_cast<cl_int>(plan.chunks.size());
   if (has_trees) {
+    runtime.note_elements(chunk);
     runtime.launch(plan.chunks.size(), group, chunk_count,
                    kernels::count_blocks{.chunks = chunks,
                                          .input = input.coordinates,
@@ -138,6 +140,7 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
     host::exclusive_scan(runtime, counts, plan.counts, counts);
   }
   const kernel::scaling scale = input.scaling.powers();
+  runtime.note_elements(chunk);
   runtime.launch(plan.chunks.size(), group, chunk_count,
                  kernels::move_points{.chunks = chunks,
                                       .set_first = chunk_first,
