@@ -22,6 +22,7 @@ void add_embedding(CLI::App& app, Action& action);
 void add_threads(CLI::App& app, Action& action);
 void add_processes(CLI::App& app, Action& action);
 void add_launches(CLI::App& app, Action& action);
+void add_device(CLI::App& app, Action& action);
 void add_primitives(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
 
@@ -40,7 +41,7 @@ int run(int argc, char** argv) {
   Action action;
   for (const auto add :
        {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_batches, add_embedding,
-        add_threads, add_processes, add_launches, add_primitives, add_paper}) {
+        add_threads, add_processes, add_launches, add_device, add_primitives, add_paper}) {
     add(app, action);
   }
   try {
