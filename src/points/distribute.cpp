@@ -21,6 +21,7 @@ struct Plan {
   std::size_t nodes = 0;
   std::size_t cursors = 0;
   std::size_t counts = 0;
+  std::size_t largest_chunk = 0;
 };
 
 int depth_for(std::size_t n, std::size_t block_points) {
@@ -48,6 +49,7 @@ void add_chunks(std::size_t first, std::size_t last, int depth, std::size_t size
   const std::size_t blocks = std::size_t{1} << depth;
   // So that there are not more counts than points.
   size = std::max(size, blocks);
+  plan.largest_chunk = std::max(plan.largest_chunk, std::min(size, last - first));
   const std::size_t chunks = (last - first + size - 1) / size;
   for (std::size_t k = 0; k < chunks; ++k) {
     const std::size_t begin = first + k * size;
@@ -74,8 +76,11 @@ void add_block(std::size_t first, std::size_t last, std::size_t size, Plan& plan
   if (!plan.chunks.empty() && plan.chunks.back().depth == 0 &&
       last - static_cast<std::size_t>(plan.chunks.back().first) <= size) {
     plan.chunks.back().last = static_cast<cl_int>(last);
+    plan.largest_chunk =
+        std::max(plan.largest_chunk, last - static_cast<std::size_t>(plan.chunks.back().first));
     return;
   }
+  plan.largest_chunk = std::max(plan.largest_chunk, last - first);
   plan.chunks.push_back({static_cast<cl_int>(first), static_cast<cl_int>(last), 0, 0, 0, 0, 0, 0});
   plan.chunk_first.push_back(static_cast<cl_int>(first));
 }
@@ -121,7 +126,6 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
   Arena::Scope scope(scratch);
   const auto chunks = runtime.upload(scratch, plan.chunks);
   const auto chunk_first = runtime.upload(scratch, plan.chunk_first);
-  const std::size_t chunk = tuning_of(runtime).chunk(blocks.points);
   const bool has_trees = plan.counts > 0;
   const auto block_of_point = scratch.allocate<cl_int>(has_trees ? blocks.points : 0);
   const auto cursors = scratch.allocate<cl_int>(plan.cursors);
@@ -129,7 +133,7 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
   const std::size_t group = runtime.sizes().chunk_group;
   const auto chunk_count = static_cast<cl_int>(plan.chunks.size());
   if (has_trees) {
-    runtime.note_elements(chunk);
+    runtime.note_elements(plan.largest_chunk);
     runtime.launch(plan.chunks.size(), group, chunk_count,
                    kernels::count_blocks{.chunks = chunks,
                                          .input = input.coordinates,
@@ -140,7 +144,7 @@ void move_to_blocks(Workspace& work, const Plan& plan, const UniformPoints& inpu
     host::exclusive_scan(runtime, counts, plan.counts, counts);
   }
   const kernel::scaling scale = input.scaling.powers();
-  runtime.note_elements(chunk);
+  runtime.note_elements(plan.largest_chunk);
   runtime.launch(plan.chunks.size(), group, chunk_count,
                  kernels::move_points{.chunks = chunks,
                                       .set_first = chunk_first,
