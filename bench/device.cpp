@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "calls.hpp"
 #include "command.hpp"
 #include "host/runtime.hpp"
 #include "launchers/call/probe.cl.hpp"
@@ -155,10 +156,11 @@ class Probes {
 };
 
 Result measure_all(const Request& request) {
-  const auto device = host::find_device(request.device);
+  const std::string name = opencl_device(request.device);
+  const auto device = host::find_device(name);
   Runtime runtime(device, tuning_for(device));
   const Probes probes(runtime, request);
-  Result result{Triangulator(request.device).device()};
+  Result result{Triangulator(name).device()};
   result.facts["compute_units"] = result.device.compute_units;
   result.facts["clock_mhz"] = result.device.clock_mhz;
   result.tables["results"] = Json::array();

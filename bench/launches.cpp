@@ -171,7 +171,7 @@ Result measure_launches(const Request& request) {
   constexpr int kReplace = 1;
   if (!request.tuning.empty()) setenv("FLAUNAY_TUNING", request.tuning.c_str(), kReplace);
   const std::vector<Input> inputs = make_inputs(request.distributions, request.sizes);
-  Triangulator triangulator(request.device);
+  Triangulator triangulator(opencl_device(request.device));
   Result result{triangulator.device()};
   const char* const tuning = std::getenv("FLAUNAY_TUNING");
   result.facts["tuning"] = tuning == nullptr ? "" : tuning;
@@ -193,8 +193,6 @@ Result measure_launches(const Request& request) {
 
 void add_launches(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
-  // Kernels that run natively do not count.
-  request->device = "#0";
   CLI::App* command = add_command(
       app, action, "launches", "what a call launches: work-items, longest chains of steps, waits and bytes",
       fmt::format(
@@ -206,7 +204,9 @@ void add_launches(CLI::App& app, Action& action) {
           "another kernel goes through. merge_chain is the sum of the longest chains of merges, one launch "
           "after the other: from the leaves to the result, and from solved blocks. Launches of at least "
           "work_items_of_most_work work-items do {:g} % of the work, by time and busy cores. Times are those "
-          "of calls that do not count, the least of each launch.",
+          "of calls that do not count, the least of each launch. Kernels count on OpenCL devices only, so "
+          "--device "
+          "host is refused.",
           100 * kMostWork),
       request, measure_launches);
   add_sizes_option(command, request->sizes);

@@ -27,7 +27,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 MACHINES = os.path.join(FOLDER, "machines")
 # Of a kernel that the static table lacks.
 REGISTERS = 64
-# Kernels whose work-items have a chunk of elements each, so that a warp's accesses are far apart.
+# With so many elements a work-item has a chunk of its own, so that a warp's accesses are far apart.
 LEAST_ELEMENTS_OF_CHUNKS = 2
 
 
@@ -160,8 +160,13 @@ def predict_call(model, summary, launches):
                   "points_per_second": summary["n"] / on_device}
 
 
+def launches_of(record, summary):
+    return [launch for launch in record["launches"]
+            if all(launch[key] == summary[key] for key in ("mode", "distribution", "n"))]
+
+
 def registers_of(path, architecture):
-    if not path or not architecture:
+    if not os.path.exists(path) or not architecture:
         return {}
     return {row["kernel"]: row["registers"] for row in load(path)["results"] if row["architecture"] == architecture}
 
@@ -207,12 +212,9 @@ def predictions(arguments, names):
             machine = with_device_record(machine, load(arguments.device_record))
         if arguments.cores:
             machine["cores"] = arguments.cores
-        static = arguments.static if os.path.exists(arguments.static) else None
-        model = Model(machine, registers_of(static, machine["architecture"]))
+        model = Model(machine, registers_of(arguments.static, machine["architecture"]))
         for summary in record["results"]:
-            launches = [launch for launch in record["launches"]
-                        if all(launch[key] == summary[key] for key in ("mode", "distribution", "n"))]
-            rows, totals = predict_call(model, summary, launches)
+            rows, totals = predict_call(model, summary, launches_of(record, summary))
             print_call(machine, summary, rows, totals, arguments.measured)
             yield {"machine": name, "cores": machine["cores"], "mode": summary["mode"],
                    "distribution": summary["distribution"], "n": summary["n"], **totals, "kernels": rows}
