@@ -14,7 +14,7 @@ It is a model, not a measurement. A launch takes the longest of
 
 and the cost of a launch. A step on one lane takes its instructions, its mispredicted branches, and its loads that
 wait for each other; where work-items of a warp go different ways, their paths come one after the other. Waits of the
-host and transfers are added. bench/machines/ has the machines, with a source for each value, and bench/kernels.json
+host and transfers are added, but not what the host computes itself. bench/machines/ has the machines, with a source for each value, and bench/kernels.json
 what a step of each kernel is made of. docs/performance.md shows predictions beside measurements.
 """
 import argparse
@@ -81,6 +81,15 @@ def with_device_record(machine, record):
         found["transfer_bytes_per_second"] = measured["bytes to the device"]
         found["clock_hz"] = 1e6 * record.get("clock_mhz", 0)
     return dict(machine, **{key: value for key, value in found.items() if value})
+
+
+def with_cores(machine, cores):
+    """The machine with some of its cores; bandwidth is shared by all, up to what one core can use."""
+    share = cores / machine["cores"]
+    bandwidth = machine["bytes_per_second"]
+    if "bytes_per_second_of_a_core" in machine:
+        bandwidth = min(bandwidth, cores * machine["bytes_per_second_of_a_core"])
+    return dict(machine, cores=cores, fp64_per_second=share * machine["fp64_per_second"], bytes_per_second=bandwidth)
 
 
 class Model:
@@ -211,7 +220,7 @@ def predictions(arguments, names):
         if arguments.device_record:
             machine = with_device_record(machine, load(arguments.device_record))
         if arguments.cores:
-            machine["cores"] = arguments.cores
+            machine = with_cores(machine, arguments.cores)
         model = Model(machine, registers_of(arguments.static, machine["architecture"]))
         for summary in record["results"]:
             rows, totals = predict_call(model, summary, launches_of(record, summary))

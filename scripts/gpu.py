@@ -285,7 +285,7 @@ class Session:
 
     def measure_device(self):
         """What predictions assume."""
-        self.bench("What predictions of times assume", "device")
+        self.bench("What predictions of times assume", "device", key="probed")
 
     def time_with(self, tuning):
         """Seconds of a call with these tuning values, and of its solver; None if it failed."""
@@ -316,15 +316,15 @@ class Session:
             print(f"{1e3 * row['seconds']:9.3f} ms, solve_blocks {1e3 * row['solve_seconds']:9.3f} ms   {row['tuning']}")
         if best:
             size = self.plan["tuned_size"]
-            print(f'{{"{self.record["device"].get("device")}", "{best["tuning"]}", "scripts/gpu.py at {size} points."}}')
+            print(f'{{"{self.record["probed"].get("device")}", "{best["tuning"]}", "scripts/gpu.py at {size} points."}}')
 
     def predict(self):
         """Predictions of the device's launches beside their times."""
         record = self.bench("Launches", "launches", "--sizes", self.plan["launch_sizes"], "--most-lines", 1)
-        if "error" in record or "error" in self.record["device"]:
+        if "error" in record or "error" in self.record["probed"]:
             return
         name = predict.machine_for(record["device"], "gpu" if self.device_is_gpu() else "cpu")
-        machine = predict.with_device_record(predict.read_machine(name), self.record["device"])
+        machine = predict.with_device_record(predict.read_machine(name), self.record["probed"])
         machine["name"] = f"{record['device']} (as {name}, with what was measured here)"
         static = os.path.join(SOURCE, "bench", "results", "static.json")
         model = predict.Model(machine, predict.registers_of(static, machine["architecture"]))
@@ -339,7 +339,7 @@ class Session:
 
     def device_is_gpu(self):
         listed = self.flaunay("devices", stdout=subprocess.PIPE, text=True).stdout
-        return any(" GPU " in line for line in listed.splitlines() if self.record["device"]["device"] in line)
+        return any(" GPU " in line for line in listed.splitlines() if self.record["probed"]["device"] in line)
 
     def measure(self):
         chosen = ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
@@ -385,7 +385,7 @@ class Session:
 
 
 def write_record(session, command_line, arguments):
-    of_bench = next((part for part in map(session.record.get, ("peers", "modes", "device")) if "device" in part), {})
+    of_bench = next((part for part in map(session.record.get, ("peers", "modes", "probed")) if "device" in part), {})
     record = {key: of_bench.get(key) for key in ("device", "driver", "platform", "host", "commit", "date")}
     record["command"] = f"scripts/gpu.py {' '.join(command_line)}"
     record["tuning"] = os.environ.get("FLAUNAY_TUNING", "")
