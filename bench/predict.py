@@ -14,8 +14,9 @@ It is a model, not a measurement. A launch takes the longest of
 
 and the cost of a launch. A step on one lane takes its instructions, its mispredicted branches, and its loads that
 wait for each other; where work-items of a warp go different ways, their paths come one after the other. Waits of the
-host and transfers are added, but not what the host computes itself. bench/machines/ has the machines, with a source for each value, and bench/kernels.json
-what a step of each kernel is made of. docs/performance.md shows predictions beside measurements.
+host and transfers are added, but not what the host computes itself. bench/machines/ has the machines, with a source for
+each value, and bench/kernels.json what a step of each kernel is made of. docs/performance.md shows predictions beside
+measurements.
 """
 import argparse
 import glob

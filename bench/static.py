@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Compiles kernels for GPUs that this machine need not have, and prints what each kernel uses of them: registers, stack,
-spills and local memory, by architecture.
+"""Compiles kernels for GPUs that this machine need not have, and prints what each kernel uses of them: registers,
+stack, spills and local memory, by architecture.
 
     bench/static.py                                    all kernel files, all architectures
     bench/static.py blocks/divide.cl --arch sm_90      some
@@ -200,7 +200,8 @@ def print_table(rows):
 
 def main(command_line):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", metavar="FILE", nargs="*", help="below kernels/, such as blocks/divide.cl; by default all")
+    parser.add_argument("files", metavar="FILE", nargs="*",
+                        help="below kernels/, such as blocks/divide.cl; by default all")
     parser.add_argument("--arch", metavar="NAME", action="append", default=[],
                         help=f"sm_... or gfx...; by default {', '.join(ARCHITECTURES)}")
     parser.add_argument("--json", metavar="FILE", help="write a record here")

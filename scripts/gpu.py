@@ -28,7 +28,8 @@ TUNED = {"block_group": [1, 4, 32], "block_points": [512, 1024, 2048], "map_grou
 # What is less than this share faster may be noise.
 WORTH_A_CHANGE = 0.02
 FULL = {"peer_size": 10000000, "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000, "runs": 5,
-        "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*", "tests": None, "flags": []}
+        "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*",
+        "tests": None, "flags": []}
 QUICK = {"peer_size": 20000, "mode_sizes": "1024,4096", "verify_size": 5000, "runs": 1,
          "launch_sizes": "20000", "tuned_size": 20000, "tuned": {"block_group": [1, 32]}, "filter": "Small*",
          "tests": ["test_host", "test_embedding", "test_triangulation"], "flags": ["--quick"]}
@@ -313,10 +314,11 @@ class Session:
         self.record["tuning_tried"], self.record["tuning_best"] = rows, best
         say("Tuning values, and a row for kNamedDevices in src/tuning/tuning.cpp")
         for row in rows:
-            print(f"{1e3 * row['seconds']:9.3f} ms, solve_blocks {1e3 * row['solve_seconds']:9.3f} ms   {row['tuning']}")
+            times = [f"{1e3 * row[key]:9.3f} ms" for key in ("seconds", "solve_seconds")]
+            print(f"{times[0]}, solve_blocks {times[1]}   {row['tuning']}")
         if best:
-            size = self.plan["tuned_size"]
-            print(f'{{"{self.record["probed"].get("device")}", "{best["tuning"]}", "scripts/gpu.py at {size} points."}}')
+            device, size = self.record["probed"].get("device"), self.plan["tuned_size"]
+            print(f'{{"{device}", "{best["tuning"]}", "scripts/gpu.py at {size} points."}},')
 
     def predict(self):
         """Predictions of the device's launches beside their times."""

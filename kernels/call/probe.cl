@@ -1,5 +1,6 @@
-// What a device takes for the least that kernels do, for predictions of times (flaunay-bench device): to begin a launch,
-// to wait for a load that needs the one before, and to compute with a result that was just computed. One pass each.
+// What a device takes for the least that kernels do, for predictions of times (flaunay-bench device): to begin a
+// launch, to wait for a load that needs the one before, and to compute with a result that was just computed. One pass
+// each.
 
 #include "shared/language.h"
 
