@@ -175,6 +175,7 @@ Result measure_launches(const Request& request) {
   Result result{triangulator.device()};
   const char* const tuning = std::getenv("FLAUNAY_TUNING");
   result.facts["tuning"] = tuning == nullptr ? "" : tuning;
+  result.facts["device_type"] = result.device.type;
   result.facts["compute_units"] = result.device.compute_units;
   for (const char* table : {"results", "kernels", "launches"}) result.tables[table] = Json::array();
   for (const std::string& mode : request.modes) {

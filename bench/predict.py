@@ -57,12 +57,12 @@ def read_machine(name):
     return {key: value["value"] if isinstance(value, dict) else value for key, value in load(path).items()}
 
 
-def machine_for(device, kind):
-    """The machine whose file names the device, or else one of its kind: `kind` is gpu or cpu."""
+def machine_of(record):
+    """The machine whose file names the record's device, or else one of its type."""
     for name in machine_names():
-        if any(part in device for part in read_machine(name)["matches"]):
+        if any(part in record["device"] for part in read_machine(name)["matches"]):
             return name
-    return "rtx-4090" if kind == "gpu" else "cpu-64-cores"
+    return "cpu-64-cores" if record.get("device_type") == "CPU" else "rtx-4090"
 
 
 def with_device_record(machine, record):
@@ -234,8 +234,7 @@ def main(command_line):
     arguments = arguments_of(command_line)
     names = arguments.machine
     if arguments.for_device:
-        record = load(arguments.launches)
-        names = [*names, machine_for(record["device"], "gpu" if record.get("tuning") == "gpu" else "cpu")]
+        names = [*names, machine_of(load(arguments.launches))]
     if not names:
         fail("--machine names a machine, or --for-device takes the record's")
     results = list(predictions(arguments, names))

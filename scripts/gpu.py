@@ -325,7 +325,7 @@ class Session:
         record = self.bench("Launches", "launches", "--sizes", self.plan["launch_sizes"], "--most-lines", 1)
         if "error" in record or "error" in self.record["probed"]:
             return
-        name = predict.machine_for(record["device"], "gpu" if self.device_is_gpu() else "cpu")
+        name = predict.machine_of(record)
         machine = predict.with_device_record(predict.read_machine(name), self.record["probed"])
         machine["name"] = f"{record['device']} (as {name}, with what was measured here)"
         static = os.path.join(SOURCE, "bench", "results", "static.json")
@@ -338,10 +338,6 @@ class Session:
             self.record["predictions"]["results"].append(
                 {"mode": summary["mode"], "distribution": summary["distribution"], "n": summary["n"], **totals,
                  "measured_seconds": summary["seconds_median"], "kernels": rows})
-
-    def device_is_gpu(self):
-        listed = self.flaunay("devices", stdout=subprocess.PIPE, text=True).stdout
-        return any(" GPU " in line for line in listed.splitlines() if self.record["probed"]["device"] in line)
 
     def measure(self):
         chosen = ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]

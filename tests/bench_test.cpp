@@ -530,6 +530,8 @@ TEST_F(PredictionTest, OfEveryMachine) {
     ++machines;
   }
   EXPECT_EQ(machines, 6u);
+  // The machine file of the device, or of its type.
+  EXPECT_EQ(predicted(record, "--for-device")["results"].size(), 1u);
   // One core takes longer than many.
   const auto one = predicted(record, "--machine cpu-64-cores --cores 1"),
              all = predicted(record, "--machine cpu-64-cores");
