@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 namespace flaunay::bench {
 namespace {
 
@@ -41,6 +43,12 @@ Hull hull_named(const std::string& name) {
     if (name == research::to_string(hull)) return hull;
   }
   throw Error(ErrorKind::usage, fmt::format("no hull is called '{}'", name));
+}
+
+std::string opencl_device(const std::string& given) {
+  const char* const named = std::getenv("FLAUNAY_DEVICE");
+  if (!given.empty() || (named != nullptr && *named != '\0')) return given;
+  return Triangulator().device().platform == "without OpenCL" ? "#0" : given;
 }
 
 research::Options options_of(const std::string& mode, const std::string& hull) {

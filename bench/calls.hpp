@@ -20,6 +20,10 @@ const std::vector<std::string>& hull_names();
 const research::ModeInfo& mode_named(const std::string& name);
 research::Hull hull_named(const std::string& name);
 
+/// The device that is meant where kernels must run on OpenCL: the given one or the triangulator's own choice,
+/// but instead of the host itself the first that OpenCL offers.
+std::string opencl_device(const std::string& given);
+
 research::Options options_of(const std::string& mode, const std::string& hull = "prune");
 
 /// One call on all sets of the input.

@@ -115,7 +115,7 @@ int measure_and_record(const std::string& subcommand, const std::string& command
   Result result = measure();
   round_numbers(result.tables);
   for (const auto& [title, rows] : result.tables.items()) {
-    if (!rows.empty()) print_table(title, rows);
+    if (!rows.empty() && result.not_printed.count(title) == 0) print_table(title, rows);
   }
   if (!measurement.json_path.empty()) {
     Json record{{"subcommand", subcommand},
@@ -128,6 +128,7 @@ int measure_and_record(const std::string& subcommand, const std::string& command
                 {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
                 {"runs", measurement.runs},
                 {"agree", result.agree}};
+    record.update(result.facts);
     record.update(result.tables);
     io::Outputs outputs;
     outputs.open(measurement.json_path).print("{}", text_of(record));

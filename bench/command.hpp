@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,9 @@ struct Result {
   DeviceInfo device;
   /// Tables: each key has a list of rows, and each row is an object. Numbers are rounded when it is written.
   Json tables = Json::object();
-  bool agree = true;  ///< whether all implementations agree; if not, the exit code is 1
+  std::set<std::string> not_printed = {};  ///< tables that only the record has
+  Json facts = Json::object();             ///< more about all of the record
+  bool agree = true;                       ///< whether all implementations agree; if not, the exit code is 1
 };
 
 /// The work of the chosen subcommand, given the command line as the record shows it; returns the exit code.

@@ -21,6 +21,8 @@ void add_batches(CLI::App& app, Action& action);
 void add_embedding(CLI::App& app, Action& action);
 void add_threads(CLI::App& app, Action& action);
 void add_processes(CLI::App& app, Action& action);
+void add_launches(CLI::App& app, Action& action);
+void add_device(CLI::App& app, Action& action);
 void add_primitives(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
 
@@ -37,8 +39,9 @@ int run(int argc, char** argv) {
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
-  for (const auto add : {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_batches,
-                         add_embedding, add_threads, add_processes, add_primitives, add_paper}) {
+  for (const auto add :
+       {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_batches, add_embedding,
+        add_threads, add_processes, add_launches, add_device, add_primitives, add_paper}) {
     add(app, action);
   }
   try {

@@ -18,6 +18,7 @@
 #include "host/program_cache.hpp"
 #include "host/system_memory.hpp"
 #include "kernels/embedded.hpp"
+#include "shared/counting.h"
 
 namespace flaunay::host {
 namespace {
@@ -88,7 +89,7 @@ Runtime::Runtime(std::shared_ptr<const Sizes> sizes)
 Runtime::~Runtime() {
   settle();
   if (on_pocl_ && !programs_[0].empty()) note_pocl_ended_well();
-  for (const auto& [event, name] : events_) clReleaseEvent(event);
+  for (const TimedLaunch& timed : events_) clReleaseEvent(timed.event);
 }
 
 std::string Runtime::name() const { return is_native() ? "host" : device_.name(); }
@@ -163,6 +164,46 @@ void Runtime::set_sizes(std::shared_ptr<const Sizes> sizes) {
 void Runtime::set_counters(const Buffer<cl_uint>& counters) {
   counters_ = counters;
   counting_ = counters.memory() != nullptr;
+}
+
+void Runtime::record_launches(bool with_steps) {
+  // Pending events refer to launches of another log, if any.
+  collect_times();
+  log_ = std::make_unique<LaunchLog>(memory(), with_steps && !is_native());
+  if (!log_->counts_steps()) return;
+  set_counters(log_->counters());
+  const cl_uint zero = 0;
+  FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), counters_.memory(), &zero, sizeof zero, 0,
+                                 counters_.size() * sizeof zero, 0, nullptr, nullptr));
+  keep_order();
+}
+
+void Runtime::stop_recording() {
+  if (log_ == nullptr) return;
+  // The device may still write counters to the log.
+  settle();
+  if (log_->counts_steps()) set_counters({});
+  log_ = nullptr;
+}
+
+std::vector<Launch> Runtime::recorded_launches() {
+  if (log_ == nullptr) return {};
+  collect_times();
+  settle();
+  return log_->launches();
+}
+
+// Reads what the last launch has counted and sets it to 0; these are no commands of the call.
+void Runtime::record_steps() {
+  constexpr std::size_t kOffset = kernel::COUNTER_STEPS * sizeof(cl_uint),
+                        kBytes = kernel::STEP_COUNTERS * sizeof(cl_uint);
+  const cl_uint zero = 0;
+  FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), counters_.memory(), CL_FALSE, kOffset, kBytes,
+                                 log_->steps_of_last(), 0, nullptr, nullptr));
+  keep_order();
+  FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), counters_.memory(), &zero, sizeof zero, kOffset, kBytes, 0,
+                                 nullptr, nullptr));
+  keep_order();
 }
 
 // What a copy of a compiled program needs at most, the driver's own work included.
@@ -302,9 +343,11 @@ void Runtime::run_natively(Kernel& kernel, std::size_t work_items, std::size_t g
                     kernel.native({first, last, work_items}, arguments.data());
                   });
   if (!profiling_) return;
+  const double seconds = now() - begin;
   KernelTime& time = times_[kernel.name];
   ++time.launches;
-  time.seconds += now() - begin;
+  time.seconds += seconds;
+  if (log_ != nullptr) log_->set_seconds(log_->last(), seconds);
 }
 
 void Runtime::touch_new(void* begin, std::size_t bytes) {
@@ -323,6 +366,8 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
   if (!is_native() && !kernel.requires_group)
     group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
   ++launches_;
+  const std::size_t elements = std::exchange(elements_, 1);
+  if (log_ != nullptr) log_->add({kernel.name, work_items, group, elements});
   if (is_native()) return run_natively(kernel, work_items, group);
   cl_event event = nullptr;
   for (;;) {
@@ -339,7 +384,7 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
     group /= 2;
     kernel.largest_group = group;
   }
-  if (profiling_) events_.emplace_back(event, &kernel.name);
+  if (profiling_) events_.push_back({event, &kernel.name, log_ != nullptr ? log_->last() : 0});
   keep_order();
   if (profiling_ && events_.size() >= 4096) collect_times();
 }
@@ -382,6 +427,7 @@ void Runtime::enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes
     return;
   }
   ++launches_;
+  if (log_ != nullptr) log_->add({"fill", 0, 0, 0, bytes});
   FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to, value, value_bytes, 0, bytes, 0, nullptr, nullptr));
   keep_order();
 }
@@ -393,6 +439,7 @@ void Runtime::enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std:
     return;
   }
   ++launches_;
+  if (log_ != nullptr) log_->add({"copy", 0, 0, 0, bytes});
   FLAUNAY_CL(clEnqueueCopyBuffer(queue_.get(), from, to, from_offset, to_offset, bytes, 0, nullptr, nullptr));
   keep_order();
 }
@@ -438,7 +485,7 @@ void Runtime::collect_times() {
   if (events_.empty()) return;
   FLAUNAY_CL(clFinish(queue_.get()));
   const auto events = std::exchange(events_, {});
-  for (const auto& [event, name] : events) {
+  for (const auto& [event, name, launch] : events) {
     cl_ulong begin = 0, end = 0;
     const cl_int code =
         clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr) |
@@ -447,7 +494,9 @@ void Runtime::collect_times() {
     if (code != CL_SUCCESS) continue;  // the kernel failed, which other calls report
     KernelTime& time = times_[*name];
     ++time.launches;
-    time.seconds += 1e-9 * static_cast<double>(end - begin);
+    const double seconds = 1e-9 * static_cast<double>(end - begin);
+    time.seconds += seconds;
+    if (log_ != nullptr) log_->set_seconds(launch, seconds);
   }
 }
 
@@ -467,6 +516,10 @@ void Runtime::reset_accounts() {
   bytes_to_host_ = 0;
   build_seconds_ = 0;
   arena_.reset_peak();
+  if (log_ != nullptr) {
+    settle();
+    log_->clear();
+  }
 }
 
 }  // namespace flaunay::host

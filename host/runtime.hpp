@@ -3,6 +3,7 @@
 // (host/native).
 #pragma once
 
+#include <algorithm>
 #include <boost/compute/command_queue.hpp>
 #include <boost/compute/context.hpp>
 #include <boost/compute/device.hpp>
@@ -20,6 +21,7 @@
 #include "host/arena.hpp"
 #include "host/error.hpp"
 #include "host/kernel_arguments.hpp"
+#include "host/launch_log.hpp"
 #include "host/native/threads.hpp"
 #include "host/sizes.hpp"
 
@@ -95,6 +97,7 @@ class Runtime {
   void chunks(std::size_t n, std::size_t chunk, const Kernel& kernel) {
     static_assert(Kernel::form == Form::PerChunk);
     if (n == 0) return;
+    note_elements(std::min(n, chunk));
     launch_with((n + chunk - 1) / chunk, sizes_->chunk_group, kernel, Value<cl_int>(n), Value<cl_int>(chunk));
   }
 
@@ -109,6 +112,7 @@ class Runtime {
   template <typename Kernel>
   void launch(std::size_t work_items, std::size_t group, std::size_t n, const Kernel& kernel) {
     static_assert(Kernel::form == Form::PerElement);
+    if (n > work_items) note_elements((n + work_items - 1) / work_items);
     launch_with(work_items, group, kernel, Value<cl_int>(n));
   }
 
@@ -118,6 +122,7 @@ class Runtime {
                   const In<cl_int>& candidate, const Out<cl_int>& partial_segment,
                   const Out<cl_int>& partial_candidate, const Kernel& kernel) {
     static_assert(Kernel::form == Form::ArgReduce);
+    note_elements(std::min(n, chunk));
     launch_with((n + chunk - 1) / chunk, sizes_->chunk_group, kernel, Value<cl_int>(n), Value<cl_int>(chunk),
                 Value<cl_int>(is_first_pass), segment, candidate, partial_segment, partial_candidate,
                 kernel.result);
@@ -269,6 +274,15 @@ class Runtime {
     Runtime& runtime_;
   };
 
+  /// Records later launches. with_steps: kernels count their steps, in a build that is slower; not while they
+  /// count otherwise (set_counters).
+  void record_launches(bool with_steps);
+  void stop_recording();
+  /// The launches since the last reset, empty if they are not recorded. Waits, which is not counted.
+  std::vector<Launch> recorded_launches();
+  /// For the record: how many elements each work-item of the next launch goes through, at most.
+  void note_elements(std::size_t elements) { elements_ = elements; }
+
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
   /// counters as their last argument; see kernels/shared/counting.h. An empty buffer ends this.
   void set_counters(const Buffer<cl_uint>& counters);
@@ -311,8 +325,10 @@ class Runtime {
   }
   /// arguments: the number of arguments that are set. If the kernel has one more, that is the counters.
   void finish_launch(Kernel& kernel, cl_uint arguments, std::size_t work_items, std::size_t group) {
-    if (counting_ && arguments < kernel.arguments) set_argument(kernel, arguments, counters_);
+    const bool counts = counting_ && arguments < kernel.arguments;
+    if (counts) set_argument(kernel, arguments, counters_);
     enqueue(kernel, work_items, group);
+    if (counts && log_ != nullptr) record_steps();
   }
   template <typename T>
   void set_bytes(Kernel& kernel, cl_uint index, const T& value) {
@@ -356,6 +372,7 @@ class Runtime {
   std::string binary_of(const boost::compute::program& program) const;
   Kernel make_kernel(const KernelName& name);
   void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
+  void record_steps();
   void run_natively(Kernel& kernel, std::size_t work_items, std::size_t group);
   void enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait);
   std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access);
@@ -385,7 +402,12 @@ class Runtime {
   Buffer<cl_uint> counters_{};
   bool counting_ = false;
   std::function<void()> before_compiling_;
-  std::vector<std::pair<cl_event, const std::string*>> events_;
+  struct TimedLaunch {
+    cl_event event;
+    const std::string* kernel;
+    std::size_t launch;  // in the log, if there is one
+  };
+  std::vector<TimedLaunch> events_;
   std::map<std::string, KernelTime> times_;
   std::size_t launches_ = 0;
   std::size_t waits_ = 0;
@@ -393,6 +415,8 @@ class Runtime {
   std::size_t bytes_to_host_ = 0;
   double build_seconds_ = 0;      // since the last reset
   double all_build_seconds_ = 0;  // never reset
+  std::unique_ptr<LaunchLog> log_;
+  std::size_t elements_ = 1;  // of the next launch
 };
 
 /// The text of kernels/<file>.cl with all included files inserted. It is read from the folder

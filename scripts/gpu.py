@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Tests and measures flaunay on a GPU, also CuPy if it is installed, and writes the results to
-bench/results/<device>.json. Needs neither root nor a network. See docs/performance.md, "On a GPU".
+bench/results/<device>.json. Before anything else it measures what predictions of times assume of a device; predictions
+stand beside the measurements at the end, and a row for the table of tuning values. Needs neither root nor a network.
+See docs/performance.md, "On a GPU".
 
 Exit code: 0, or 1 if a test failed, a result was wrong or a measurement ended with an error.
 """
@@ -19,12 +21,23 @@ import time
 # What is measured. The record contains these settings, too.
 MODES = "blocks,flattened,dwyer"
 DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
+# Values of src/tuning/tuning.cpp that are tried, one name after the other. With block_group=1 a warp has one lane that
+# solves a block or merges two, and nothing diverges.
+TUNED = {"block_group": [1, 4, 32], "block_points": [512, 1024, 2048], "map_group": [64, 128, 256],
+         "chunk_group": [32, 64, 128], "chunk_least": [16, 32, 64], "sort_items": [8, 16, 32]}
+# What is less than this share faster may be noise.
+WORTH_A_CHANGE = 0.02
 FULL = {"peer_size": 10000000, "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000, "runs": 5,
-        "filter": "*", "tests": None, "flags": []}
-QUICK = {"peer_size": 20000, "mode_sizes": "1024,4096", "verify_size": 5000, "runs": 1, "filter": "Small*",
+        "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*",
+        "tests": None, "flags": []}
+QUICK = {"peer_size": 20000, "mode_sizes": "1024,4096", "verify_size": 5000, "runs": 1,
+         "launch_sizes": "20000", "tuned_size": 20000, "tuned": {"block_group": [1, 32]}, "filter": "Small*",
          "tests": ["test_host", "test_embedding", "test_triangulation"], "flags": ["--quick"]}
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(SOURCE, "bench"))
+import predict  # pylint: disable=wrong-import-position
+
 # Every machine has its own version of these libraries, so they are not packed.
 C_LIBRARY = re.compile(r"/(libc|libm|libdl|librt|libpthread|ld-linux[^/]*)\.so")
 
@@ -255,18 +268,76 @@ class Session:
                 if not valid:
                     self.failures.append(f"verify {distribution} {mode}")
 
-    def bench(self, title, name, *arguments):
+    def bench(self, title, name, *arguments, key=None):
+        """Runs a subcommand of flaunay-bench, and returns its record. key: of the record in ours, if not the name."""
+        key = key or name
         say(title)
-        path = os.path.join(self.work, f"{name}.json")
+        path = os.path.join(self.work, f"{key}.json")
         result = self.run(os.path.join(self.folder, "flaunay-bench"), name, *arguments, "--runs", self.plan["runs"],
                           "--json", path)
         if result.returncode != 0:
-            self.failures.append(f"flaunay-bench {name}")
+            self.failures.append(f"flaunay-bench {key}")
         try:
             with open(path, encoding="utf-8") as file:
-                self.record[name] = json.load(file)
+                self.record[key] = json.load(file)
         except (OSError, ValueError):
-            self.record[name] = {"error": f"exit code {result.returncode}"}
+            self.record[key] = {"error": f"exit code {result.returncode}"}
+        return self.record[key]
+
+    def measure_device(self):
+        """What predictions assume."""
+        self.bench("What predictions of times assume", "device", key="probed")
+
+    def time_with(self, tuning):
+        """Seconds of a call with these tuning values, and of its solver; None if it failed."""
+        record = self.bench(f"Tuning {tuning}", "launches", "--sizes", self.plan["tuned_size"], "--distributions",
+                            "uniform", "--most-lines", 1, "--tuning", tuning, key=f"tuning {tuning}")
+        del self.record[f"tuning {tuning}"]
+        if "error" in record:
+            return None
+        solver = sum(row["seconds"] for row in record["kernels"] if row["kernel"] == "solve_blocks")
+        return {"tuning": tuning, "seconds": record["results"][0]["seconds_median"], "solve_seconds": solver}
+
+    def tune(self):
+        """Tries tuning values, each name with what was best of the names before."""
+        given = os.environ.get("FLAUNAY_TUNING", "")
+        best, rows = None, []
+        for name, values in self.plan["tuned"].items():
+            before = best["tuning"] if best else given
+            for value in values:
+                row = self.time_with(",".join(filter(None, [before, f"{name}={value}"])))
+                if row is None:
+                    continue
+                rows.append(row)
+                if best is None or row["seconds"] < (1 - WORTH_A_CHANGE) * best["seconds"]:
+                    best = row
+        self.record["tuning_tried"], self.record["tuning_best"] = rows, best
+        say("Tuning values, and a row for kNamedDevices in src/tuning/tuning.cpp")
+        for row in rows:
+            times = [f"{1e3 * row[key]:9.3f} ms" for key in ("seconds", "solve_seconds")]
+            print(f"{times[0]}, solve_blocks {times[1]}   {row['tuning']}")
+        if best:
+            device, size = self.record["probed"].get("device"), self.plan["tuned_size"]
+            print(f'{{"{device}", "{best["tuning"]}", "scripts/gpu.py at {size} points."}},')
+
+    def predict(self):
+        """Predictions of the device's launches beside their times."""
+        record = self.bench("Launches", "launches", "--sizes", self.plan["launch_sizes"], "--most-lines", 1)
+        if "error" in record or "error" in self.record["probed"]:
+            return
+        name = predict.machine_of(record)
+        machine = predict.with_device_record(predict.read_machine(name), self.record["probed"])
+        machine["name"] = f"{record['device']} (as {name}, with what was measured here)"
+        static = os.path.join(SOURCE, "bench", "results", "static.json")
+        model = predict.Model(machine, predict.registers_of(static, machine["architecture"]))
+        say("Predicted beside measured")
+        self.record["predictions"] = {"machine": name, "results": []}
+        for summary in record["results"]:
+            rows, totals = predict.predict_call(model, summary, predict.launches_of(record, summary))
+            predict.print_call(machine, summary, rows, totals, True)
+            self.record["predictions"]["results"].append(
+                {"mode": summary["mode"], "distribution": summary["distribution"], "n": summary["n"], **totals,
+                 "measured_seconds": summary["seconds_median"], "kernels": rows})
 
     def measure(self):
         chosen = ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
@@ -312,7 +383,7 @@ class Session:
 
 
 def write_record(session, command_line, arguments):
-    of_bench = next((part for part in map(session.record.get, ("peers", "modes")) if "device" in part), {})
+    of_bench = next((part for part in map(session.record.get, ("peers", "modes", "probed")) if "device" in part), {})
     record = {key: of_bench.get(key) for key in ("device", "driver", "platform", "host", "commit", "date")}
     record["command"] = f"scripts/gpu.py {' '.join(command_line)}"
     record["tuning"] = os.environ.get("FLAUNAY_TUNING", "")
@@ -355,10 +426,13 @@ def main(command_line):
         say("Devices")
         if session.flaunay("devices").returncode != 0:
             fail("no usable device; --icd names a driver")
+        session.measure_device()
         session.test()
         session.verify()
         session.measure()
         session.measure_cupy()
+        session.tune()
+        session.predict()
         write_record(session, command_line, arguments)
         if session.failures:
             print("\n".join(f"FAILED: {failure}" for failure in session.failures))

@@ -128,6 +128,9 @@ TEST_F(BenchTest, Usage) {
   EXPECT_EQ(run("embedding --sizes 0"), 2);
   EXPECT_EQ(run("threads --counts 0"), 2);
   EXPECT_EQ(run("targets --modes nothing"), 2);
+  EXPECT_EQ(run("launches --modes nothing"), 2);
+  EXPECT_EQ(run("launches --sizes 100 --device host"), 2);
+  EXPECT_EQ(run("device --steps 0"), 2);
   EXPECT_EQ(run("paper --smallest 9 --largest 8"), 2);
   EXPECT_EQ(run("paper --smallest 6 --largest 6 --json " + path("no/such/folder.json")), 3);
   EXPECT_EQ(run("modes --sizes 100 --json " + path("no/such/folder.json")), 3);
@@ -399,6 +402,165 @@ TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
     EXPECT_NEAR(speedup.value("goal", 0.0), 0.9 * speedup.value("to_threads", 0), 1e-9);
   }
   expect_drawn({"uniform, threads: 3", "flaunay-partition"});
+}
+
+// ---- Launches and predictions
+
+TEST_F(BenchTest, LaunchesAreThoseOfTheCall) {
+  const auto record = run_well("launches --sizes 20000 --distributions uniform,line --tuning gpu");
+  EXPECT_EQ(record.value("tuning", ""), "gpu");
+  ASSERT_EQ(record["results"].size(), 2u);
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"mode", "distribution", "n", "host_waits", "bytes_to_device", "bytes_to_host"});
+    expect_times(row);
+    int launches = 0, of_kernels = 0;
+    std::uint64_t chain = 0, longest = 0;
+    for (const auto& launch : record["launches"]) {
+      if (launch["distribution"] != row["distribution"]) continue;
+      EXPECT_EQ(launch.value("launch", -1), launches++);
+      const std::string kernel = launch.value("kernel", "");
+      if (kernel == "solve_blocks" || kernel == "merge_blocks") chain += launch.value("longest_chain", 0u);
+      longest = std::max({longest, launch.value("longest_chain", std::uint64_t{0}),
+                          launch.value("elements", std::uint64_t{0})});
+    }
+    for (const auto& kernel : record["kernels"]) {
+      if (kernel["distribution"] == row["distribution"]) of_kernels += kernel.value("launches", 0);
+    }
+    EXPECT_EQ(launches, row.value("kernel_launches", 0));
+    EXPECT_EQ(of_kernels, launches);
+    EXPECT_EQ(chain, row.value("merge_chain", 0u));
+    EXPECT_GT(row.value("merge_chain_above_blocks", 0u), 0u);
+    EXPECT_LT(row.value("merge_chain_above_blocks", 0u), chain);
+    EXPECT_EQ(longest, row.value("longest_chain", std::uint64_t{0}));
+    EXPECT_GT(row.value("work_items_of_most_work", 0), 0);
+  }
+}
+
+TEST_F(BenchTest, DevicesAreProbed) {
+  const auto record = run_well(
+      "device --steps 1000 --launches 5 --working-sets 4096,65536 --work-items 64 --copied-bytes 65536");
+  EXPECT_GT(record.value("compute_units", 0), 0);
+  std::map<std::string, double> medians;
+  for (const auto& row : record["results"]) medians[row.value("what", "")] = row.value("median", 0.0);
+  EXPECT_EQ(medians.size(), 9u);
+  for (const auto& [what, median] : medians) EXPECT_GT(median, 0) << what;
+  EXPECT_EQ(medians.count("load that waits for a load, of 64 KiB"), 1u);
+}
+
+class PredictionTest : public BenchTest {
+ protected:
+  std::string script(const std::string& name) const {
+    return (fs::path(flaunay::plot_program()).parent_path() / name).string();
+  }
+  /// Predictions for one machine, of a record in `path`.
+  nlohmann::json predicted(const std::string& record, const std::string& options) const {
+    const std::string json = path("predicted.json");
+    EXPECT_EQ(
+        run_command("python3 " + script("predict.py") + " " + record + " --json " + json + " " + options), 0)
+        << contents(path("err"));
+    return nlohmann::json::parse(contents(json), nullptr, false);
+  }
+};
+
+// By hand: what each launch takes by the model's definition and the machine's values.
+TEST_F(PredictionTest, FollowTheModel) {
+  const nlohmann::json call = {{"mode", "blocks"}, {"distribution", "uniform"}, {"n", 1000}};
+  nlohmann::json summary = call, fill = call, serial = call;
+  summary.update({{"kernel_launches", 2},
+                  {"host_waits", 3},
+                  {"bytes_to_device", 0},
+                  {"bytes_to_host", 5e7},
+                  {"seconds_median", 1.0}});
+  const auto add_launch = [](nlohmann::json& row, const char* kernel, std::size_t work_items,
+                             std::size_t elements, double bytes) {
+    row.update({{"kernel", kernel},
+                {"work_items", work_items},
+                {"group", 1},
+                {"elements", elements},
+                {"bytes", bytes},
+                {"longest_chain", 0},
+                {"steps", 0},
+                {"seconds", 0.5}});
+  };
+  add_launch(fill, "fill", 0, 0, 4.8e9);
+  add_launch(serial, "a kernel that nobody knows", 1, 1000000, 0);
+  std::ofstream(path("launches.json")) << nlohmann::json{
+      {"subcommand", "launches"}, {"device", "none"}, {"results", {summary}}, {"launches", {fill, serial}}};
+  const auto of = [&](const std::string& machine) {
+    return predicted(path("launches.json"), "--machine " + machine)["results"][0];
+  };
+  const auto h200 = of("h200"), cpu = of("cpu-64-cores");
+  const auto seconds_of = [](const nlohmann::json& result, const std::string& kernel) {
+    for (const auto& row : result["kernels"]) {
+      if (row["kernel"] == kernel) return row["predicted_seconds"].get<double>();
+    }
+    return 0.0;
+  };
+  // 4.8 TB/s.
+  EXPECT_NEAR(seconds_of(h200, "fill"), 1e-3, 1e-9);
+  // 40 instructions at 0.3 cycles and a tenth of a misprediction of 15 cycles, at 4.5 GHz.
+  EXPECT_NEAR(seconds_of(cpu, "a kernel that nobody knows"), 1e6 * (40 * 0.3 + 0.1 * 15) / 4.5e9, 1e-9);
+  // 40 instructions at 4.5 cycles, a load from L2 and one from memory.
+  EXPECT_NEAR(seconds_of(h200, "a kernel that nobody knows"), 1e6 * (40 * 4.5 + 263 + 479) / 1.98e9, 1e-6);
+  const double on_device = h200["device_seconds"];
+  EXPECT_NEAR(on_device, seconds_of(h200, "fill") + seconds_of(h200, "a kernel that nobody knows") + 3 * 2e-5,
+              1e-9);
+  EXPECT_NEAR(h200["call_seconds"].get<double>() - on_device, 1e-3, 1e-9);
+}
+
+TEST_F(PredictionTest, OfEveryMachine) {
+  run_well("launches --sizes 20000 --distributions uniform --tuning gpu");
+  const std::string record = path("record.json");
+  std::size_t machines = 0;
+  for (const auto& file : fs::directory_iterator(script("machines"))) {
+    const auto machine = nlohmann::json::parse(contents(file.path().string()), nullptr, false);
+    for (const auto& [key, value] : machine.items()) {
+      if (value.is_object()) EXPECT_GT(value.value("source", "").size(), 5u) << file.path() << " " << key;
+    }
+    const auto result = predicted(record, "--measured --machine " + file.path().stem().string());
+    EXPECT_TRUE(result.value("predicted", false));
+    ASSERT_EQ(result["results"].size(), 1u);
+    double sum = 0;
+    for (const auto& row : result["results"][0]["kernels"]) sum += row.value("predicted_seconds", 0.0);
+    EXPECT_GT(sum, 0);
+    EXPECT_GE(result["results"][0].value("call_seconds", 0.0), sum);
+    const std::string text = contents(path("out"));
+    EXPECT_NE(text.find("PREDICTED, not measured"), std::string::npos);
+    EXPECT_NE(text.find("solve_blocks"), std::string::npos);
+    ++machines;
+  }
+  EXPECT_EQ(machines, 6u);
+  // The machine file of the device, or of its type.
+  EXPECT_EQ(predicted(record, "--for-device")["results"].size(), 1u);
+  // One core takes longer than many.
+  const auto one = predicted(record, "--machine cpu-64-cores --cores 1"),
+             all = predicted(record, "--machine cpu-64-cores");
+  EXPECT_GT(one["results"][0]["device_seconds"], all["results"][0]["device_seconds"]);
+  EXPECT_EQ(run_command("python3 " + script("predict.py") + " " + record + " --machine nothing"), 2);
+  EXPECT_EQ(run_command("python3 " + script("predict.py") + " " + path("nothing") + " --machine h200"), 2);
+}
+
+TEST_F(PredictionTest, StaticTable) {
+  const std::string json = path("static.json");
+  const int code = run_command("python3 " + script("static.py") +
+                               " operations/scan.cl --arch sm_90 --arch gfx942 --json " + json);
+  const std::string messages = contents(path("err"));
+  if (code != 0) {
+    EXPECT_NE(messages.find("is skipped"), std::string::npos) << messages;
+    EXPECT_NE(messages.find("install"), std::string::npos) << messages;
+    GTEST_SKIP() << messages;
+  }
+  const auto record = nlohmann::json::parse(contents(json), nullptr, false);
+  std::map<std::string, std::set<std::string>> kernels;
+  for (const auto& row : record["results"]) {
+    EXPECT_GT(row.value("registers", 0), 0) << row;
+    expect_keys(row, {"stack", "spills", "local_memory", "file_seconds"});
+    kernels[row.value("architecture", "")].insert(row.value("kernel", ""));
+  }
+  for (const auto& [architecture, names] : kernels) {
+    EXPECT_EQ(names.count("scan_reduce_uint"), 1u) << architecture;
+    EXPECT_EQ(names.count("scan_write_uint8"), 1u) << architecture;
+  }
 }
 
 // ---- The paper

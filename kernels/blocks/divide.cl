@@ -124,7 +124,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
                          global int* representatives, global ring_edge* edges, global int* vertex_edge,
                          global solved_block* solved, global int* distinct_counts, global volatile uint* account,
                          global double2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
-                         global uchar* scratch_axes) {
+                         global uchar* scratch_axes COUNTERS) {
   const int w = get_global_id(0);
   if (w < workers) {
     const long base = (long)w * capacity;
@@ -149,6 +149,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
       solved[b] = done;
       distinct_counts[b] = distinct;
       add_to_account(&g, account);
+      COUNT_STEPS(g.counted.steps);
     }
   }
 }
@@ -157,7 +158,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
 kernel void merge_blocks(int n, int first_merge, global const block_merge* restrict merges,
                          global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
-                         global volatile uint* account) {
+                         global volatile uint* account COUNTERS) {
   const int m = get_global_id(0);
   if (m < n) {
     const block_merge merge = merges[first_merge + m];
@@ -171,5 +172,6 @@ kernel void merge_blocks(int n, int first_merge, global const block_merge* restr
     solved[merge.low].ends = joined_ends(&g, low, high, axis);
     solved[merge.low].unused = free_list(&g);
     add_to_account(&g, account);
+    COUNT_STEPS(g.counted.steps);
   }
 }

@@ -22,7 +22,7 @@ static inline int is_outside(int next) { return next < 0; }
 
 kernel void mark_outside(int n, global const int* restrict set_blocks, global const solved_block* restrict solved,
                          global const int* restrict vertex_edge, global ring_edge* edges, global uint* restrict counts,
-                         global int* restrict hull_sizes) {
+                         global int* restrict hull_sizes COUNTERS) {
   const int s = get_global_id(0);
   if (s < n) {
     int size = 0;
@@ -41,6 +41,7 @@ kernel void mark_outside(int n, global const int* restrict set_blocks, global co
       counts[corners.first_x] = counts[corners.last_x] = 0;
     }
     hull_sizes[s] = size;
+    COUNT_STEPS(size);
   }
 }
 
@@ -151,7 +152,7 @@ kernel void write_halfedges(int n, global const int* restrict corner_of_edge, gl
 kernel void write_hulls(int n, global const int* restrict set_blocks, global const solved_block* restrict solved,
                         global const int* restrict vertex_edge, global const ring_edge* restrict edges,
                         global const int* restrict source, global const int* restrict offsets,
-                        global int* restrict hull) {
+                        global int* restrict hull COUNTERS) {
   const int s = get_global_id(0);
   if (s < n && offsets[s] < offsets[s + 1]) {
     const int v = solved[set_blocks[s]].ends.first_x;
@@ -161,5 +162,6 @@ kernel void write_hulls(int n, global const int* restrict set_blocks, global con
       hull[k] = source[edges[e].to];
       e = ~edges[e ^ 1].next;
     }
+    COUNT_STEPS(offsets[s + 1] - offsets[s]);
   }
 }

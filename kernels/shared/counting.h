@@ -23,18 +23,23 @@ INTEGER_CONSTANT(KINDS, 4);
 
 // Counters are pairs of low and high halves, one pair for each component and kind. Behind them stand the largest number
 // of weighted operations that one region of the end game took, and how many of its regions had each number of corners:
-// more than MOST_COUNTED_SIZE count as that many.
+// more than MOST_COUNTED_SIZE count as that many. Last are the steps of one launch (host/launch_log.hpp): the most that
+// COUNT_STEPS got at once, and the low and high half of the sum.
 INTEGER_CONSTANT(COUNTER_DEAREST, 2 * COMPONENTS * KINDS);
 INTEGER_CONSTANT(COUNTER_SIZES, COUNTER_DEAREST + 1);
 INTEGER_CONSTANT(MOST_COUNTED_SIZE, 1023);
-INTEGER_CONSTANT(COUNTERS_LENGTH, COUNTER_SIZES + MOST_COUNTED_SIZE + 1);
+INTEGER_CONSTANT(COUNTER_STEPS, COUNTER_SIZES + MOST_COUNTED_SIZE + 1);
+INTEGER_CONSTANT(STEP_COUNTERS, 3);
+INTEGER_CONSTANT(COUNTERS_LENGTH, COUNTER_STEPS + STEP_COUNTERS);
 
 // What one work-item counts in a variable of its own, before COUNT_TALLY adds it to the counters.
 typedef struct {
   uint arithmetic, orientations, circles;
+  uint steps;  // of merges
 } tally;
 
-// Kernels count in three ways. COUNT and COUNT_TALLY add to the counters, once or twice in each kernel. A struct with
+// Kernels count in four ways. COUNT and COUNT_TALLY add to the counters, once or twice in each kernel. COUNT_STEPS adds
+// steps that a work-item does one after the other. A struct with
 // TALLY_MEMBER has a tally, which TALLY adds to where the struct's predicates are evaluated. The predicates at the end
 // of shared/hull_height.h count each of their calls. COUNTERS stands behind the last parameter of each kernel and each
 // function that counts, and WITH_COUNTERS behind the last argument of such a function; the host sets the kernels'.
@@ -43,12 +48,18 @@ typedef struct {
 #define WITH_COUNTERS , counters
 #define COUNT(component, kind, amount) count_up(counters + 2 * (KINDS * COMPONENT_##component + KIND_##kind), amount)
 #define COUNT_SIZE(corners) atomic_inc(counters + COUNTER_SIZES + min(corners, MOST_COUNTED_SIZE))
+#define COUNT_STEPS(amount) count_steps(counters, amount)
 #define COUNT_TALLY(component, of) count_tally(counters, COMPONENT_##component, (of).counted)
 
 static inline void count_up(global volatile uint* counter, uint amount) {
   if (amount == 0) return;
   const uint old = atomic_add(counter, amount);
   if (old + amount < old) atomic_inc(counter + 1);
+}
+
+static inline void count_steps(global volatile uint* counters, uint steps) {
+  atomic_max(counters + COUNTER_STEPS, steps);
+  count_up(counters + COUNTER_STEPS + 1, steps);
 }
 
 static inline void count_tally(global volatile uint* counters, int component, tally counted) {
@@ -66,13 +77,15 @@ static inline void count_tally(global volatile uint* counters, int component, ta
 #define WITH_COUNTERS
 #define COUNT(component, kind, amount)
 #define COUNT_SIZE(corners)
+#define COUNT_STEPS(amount)
 #define COUNT_TALLY(component, of)
 #endif
 
 // The host's own algorithms always have tallies; kernels that run on the host have the member, but leave it alone.
 #if defined(FLAUNAY_COUNT) || defined(__cplusplus)
 #define TALLY_MEMBER tally counted;
-#define CLEAR_TALLY(of) (of).counted.arithmetic = (of).counted.orientations = (of).counted.circles = 0
+#define CLEAR_TALLY(of) \
+  (of).counted.arithmetic = (of).counted.orientations = (of).counted.circles = (of).counted.steps = 0
 #else
 #define TALLY_MEMBER
 #define CLEAR_TALLY(of)

@@ -262,6 +262,7 @@ static inline int lower_tangent(rings* g, int left, int right) {
   // The clockwise hull edge out of the left vertex; a vertex alone has none.
   if (left_edge != NO_EDGE) left_edge = edges[left_edge].previous;
   for (int moves = 1; moves;) {
+    TALLY(*g, steps, 1);
     const double2 l = g->points[left], r = g->points[right];
     if (left_edge != NO_EDGE && turns_left(g, r, l, g->points[edges[left_edge].to])) {
       left = edges[left_edge].to;
@@ -315,6 +316,7 @@ static inline int merge_above(rings* g, int base) {
   int left_to = edges[left_edge].to, right_to = edges[right_edge].to;
   double_pair left_apex = point_at(g, left_to), right_apex = point_at(g, right_to);
   for (;;) {
+    TALLY(*g, steps, 1);
     // Each side's candidate: the next edge that rises above the base, after removal of those that its circle rules out.
     angle left_seen = angle_of(left_apex, left_point, right_point);
     angle right_seen = angle_of(right_apex, left_point, right_point);
@@ -328,6 +330,7 @@ static inline int merge_above(rings* g, int base) {
         const double_pair beyond = point_at(g, beyond_to);
         const angle seen = angle_of(beyond, left_point, right_point);
         if (!rules_out(g, left_point, right_point, left_apex, left_seen, beyond, seen, bound)) break;
+        TALLY(*g, steps, 1);
         remove_edge(g, left_edge);
         left_edge = then;
         left_to = beyond_to;
@@ -341,6 +344,7 @@ static inline int merge_above(rings* g, int base) {
         const double_pair beyond = point_at(g, beyond_to);
         const angle seen = angle_of(beyond, left_point, right_point);
         if (!rules_out(g, left_point, right_point, right_apex, right_seen, beyond, seen, bound)) break;
+        TALLY(*g, steps, 1);
         remove_edge(g, right_edge);
         right_edge = then;
         right_to = beyond_to;

@@ -15,9 +15,46 @@ namespace {
 
 using research::Mode;
 
+// Records the launches of its scope, if that is wanted.
+class Recording {
+ public:
+  Recording(Engine& engine, research::Record wanted) : runtime_(engine.runtime) {
+    if (wanted == research::Record::nothing) return;
+    if (wanted == research::Record::steps && runtime_.is_native()) {
+      throw Error(ErrorKind::usage, "kernels count their steps on OpenCL devices only; name one");
+    }
+    runtime_.record_launches(wanted == research::Record::steps);
+  }
+  ~Recording() { runtime_.stop_recording(); }
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  std::vector<research::LaunchStatistics> launches() const {
+    std::vector<research::LaunchStatistics> all;
+    for (const host::Launch& launch : runtime_.recorded_launches()) {
+      all.push_back({launch.kernel, launch.work_items, launch.group, launch.elements, launch.bytes,
+                     launch.longest_chain, launch.steps, launch.seconds});
+    }
+    return all;
+  }
+
+ private:
+  host::Runtime& runtime_;
+};
+
 research::Triangulation run_blocks(TriangulatorAccess::Implementation& self, const Request& request) {
   research::Triangulation result;
-  static_cast<Triangulation&>(result) = triangulate(self, request.points, request.offsets, request.options);
+  const auto run = [&] {
+    static_cast<Triangulation&>(result) = triangulate(self, request.points, request.offsets, request.options);
+  };
+  // Without a record no device is looked for if the sets are small.
+  if (request.options.record == research::Record::nothing) {
+    run();
+    return result;
+  }
+  const Recording recording(self.for_host_memory(), request.options.record);
+  run();
+  result.launches = recording.launches();
   return result;
 }
 
@@ -32,10 +69,12 @@ research::Triangulation run_levels(TriangulatorAccess::Implementation& self, con
   if (n == 0) return result;
   const std::vector<double> doubles = widened(request.points, n);
   const double* const coordinates = doubles.empty() ? request.points.wide : doubles.data();
+  const Recording recording(engine, request.options.record);
   engine.begin_call(request.options.profile);
   flattened::run(engine.runtime, {engine.persistent, engine.even, engine.odd}, coordinates, request.offsets,
                  request.options, partition_levels, solve_regions, result);
   engine.write_accounts(result.statistics);
+  result.launches = recording.launches();
   return result;
 }
 

@@ -21,6 +21,9 @@ void check_options(const Options& options) {
     throw Error(ErrorKind::usage,
                 fmt::format("mode {} does not count operations; take flattened", mode.name));
   }
+  if (options.count && options.record != Record::nothing) {
+    throw Error(ErrorKind::usage, "launches are recorded without counting operations: take one of both");
+  }
 }
 
 Triangulation checked_call(Triangulator& triangulator, const call::HostPoints& points,

@@ -59,6 +59,7 @@ std::size_t CutTrees::bytes(std::size_t trees, std::size_t leaves, std::size_t s
 template <typename Kernel>
 void CutTrees::launch(std::size_t items_per_chunk, const Kernel& kernel) const {
   const std::size_t items = items_per_chunk * chunks_;
+  runtime_.note_elements(samples_ / chunks_);
   runtime_.launch(items, runtime_.sizes().chunk_group, items, kernel);
 }
 

@@ -16,6 +16,7 @@ struct ChunkPlan {
   std::vector<cl_int> set_counts;           // per block: the first count of its set
   std::size_t cursors = 0;
   std::size_t counts = 0;
+  std::size_t largest_chunk = 0;
 };
 
 // Divides a set with a tree into chunks, each of which counts its points per block.
@@ -24,6 +25,7 @@ void add_chunks(std::size_t first, std::size_t last, const kernel::set_of_blocks
   const std::size_t blocks = std::size_t{1} << set.depth;
   // So that there are not more counts than points.
   size = std::max(size, blocks);
+  plan.largest_chunk = std::max(plan.largest_chunk, std::min(size, last - first));
   const std::size_t chunks = (last - first + size - 1) / size;
   for (std::size_t k = 0; k < chunks; ++k) {
     const std::size_t begin = first + k * size;
@@ -49,8 +51,11 @@ void add_block(std::size_t first, std::size_t last, std::size_t size, ChunkPlan&
   if (!plan.chunks.empty() && plan.chunks.back().depth == 0 &&
       last - static_cast<std::size_t>(plan.chunks.back().first) <= size) {
     plan.chunks.back().last = static_cast<cl_int>(last);
+    plan.largest_chunk =
+        std::max(plan.largest_chunk, last - static_cast<std::size_t>(plan.chunks.back().first));
     return;
   }
+  plan.largest_chunk = std::max(plan.largest_chunk, last - first);
   plan.chunks.push_back({static_cast<cl_int>(first), static_cast<cl_int>(last), 0, 0, 0, 0, 0, 0});
   plan.chunk_first.push_back(static_cast<cl_int>(first));
 }
@@ -86,6 +91,7 @@ void move_by_chunks(Workspace& work, const Plan& sets, const std::vector<std::si
   const std::size_t group = runtime.sizes().chunk_group;
   const auto chunk_count = static_cast<cl_int>(plan.chunks.size());
   if (has_trees) {
+    runtime.note_elements(plan.largest_chunk);
     runtime.launch(plan.chunks.size(), group, chunk_count,
                    kernels::count_blocks{.chunks = chunks,
                                          .input = input,
@@ -96,6 +102,7 @@ void move_by_chunks(Workspace& work, const Plan& sets, const std::vector<std::si
     host::exclusive_scan(runtime, counts, plan.counts, counts);
   }
   const kernel::scaling scale = blocks.scale;
+  runtime.note_elements(plan.largest_chunk);
   runtime.launch(plan.chunks.size(), group, chunk_count,
                  kernels::move_points{.chunks = chunks,
                                       .set_first = chunk_first,

@@ -99,20 +99,43 @@ struct LevelStatistics {
   double seconds = 0;               ///< wall time
 };
 
+/// What is recorded of the launches of a call.
+enum class Record {
+  nothing,   ///< the default, which costs nothing
+  launches,  ///< every launch: its kernel and work-items, and with Options::profile its time
+  steps,     ///< kernels count their steps, too; slow, and on an OpenCL device only
+};
+
+/// One launch of a call, which the calls' order says when.
+struct LaunchStatistics {
+  std::string kernel;          ///< the kernel's name; "fill" and "copy" are those of OpenCL
+  std::size_t work_items = 0;  ///< without those that fill up the last work-group; 0 for fills and copies
+  std::size_t group = 0;       ///< the work-group's size
+  std::size_t elements = 0;    ///< the most elements that a work-item goes through
+  std::size_t bytes = 0;       ///< bytes that a fill or a copy writes
+  /// The most steps that one block, merge or walk takes, one after the other; 0 if the kernel does not count
+  /// them. docs/counting.md defines them.
+  std::uint32_t longest_chain = 0;
+  std::uint64_t steps = 0;  ///< the steps of all work-items
+  double seconds = 0;       ///< time on the device; 0 without Options::profile
+};
+
 /// The options of one triangulation, and how to compute it.
 struct Options : flaunay::Options {
-  Mode mode = Mode::blocks;      ///< decides the order of the triangles, but not which they are
-  Cut cut = Cut::interquartile;  ///< ignored by Mode::blocks and Mode::dwyer
-  Hull hull = Hull::prune;       ///< ignored by Mode::blocks and Mode::dwyer
-  bool count = false;            ///< count operations into Triangulation::work; slow; not in Mode::blocks
-  int partition_levels = 0;      ///< Mode::partition: number of levels on the device; 0: chosen by size
-  int threads = 0;               ///< Mode::partition: number of host threads; 0: one per core
+  Mode mode = Mode::blocks;         ///< decides the order of the triangles, but not which they are
+  Cut cut = Cut::interquartile;     ///< ignored by Mode::blocks and Mode::dwyer
+  Hull hull = Hull::prune;          ///< ignored by Mode::blocks and Mode::dwyer
+  bool count = false;               ///< count operations into Triangulation::work; slow; not in Mode::blocks
+  int partition_levels = 0;         ///< Mode::partition: number of levels on the device; 0: chosen by size
+  int threads = 0;                  ///< Mode::partition: number of host threads; 0: one per core
+  Record record = Record::nothing;  ///< fills Triangulation::launches; needs `count` to be false
 };
 
 /// A triangulation and what it cost. statistics.device is "host" in the modes that run on the host.
 struct Triangulation : flaunay::Triangulation {
-  std::vector<LevelStatistics> levels;  ///< one per level; empty in Mode::blocks and Mode::dwyer
-  Work work;                            ///< empty without Options::count
+  std::vector<LevelStatistics> levels;     ///< one per level; empty in Mode::blocks and Mode::dwyer
+  Work work;                               ///< empty without Options::count
+  std::vector<LaunchStatistics> launches;  ///< empty without Options::record and in modes without a device
 };
 
 /// What programs need to list the modes and to check options.

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Predicts times of a call on a machine from the launches that `flaunay-bench launches --json` has recorded.
+
+    bench/predict.py LAUNCHES.json --machine h200
+    bench/predict.py LAUNCHES.json --machine pocl-2-cores --device-record DEVICE.json --measured
+
+It is a model, not a measurement. A launch takes the longest of
+
+    chain    the longest chain of steps of one work-item, times what a step takes on one lane
+    lanes    all steps, times what a step takes on one lane, shared by the lanes that hold work-items at once
+    issue    all instructions, at the rate of all cores
+    fp64     all operations of double precision, at the rate of all cores
+    memory   all bytes, at the memory's bandwidth
+
+and the cost of a launch. A step on one lane takes its instructions, its mispredicted branches, and its loads that
+wait for each other; where work-items of a warp go different ways, their paths come one after the other. Waits of the
+host and transfers are added, but not what the host computes itself. bench/machines/ has the machines, with a source for
+each value, and bench/kernels.json what a step of each kernel is made of. docs/performance.md shows predictions beside
+measurements.
+"""
+import argparse
+import glob
+import json
+import os
+import sys
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+MACHINES = os.path.join(FOLDER, "machines")
+# Of a kernel that the static table lacks.
+REGISTERS = 64
+# With so many elements a work-item has a chunk of its own, so that a warp's accesses are far apart.
+LEAST_ELEMENTS_OF_CHUNKS = 2
+
+
+def fail(message):
+    print(f"predict.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
+def load(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except (OSError, ValueError) as error:
+        fail(f"{path} cannot be read: {error}")
+
+
+def machine_names():
+    return sorted(os.path.splitext(os.path.basename(path))[0] for path in glob.glob(os.path.join(MACHINES, "*.json")))
+
+
+def read_machine(name):
+    """The machine's values without their sources."""
+    path = os.path.join(MACHINES, f"{name}.json")
+    if not os.path.exists(path):
+        fail(f"there is no machine {name}; there are {', '.join(machine_names())}")
+    return {key: value["value"] if isinstance(value, dict) else value for key, value in load(path).items()}
+
+
+def machine_of(record):
+    """The machine whose file names the record's device, or else one of its type."""
+    for name in machine_names():
+        if any(part in record["device"] for part in read_machine(name)["matches"]):
+            return name
+    return "cpu-64-cores" if record.get("device_type") == "CPU" else "rtx-4090"
+
+
+def with_device_record(machine, record):
+    """The machine with what `flaunay-bench device` has measured in place of what its file says."""
+    measured = {row["what"]: row["median"] for row in record["results"]}
+
+    def load_of(kib):
+        return measured.get(f"load that waits for a load, of {kib} KiB")
+
+    found = {"launch_seconds": measured["launch"],
+             "wait_seconds": max(0, measured["launch and wait"] - measured["launch"]),
+             "near_seconds": load_of(machine["near_kib"]), "far_seconds": load_of(machine["far_kib"]),
+             "bytes_per_second": measured["bytes read and written by a copy"],
+             "cores": record.get("compute_units")}
+    if machine["kind"] == "gpu":
+        found["fp64_per_second"] = measured["operations of fp64, many work-items"]
+        found["transfer_bytes_per_second"] = measured["bytes to the device"]
+        found["clock_hz"] = 1e6 * record.get("clock_mhz", 0)
+    return dict(machine, **{key: value for key, value in found.items() if value})
+
+
+def with_cores(machine, cores):
+    """The machine with some of its cores; bandwidth is shared by all, up to what one core can use."""
+    share = cores / machine["cores"]
+    bandwidth = machine["bytes_per_second"]
+    if "bytes_per_second_of_a_core" in machine:
+        bandwidth = min(bandwidth, cores * machine["bytes_per_second_of_a_core"])
+    return dict(machine, cores=cores, fp64_per_second=share * machine["fp64_per_second"], bytes_per_second=bandwidth)
+
+
+class Model:
+    """What launches take on a machine. registers: by kernel."""
+
+    def __init__(self, machine, registers=None):
+        self.machine, self.registers = machine, registers or {}
+        self.kernels = load(os.path.join(FOLDER, "kernels.json"))["kernels"]
+
+    def step_seconds(self, cost):
+        m = self.machine
+        cycles = cost["instructions"] * m["cycles_per_instruction"] + cost["mispredictions"] * m["misprediction_cycles"]
+        seconds = cycles / m["clock_hz"]
+        # Out-of-order cores overlap the loads of one element with those of the next, unless a step needs the last.
+        if m["kind"] == "gpu" or cost["serial"]:
+            seconds += cost["near"] * m["near_seconds"] + cost["far"] * m["far_seconds"]
+        return seconds
+
+    def paths(self, cost, launch):
+        """How many times as long a divergent warp takes as its longest lane alone."""
+        lanes = min(self.machine["warp"], launch["group"], launch["work_items"])
+        return lanes / max(1, lanes * self.machine["active_share"]) if cost["divergent"] else 1
+
+    def resident(self, kernel):
+        m = self.machine
+        registers = self.registers.get(kernel, REGISTERS)
+        return m["cores"] * min(m["resident_per_core"], m["registers_per_core"] / max(1, registers))
+
+    def launch(self, launch):
+        """Seconds, and what bounds them."""
+        m = self.machine
+        cost = self.kernels.get(launch["kernel"], self.kernels["any other"])
+        if launch["work_items"] == 0:  # a fill or a copy
+            times = {"memory": launch["bytes"] / m["bytes_per_second"]}
+        else:
+            chain = max(1, launch["longest_chain"] or launch["elements"])
+            steps = launch["steps"] or launch["work_items"] * launch["elements"]
+            paths = self.paths(cost, launch)
+            scattered = m["kind"] == "gpu" and (cost["divergent"] or launch["elements"] >= LEAST_ELEMENTS_OF_CHUNKS)
+            step = self.step_seconds(cost) * paths
+            # What a divergent warp does at once are the lanes of one path.
+            per_core = m["lanes_per_core"] / (m["cycles_per_instruction"] if m["kind"] == "cpu" else 1)
+            rate = m["cores"] * per_core * m["clock_hz"] * (m["active_share"] if cost["divergent"] else 1)
+            times = {"chain": chain * step,
+                     "lanes": steps * step / min(launch["work_items"], self.resident(launch["kernel"])),
+                     "issue": steps * cost["instructions"] / rate,
+                     "fp64": steps * cost["fp64"] / m["fp64_per_second"],
+                     "memory": steps * cost["scattered_bytes" if scattered else "bytes"] / m["bytes_per_second"]}
+        bound = max(times, key=times.get)
+        if times[bound] < m["launch_seconds"]:
+            bound, seconds = "launch", m["launch_seconds"]
+        else:
+            seconds = times[bound]
+        return seconds, bound
+
+
+def predict_call(model, summary, launches):
+    """One call: rows by kernel, the longest first, and the totals. Launches overlap the work of those before."""
+    kernels = {}
+    for launch in launches:
+        seconds, bound = model.launch(launch)
+        row = kernels.setdefault(launch["kernel"], {"kernel": launch["kernel"], "launches": 0, "predicted_seconds": 0,
+                                                    "measured_seconds": 0, "bounds": {}})
+        row["launches"] += 1
+        row["predicted_seconds"] += seconds
+        row["measured_seconds"] += launch["seconds"]
+        row["bounds"][bound] = row["bounds"].get(bound, 0) + seconds
+    rows = sorted(kernels.values(), key=lambda row: -row["predicted_seconds"])
+    for row in rows:
+        bounds = row.pop("bounds")
+        row["bound"] = max(bounds, key=bounds.get)
+    machine = model.machine
+    on_device = sum(row["predicted_seconds"] for row in rows) + summary["host_waits"] * machine["wait_seconds"]
+    rate = machine["transfer_bytes_per_second"]
+    transfers = (summary["bytes_to_device"] + summary["bytes_to_host"]) / rate if rate else 0
+    return rows, {"device_seconds": on_device, "call_seconds": on_device + transfers,
+                  "points_per_second": summary["n"] / on_device}
+
+
+def launches_of(record, summary):
+    return [launch for launch in record["launches"]
+            if all(launch[key] == summary[key] for key in ("mode", "distribution", "n"))]
+
+
+def registers_of(path, architecture):
+    if not os.path.exists(path) or not architecture:
+        return {}
+    return {row["kernel"]: row["registers"] for row in load(path)["results"] if row["architecture"] == architecture}
+
+
+def print_call(machine, summary, rows, totals, measured):
+    print(f"\nPREDICTED, not measured: {machine['name']}, mode {summary['mode']}, {summary['n']} points of "
+          f"{summary['distribution']}")
+    heads = ["kernel", "launches", "predicted ms", "bound by"] + ["measured ms"] * measured
+    lines = [[row["kernel"], str(row["launches"]), f"{1e3 * row['predicted_seconds']:.3g}", row["bound"]]
+             + [f"{1e3 * row['measured_seconds']:.3g}"] * measured for row in rows]
+    of_call = [f"{1e3 * summary['seconds_median']:.3g}"] * measured
+    lines.append(["device to device", str(summary["kernel_launches"]), f"{1e3 * totals['device_seconds']:.3g}", ""]
+                 + [""] * measured)
+    lines.append(["host to host", "", f"{1e3 * totals['call_seconds']:.3g}", ""] + of_call)
+    print("| " + " | ".join(heads) + " |")
+    print("|---|--:|--:|---|" + "--:|" * measured)
+    for line in lines:
+        print("| " + " | ".join(line) + " |")
+
+
+def arguments_of(command_line):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("launches", metavar="LAUNCHES.json", help="a record of flaunay-bench launches")
+    parser.add_argument("--machine", metavar="NAME", action="append", default=[],
+                        help=f"{', '.join(machine_names())}; more than once for several")
+    parser.add_argument("--for-device", action="store_true", help="the machine file that fits the record's device")
+    parser.add_argument("--cores", type=int, help="so many of the machine's cores")
+    parser.add_argument("--device-record", metavar="FILE", help="a record of flaunay-bench device on that machine")
+    parser.add_argument("--static", metavar="FILE", default=os.path.join(FOLDER, "results", "static.json"),
+                        help="the static table, for the kernels' registers")
+    parser.add_argument("--measured", action="store_true", help="the record's times beside the predictions")
+    parser.add_argument("--json", metavar="FILE", help="write the predictions here")
+    return parser.parse_args(command_line)
+
+
+def predictions(arguments, names):
+    record = load(arguments.launches)
+    if record.get("subcommand") != "launches":
+        fail(f"{arguments.launches} is no record of flaunay-bench launches")
+    for name in names:
+        machine = read_machine(name)
+        if arguments.device_record:
+            machine = with_device_record(machine, load(arguments.device_record))
+        if arguments.cores:
+            machine = with_cores(machine, arguments.cores)
+        model = Model(machine, registers_of(arguments.static, machine["architecture"]))
+        for summary in record["results"]:
+            rows, totals = predict_call(model, summary, launches_of(record, summary))
+            print_call(machine, summary, rows, totals, arguments.measured)
+            yield {"machine": name, "cores": machine["cores"], "mode": summary["mode"],
+                   "distribution": summary["distribution"], "n": summary["n"], **totals, "kernels": rows}
+
+
+def main(command_line):
+    arguments = arguments_of(command_line)
+    names = arguments.machine
+    if arguments.for_device:
+        names = [*names, machine_of(load(arguments.launches))]
+    if not names:
+        fail("--machine names a machine, or --for-device takes the record's")
+    results = list(predictions(arguments, names))
+    if arguments.json:
+        with open(arguments.json, "w", encoding="utf-8") as file:
+            json.dump({"predicted": True, "launches": os.path.basename(arguments.launches), "results": results}, file,
+                      indent=1)
+            file.write("\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Compiles kernels for GPUs that this machine need not have, and prints what each kernel uses of them: registers,
+stack, spills and local memory, by architecture.
+
+    bench/static.py                                    all kernel files, all architectures
+    bench/static.py blocks/divide.cl --arch sm_90      some
+    bench/static.py --json bench/results/static.json   and a record, which bench/predict.py reads
+
+Clang compiles OpenCL C with the functions of libclc, in place of a vendor's driver, which is LLVM too but another
+version, so figures may differ a little. NVIDIA's machine code comes from ptxas, AMD's from Clang itself. What is not
+installed is skipped, and standard error says what to install:
+
+    apt-get install clang-19 libclc-19      (other versions will do)
+    ptxas                                   of any CUDA toolkit, or pip install nvidia-cuda-nvcc
+"""
+import argparse
+import glob
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import time
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+KERNELS = os.path.join(SOURCE, "kernels")
+ARCHITECTURES = ["sm_90", "sm_89", "gfx942"]
+# As Runtime compiles for a GPU; src/tuning/tuning.cpp has the values.
+OPTIONS = ["-cl-std=CL1.2", "-DSORT_BITS=4", "-DSORT_GROUP=128", "-DSMALL_REGION=48", "-DFETCH_AHEAD=0"]
+COMMON = ["-x", "cl", "-O3", "-Xclang", "-finclude-default-header", f"-I{KERNELS}", "-Wno-everything",
+          "-Dcl_khr_fp64", "-Dcl_khr_int64_base_atomics"]
+NEWEST, OLDEST = 25, 14
+COLUMNS = ["registers", "stack", "spills", "local_memory"]
+
+
+class Missing(Exception):
+    """Something that is not installed."""
+
+
+def note(message):
+    print(f"static.py: {message}", file=sys.stderr)
+
+
+def find_clang():
+    """Clang and its version, of those that have a libclc if there are several."""
+    names = [f"clang-{version}" for version in range(NEWEST, OLDEST, -1)] + ["clang"]
+    found = [path for path in map(shutil.which, names) if path]
+    if not found:
+        raise Missing("no clang; apt-get install clang-19 libclc-19")
+    return found
+
+
+def version_of(clang):
+    text = subprocess.run([clang, "--version"], capture_output=True, text=True, check=True).stdout
+    return re.search(r"version (\d+)", text)[1]
+
+
+def builtins_for(clang, name):
+    """libclc's functions, of clang's own version."""
+    version = version_of(clang)
+    if shutil.which("dpkg"):
+        listed = subprocess.run(["dpkg", "-L", f"libclc-{version}"], capture_output=True, text=True, check=False).stdout
+        for path in listed.splitlines():
+            if path.endswith(f"/{name}.bc") and os.path.exists(path):
+                return path
+    for folder in glob.glob(f"/usr/lib/llvm-{version}/share/clc") + glob.glob("/usr/local/share/clc"):
+        path = os.path.join(folder, f"{name}.bc")
+        if os.path.exists(path):
+            return path
+    return None
+
+
+def clang_with(name):
+    for clang in find_clang():
+        builtins = builtins_for(clang, name)
+        if builtins:
+            return clang, builtins
+    raise Missing(f"no libclc with {name}.bc; apt-get install libclc-{version_of(find_clang()[0])}")
+
+
+def find_ptxas():
+    packages = {sysconfig.get_paths()["purelib"], *filter(os.path.isdir, sys.path)}
+    candidates = [os.environ.get("PTXAS"), shutil.which("ptxas"), "/usr/local/cuda/bin/ptxas"]
+    for folder in packages:
+        candidates += glob.glob(os.path.join(folder, "nvidia", "*", "bin", "ptxas"))
+    for path in candidates:
+        if path and os.access(path, os.X_OK):
+            return path
+    raise Missing("no ptxas; a CUDA toolkit has one, or pip install nvidia-cuda-nvcc (PTXAS=... names another)")
+
+
+def run(command, what):
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise RuntimeError(f"{what} failed: {(result.stderr or result.stdout).strip().splitlines()[:3]}")
+    return result.stdout + result.stderr
+
+
+def rows_of_ptxas(log):
+    rows = []
+    for part in log.split("Compiling entry function '")[1:]:
+        numbers = {name: sum(map(int, re.findall(pattern, part))) for name, pattern in (
+            ("registers", r"Used (\d+) registers"), ("stack", r"(\d+) bytes stack frame"),
+            ("spills", r"(\d+) bytes spill (?:stores|loads)"), ("local_memory", r"(\d+) bytes smem"))}
+        rows.append({"kernel": part[:part.index("'")], **numbers})
+    return rows
+
+
+def rows_of_metadata(assembly):
+    """Of AMD's assembly. Spills count registers' lanes of 4 bytes, to be comparable with bytes."""
+    rows = []
+    metadata = assembly[assembly.index("amdhsa.kernels:"):]
+    for part in re.split(r"\n  - ", metadata)[1:]:
+        values = dict(re.findall(r"^\s*\.(\w+):\s+'?([\w.]+)'?\s*$", part, re.MULTILINE))
+        if "vgpr_count" not in values:
+            continue
+        # The arguments have names, too; the kernel's stands beside its symbol.
+        name = values["symbol"].removesuffix(".kd") if "symbol" in values else values["name"]
+        rows.append({"kernel": name, "registers": int(values["vgpr_count"]),
+                     "stack": int(values["private_segment_fixed_size"]),
+                     "spills": 4 * (int(values["vgpr_spill_count"]) + int(values.get("sgpr_spill_count", 0))),
+                     "local_memory": int(values["group_segment_fixed_size"])})
+    return rows
+
+
+class Nvidia:
+    """By way of PTX."""
+
+    def __init__(self, architecture):
+        self.architecture = architecture
+        self.clang, self.builtins = clang_with("nvptx64--nvidiacl")
+        self.ptxas = find_ptxas()
+
+    def compile(self, file, folder):
+        ptx = os.path.join(folder, "kernel.ptx")
+        run([self.clang, *COMMON, *OPTIONS, "-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang",
+             self.architecture, "-Xclang", "-mlink-builtin-bitcode", "-Xclang", self.builtins, "-S", "-o", ptx, file],
+            "clang")
+        return rows_of_ptxas(run([self.ptxas, "-v", f"-arch={self.architecture}", "-o", os.devnull, ptx], "ptxas"))
+
+
+class Amd:
+    """By Clang alone."""
+
+    def __init__(self, architecture):
+        self.architecture = architecture
+        self.clang, self.builtins = clang_with("amdgcn--amdhsa")
+
+    def compile(self, file, folder):
+        assembly = os.path.join(folder, "kernel.s")
+        run([self.clang, *COMMON, *OPTIONS, "-target", "amdgcn--amdhsa", f"-mcpu={self.architecture}", "-nogpulib",
+             "-Xclang", "-mlink-builtin-bitcode", "-Xclang", self.builtins, "-S", "-o", assembly, file], "clang")
+        with open(assembly, encoding="utf-8") as text:
+            return rows_of_metadata(text.read())
+
+
+def compilers_for(architectures):
+    for architecture in architectures:
+        try:
+            yield (Nvidia if architecture.startswith("sm_") else Amd)(architecture)
+        except Missing as missing:
+            note(f"{architecture} is skipped: {missing}")
+
+
+def table_of(files, architectures):
+    rows, failures = [], 0
+    for compiler in compilers_for(architectures):
+        for file in files:
+            begin = time.monotonic()
+            try:
+                with tempfile.TemporaryDirectory() as folder:
+                    compiled = compiler.compile(os.path.join(KERNELS, file), folder)
+            except RuntimeError as error:
+                note(f"{file} for {compiler.architecture}: {error}")
+                failures += 1
+                continue
+            seconds = round(time.monotonic() - begin, 2)
+            for row in sorted(compiled, key=lambda row: row["kernel"]):
+                rows.append({"architecture": compiler.architecture, "file": file, **row, "file_seconds": seconds})
+    return rows, failures
+
+
+def print_table(rows):
+    """A row a kernel; of each architecture: registers, stack + spills, local memory."""
+    architectures = list(dict.fromkeys(row["architecture"] for row in rows))
+    kernels = list(dict.fromkeys((row["file"], row["kernel"]) for row in rows))
+    by_key = {(row["file"], row["kernel"], row["architecture"]): row for row in rows}
+    print("| kernel | " + " | ".join(architectures) + " |")
+    print("|---|" + "--:|" * len(architectures))
+    for key in kernels:
+        cells = []
+        for architecture in architectures:
+            row = by_key.get((*key, architecture))
+            cells.append("-" if row is None else " / ".join(str(row[column]) for column in COLUMNS))
+        print(f"| `{key[1]}` | " + " | ".join(cells) + " |")
+
+
+def main(command_line):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", metavar="FILE", nargs="*",
+                        help="below kernels/, such as blocks/divide.cl; by default all")
+    parser.add_argument("--arch", metavar="NAME", action="append", default=[],
+                        help=f"sm_... or gfx...; by default {', '.join(ARCHITECTURES)}")
+    parser.add_argument("--json", metavar="FILE", help="write a record here")
+    arguments = parser.parse_args(command_line)
+    files = arguments.files or sorted(os.path.relpath(path, KERNELS)
+                                      for path in glob.glob(os.path.join(KERNELS, "*", "*.cl")))
+    rows, failures = table_of(files, arguments.arch or ARCHITECTURES)
+    if not rows:
+        note("nothing was compiled")
+        return 1
+    print("registers / bytes of stack / bytes of spills / bytes of local memory\n")
+    print_table(rows)
+    if arguments.json:
+        text = ",\n".join("    " + json.dumps(row) for row in rows)
+        with open(arguments.json, "w", encoding="utf-8") as file:
+            file.write(f'{{\n  "options": {json.dumps(OPTIONS)},\n  "results": [\n{text}\n  ]\n}}\n')
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,215 @@
+// The record of a call's launches (research::Options::record): beside the statistics, and the steps of merges
+// beside those of a sequential twin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "flaunay/research.hpp"
+#include "shared/rings.h"
+#include "tests/support/bounds.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+using research::LaunchStatistics;
+using research::Mode;
+using research::Options;
+using research::Record;
+using research::Triangulation;
+
+Triangulation run(Triangulator& on, const Coordinates& points, Record record, Mode mode = Mode::blocks,
+                  bool profile = false) {
+  Options options;
+  options.mode = mode;
+  options.record = record;
+  options.profile = profile;
+  options.neighbors = true;
+  return research::triangulate(on, points.data(), points.size() / 2, options);
+}
+
+// Points that every cut divides by x, in the order of x.
+Coordinates flat_points(std::size_t n, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  std::vector<double> xs;
+  for (std::size_t i = 0; i < n; ++i) xs.push_back(random.unit());
+  std::sort(xs.begin(), xs.end());
+  Coordinates points;
+  constexpr double kHeight = 0x1p-10;
+  for (const double x : xs) {
+    points.push_back(x);
+    points.push_back(kHeight * random.unit());
+  }
+  return points;
+}
+
+/// Merges of points that are sorted by x, cut in halves down to four: with the same functions, but as one
+/// recursion on the host.
+class MergeTwin {
+ public:
+  explicit MergeTwin(const Coordinates& points) : edges_(kernel::EDGES_PER_VERTEX * points.size() / 2) {
+    for (std::size_t i = 0; i < points.size(); i += 2) vertices_.push_back({points[i], points[i + 1]});
+    vertex_edge_.resize(vertices_.size());
+    rings_ = kernel::rings_on(edges_.data(), vertices_.data(), vertex_edge_.data(),
+                              bounds_for(magnitudes_of(points)));
+    rings_.unused = 0;
+    const auto count = static_cast<int>(vertices_.size());
+    int depth = 0;
+    while (count > kernel::LEAF_VERTICES << depth) ++depth;
+    solve(count, depth, 0);
+  }
+  std::uint32_t steps() const { return rings_.counted.steps; }
+
+ private:
+  int begin_of(int count, int depth, int part) const {
+    return static_cast<int>((static_cast<long>(part) * count) >> depth);
+  }
+  kernel::hull_ends solve(int count, int depth, int part, int level = 0) {
+    if (level == depth) {
+      const int begin = begin_of(count, depth, part);
+      return kernel::make_leaf(&rings_, begin, begin_of(count, depth, part + 1) - begin);
+    }
+    const kernel::hull_ends low = solve(count, depth, 2 * part, level + 1);
+    const kernel::hull_ends high = solve(count, depth, 2 * part + 1, level + 1);
+    kernel::merge_triangulations(&rings_, low.last_x, high.first_x);
+    return kernel::joined_ends(&rings_, low, high, 0);
+  }
+
+  std::vector<kernel::ring_edge> edges_;
+  std::vector<kernel::double2> vertices_;
+  std::vector<int> vertex_edge_;
+  kernel::rings rings_{};
+};
+
+const LaunchStatistics& only(const std::vector<LaunchStatistics>& launches, const std::string& kernel) {
+  const auto is_it = [&](const LaunchStatistics& launch) { return launch.kernel == kernel; };
+  EXPECT_EQ(std::count_if(launches.begin(), launches.end(), is_it), 1) << kernel;
+  const auto found = std::find_if(launches.begin(), launches.end(), is_it);
+  static const LaunchStatistics kNone;
+  return found == launches.end() ? kNone : *found;
+}
+
+TEST(Launches, AreThoseOfTheStatistics) {
+  const Coordinates points = make_fixture("uniform", 20000, 1);
+  for (const Mode mode : {Mode::blocks, Mode::flattened}) {
+    SCOPED_TRACE(to_string(mode));
+    const Triangulation plain = run(triangulator(), points, Record::nothing, mode);
+    EXPECT_TRUE(plain.launches.empty());
+    for (const Record record : {Record::launches, Record::steps}) {
+      const Triangulation recorded = run(triangulator(), points, record, mode, true);
+      EXPECT_EQ(recorded.launches.size(), recorded.statistics.kernel_launches);
+      EXPECT_EQ(recorded.launches.size(), plain.statistics.kernel_launches);
+      EXPECT_EQ(recorded.statistics.host_waits, plain.statistics.host_waits);
+      EXPECT_EQ(recorded.statistics.bytes_to_host, plain.statistics.bytes_to_host);
+      EXPECT_EQ(recorded.statistics.bytes_to_device, plain.statistics.bytes_to_device);
+      EXPECT_EQ(recorded.triangles, plain.triangles);
+      EXPECT_EQ(recorded.neighbors, plain.neighbors);
+      double seconds = 0, seconds_of_kernels = 0;
+      std::uint64_t steps = 0;
+      for (const LaunchStatistics& launch : recorded.launches) {
+        const bool is_kernel = launch.kernel != "fill" && launch.kernel != "copy";
+        EXPECT_EQ(launch.work_items > 0, is_kernel);
+        EXPECT_EQ(launch.elements > 0, is_kernel);
+        EXPECT_EQ(launch.bytes > 0, !is_kernel);
+        EXPECT_LE(launch.longest_chain, launch.steps);
+        seconds += launch.seconds;
+        steps += launch.steps;
+      }
+      for (const KernelStatistics& kernel : recorded.statistics.kernels) seconds_of_kernels += kernel.seconds;
+      EXPECT_NEAR(seconds, seconds_of_kernels, 1e-9);
+      EXPECT_EQ(steps > 0, record == Record::steps && mode == Mode::blocks);
+    }
+    EXPECT_TRUE(run(triangulator(), points, Record::nothing, mode).launches.empty());
+  }
+}
+
+// One block, and a walk along its hull.
+TEST(Launches, StepsAreTheTwins) {
+  for (const std::size_t n : {5, 8, 40, 1000}) {
+    SCOPED_TRACE(n);
+    const Coordinates points = flat_points(n, n);
+    const Triangulation mesh = run(triangulator(), points, Record::steps);
+    const LaunchStatistics& solve = only(mesh.launches, "solve_blocks");
+    EXPECT_EQ(solve.longest_chain, MergeTwin(points).steps());
+    EXPECT_EQ(solve.steps, solve.longest_chain);
+    for (const char* walk : {"mark_outside", "write_hulls"}) {
+      EXPECT_EQ(only(mesh.launches, walk).longest_chain, mesh.statistics.hull_vertices);
+    }
+  }
+}
+
+// Of sets in one call, the longest counts, and all are added.
+TEST(Launches, StepsOfSeveralSets) {
+  const std::size_t sizes[] = {20, 300, 50};
+  Coordinates points;
+  std::vector<std::size_t> offsets{0};
+  std::uint32_t longest = 0;
+  std::uint64_t sum = 0;
+  for (const std::size_t size : sizes) {
+    const Coordinates set = flat_points(size, size);
+    const std::uint32_t steps = MergeTwin(set).steps();
+    longest = std::max(longest, steps);
+    sum += steps;
+    points.insert(points.end(), set.begin(), set.end());
+    offsets.push_back(offsets.back() + size);
+  }
+  Options options;
+  options.record = Record::steps;
+  const Triangulation mesh = research::triangulate(triangulator(), points.data(), offsets, options);
+  const LaunchStatistics& solve = only(mesh.launches, "solve_blocks");
+  EXPECT_EQ(solve.longest_chain, longest);
+  EXPECT_EQ(solve.steps, sum);
+}
+
+// A merge makes or removes an edge, or moves a tangent, in each step.
+TEST(Launches, StepsOfMergesOfBlocks) {
+  const Coordinates points = make_fixture("uniform", 20000, 1);
+  const Triangulation mesh = run(triangulator(), points, Record::steps);
+  std::size_t merges = 0;
+  for (const LaunchStatistics& launch : mesh.launches) {
+    if (launch.kernel != "merge_blocks") continue;
+    ++merges;
+    EXPECT_GE(launch.longest_chain * launch.work_items, launch.steps);
+    EXPECT_GT(launch.longest_chain, 0u);
+    if (launch.work_items == 1) EXPECT_EQ(launch.longest_chain, launch.steps);
+  }
+  EXPECT_GT(merges, 0u);
+}
+
+TEST(Launches, ElementsAreThoseOfChunks) {
+  // So many that on a GPU's sizes a chunk has more points than the least, one for each block.
+  constexpr std::size_t kPoints = 200000;
+  const Triangulation mesh = run(triangulator(), make_fixture("uniform", kPoints, 1), Record::launches);
+  for (const char* kernel : {"inspect", "count_blocks", "move_points"}) {
+    const LaunchStatistics& launch = only(mesh.launches, kernel);
+    EXPECT_GE(launch.work_items * launch.elements, kPoints) << kernel;
+    EXPECT_LT((launch.work_items - 1) * launch.elements, kPoints) << kernel;
+  }
+}
+
+TEST(Launches, OfTheHostHaveNoSteps) {
+  Triangulator on_host("host");
+  const Coordinates points = make_fixture("uniform", 10000, 1);
+  const Triangulation mesh = run(on_host, points, Record::launches);
+  EXPECT_EQ(only(mesh.launches, "solve_blocks").longest_chain, 0u);
+  EXPECT_EQ(run(on_host, points, Record::nothing).launches.size(), 0u);
+  EXPECT_THROW(run(on_host, points, Record::steps), Error);
+}
+
+TEST(Launches, AreRecordedOrOperationsCounted) {
+  Options options;
+  options.mode = Mode::flattened;
+  options.count = true;
+  options.record = Record::launches;
+  const Coordinates points = make_fixture("uniform", 100, 1);
+  EXPECT_THROW(research::triangulate(triangulator(), points.data(), 100, options), Error);
+}
+
+}  // namespace
+}  // namespace flaunay::testing
