@@ -5,7 +5,8 @@
 namespace flaunay::flattened {
 
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
-                                       const Buffer<cl_int>& triangles, std::size_t count) {
+                                       const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
+                                       std::size_t count) {
   if (table.sets == 1) return {0, count};
   host::Runtime& runtime = work.runtime;
   Arena::Scope scope(work.scratch());
@@ -23,6 +24,13 @@ std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
   runtime.copy(triangles, 0, unsorted, 0, 3 * count);
   runtime.map(count,
               kernels::reorder_triangles{.order = order, .triangles = unsorted, .reordered = triangles});
+  if (twins.memory() != nullptr) {
+    const auto places = work.scratch().allocate<cl_int>(count);
+    runtime.map(count, kernels::triangle_places{.order = order, .places = places});
+    runtime.copy(twins, 0, unsorted, 0, 3 * count);
+    runtime.map(count, kernels::reorder_twins{
+                           .order = order, .places = places, .twins = unsorted, .reordered = twins});
+  }
   std::vector<std::size_t> offsets{0};
   for (const cl_uint size : read_all(work, counts, table.sets)) offsets.push_back(offsets.back() + size);
   return offsets;
