@@ -39,6 +39,8 @@ class Recursion {
   RegionArrays read_regions();
 
   const Level& level() const { return level_; }  ///< the regions that are left
+  /// The arena that does not hold these regions.
+  Arena& other_arena() const { return *arenas_[work_.children == arenas_[0] ? 1 : 0]; }
   const Buffer<cl_int>& triangles() const { return triangles_; }
   std::size_t done() const { return done_; }  ///< number of triangles so far
   /// Copies the triangles so far to the host, 3 ids each.

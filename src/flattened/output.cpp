@@ -40,23 +40,23 @@ void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& t
                const Buffer<cl_int>& twins, std::size_t count, const Options& options,
                Triangulation& result) {
   host::Runtime& runtime = work.runtime;
-  const std::size_t rows = 3 * count;
+  const host::Runtime::Settled settled(runtime);
   Arena::Scope scope(work.scratch());
-  const auto output = work.scratch().allocate<cl_int>(rows);
   const bool with_neighbors = options.neighbors || options.halfedges;
-  const auto neighbors = work.scratch().allocate<cl_int>(with_neighbors ? rows : 0);
+  runtime.resize(result.triangles, 3 * count);
+  runtime.resize(result.neighbors, with_neighbors ? 3 * count : 0);
+  const auto output = runtime.output(result.triangles);
+  const auto neighbors = runtime.output(result.neighbors);
   runtime.map(count, kernels::finish_rows{.with_neighbors = with_neighbors,
                                           .triangles = triangles,
                                           .twins = twins,
                                           .source = table.source,
                                           .rows = output,
                                           .neighbors = neighbors});
-  result.triangles.resize(rows);
-  runtime.read(output, 0, rows, result.triangles.data());
-  if (!with_neighbors) return;
-  result.neighbors.resize(rows);
-  runtime.read(neighbors, 0, rows, result.neighbors.data());
-  geometry::write_halfedges(options, result);
+  runtime.fetch_later(output, result.triangles);
+  runtime.fetch_later(neighbors, result.neighbors);
+  runtime.finish();
+  if (with_neighbors) geometry::write_halfedges(options, result);
 }
 
 std::vector<std::int32_t> read_indices(Workspace& work, const PointTable& table, const Buffer<cl_int>& ids,

@@ -15,19 +15,18 @@ struct RegionBlocks {
   Buffer<cl_int> ids{};     ///< by place
 };
 
-RegionBlocks make_blocks(Workspace& work, const PointTable& table, const Level& level) {
+RegionBlocks make_blocks(Workspace& work, const PointTable& table, const Level& level, Arena& arena) {
   host::Runtime& runtime = work.runtime;
-  Arena& scratch = work.scratch();
   RegionBlocks made;
   points::Blocks& blocks = made.blocks;
   blocks.sets = 1;
   blocks.count = level.regions;
   blocks.points = level.points + level.corners;
-  blocks.device_offsets = scratch.allocate<cl_int>(level.regions + 1);
-  blocks.vertices = scratch.allocate<cl_double2>(blocks.points);
-  blocks.source = scratch.allocate<cl_int>(blocks.points);
-  made.owners = scratch.allocate<cl_int>(blocks.points);
-  made.ids = scratch.allocate<cl_int>(blocks.points);
+  blocks.device_offsets = arena.allocate<cl_int>(level.regions + 1);
+  blocks.vertices = arena.allocate<cl_double2>(blocks.points);
+  blocks.source = arena.allocate<cl_int>(blocks.points);
+  made.owners = arena.allocate<cl_int>(blocks.points);
+  made.ids = arena.allocate<cl_int>(blocks.points);
   runtime.map(level.regions + 1, kernels::region_offsets{.point_offsets = level.point_offsets,
                                                          .corner_offsets = level.corner_offsets,
                                                          .offsets = blocks.device_offsets});
@@ -124,15 +123,15 @@ Buffer<cl_uint> cut_out(Workspace& work, const PointTable& table, const Level& l
 
 }  // namespace
 
-SolvedRegions solve_regions(Workspace& work, const PointTable& table, const Level& level,
+SolvedRegions solve_regions(Workspace& work, const PointTable& table, const Level& level, Arena& arena,
                             const BlockSolver& solver, const Buffer<cl_int>& triangles, std::size_t base,
                             const Buffer<cl_int>& twins) {
   SolvedRegions solved;
   if (level.regions == 0) return solved;
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  Arena::Scope scope(scratch);
-  const RegionBlocks made = make_blocks(work, table, level);
+  Arena::Scope scope(scratch), arena_scope(arena);
+  const RegionBlocks made = make_blocks(work, table, level, arena);
   points::Workspace solver_work{runtime, scratch, work.bounds};
   const points::Rings rings = solver.solve(solver_work, made.blocks, made.owners);
   solved.undecided = rings.undecided;
