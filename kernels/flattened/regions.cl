@@ -1,12 +1,13 @@
-// Regions that are small enough for the solver of blocks: their points as blocks, and of the blocks' triangulations what
-// lies inside of the regions' borders.
+// Regions that are small enough for the solver of blocks: their points as blocks, and of the blocks' triangulations
+// what lies inside of the regions' borders.
 //
 // 1. region_offsets, place_points and place_corners make a block of each region: its internal points, and behind them
 //    the vertices of its corners. A vertex with several corners is there several times; the solver drops equal points.
 // 2. The solver triangulates the blocks. name_vertices names the rings' vertices by ids, and tells where they are;
 //    corner_vertices finds the vertex of each corner. (strips.cl has the two passes that follow: border_edges finds the
 //    edges of the borders, and restore_border flips in those that ties have kept out.)
-// 3. What lies left of an edge at a border's vertex is inside if and only if the edge is in the wedge of a corner there.
+// 3. What lies left of an edge at a border's vertex is inside if and only if the edge is in the wedge of a corner
+// there.
 //    close_vertices marks all edges out of such vertices as having the outside on their left, by the complement of the
 //    next edge; open_wedges takes the marks from the edges in wedges and counts the rows of these vertices as
 //    blocks/mesh.cl does, of each triangle at its middle vertex.
@@ -33,17 +34,17 @@ static inline void put_point(int place, int id, global const double2* points, gl
 }
 
 kernel void place_points(int n, global const int* restrict list, global const int* restrict regions,
-                          global const int* restrict corner_offsets, global const double2* restrict points,
-                          global double2* restrict vertices, global int* restrict source, global int* restrict owners,
-                          global int* restrict ids) {
+                         global const int* restrict corner_offsets, global const double2* restrict points,
+                         global double2* restrict vertices, global int* restrict source, global int* restrict owners,
+                         global int* restrict ids) {
   const int i = get_global_id(0);
   if (i < n) put_point(i + corner_offsets[regions[i]], list[i], points, vertices, source, owners, ids);
 }
 
 kernel void place_corners(int n, global const int* restrict corners, global const int* restrict regions,
-                            global const int* restrict point_offsets, global const double2* restrict points,
-                            global double2* restrict vertices, global int* restrict source,
-                            global int* restrict owners, global int* restrict ids) {
+                          global const int* restrict point_offsets, global const double2* restrict points,
+                          global double2* restrict vertices, global int* restrict source, global int* restrict owners,
+                          global int* restrict ids) {
   const int c = get_global_id(0);
   if (c < n) {
     put_point(c + point_offsets[regions[c] + 1], corners[3 * c + 1], points, vertices, source, owners, ids);
@@ -53,8 +54,8 @@ kernel void place_corners(int n, global const int* restrict corners, global cons
 // source: of the solver's vertices, their places; becomes their ids. vertex_of: by place. counts: the rows of internal
 // points; those of borders are still to be counted.
 kernel void name_vertices(int n, global const int* restrict vertex_edge, global const int* restrict ids,
-                            global const uchar* restrict side, global int* restrict source,
-                            global int* restrict vertex_of, global uint* restrict counts) {
+                          global const uchar* restrict side, global int* restrict source,
+                          global int* restrict vertex_of, global uint* restrict counts) {
   const int v = get_global_id(0);
   if (v < n) {
     uint count = 0;

@@ -6,7 +6,6 @@
 #include "blocks/stages.hpp"
 #include "call/host_modes.hpp"
 #include "dwyer/run.hpp"
-#include "flattened/run.hpp"
 #include "partition/regions.hpp"
 #include "recursive/run.hpp"
 
@@ -40,7 +39,6 @@ research::Triangulation run_levels(TriangulatorAccess::Implementation& self, con
   return result;
 }
 
-// Mode blocks solves the regions of mode flattened, once these are small.
 points::Rings solve_blocks(points::Workspace& work, const points::Blocks& blocks,
                            const host::Buffer<cl_int>& representatives) {
   points::Rings rings = blocks::divide(work, blocks, representatives);
@@ -58,7 +56,7 @@ void write_rows(points::Workspace& work, const points::Blocks& blocks, const poi
 
 research::Triangulation run_flattened(TriangulatorAccess::Implementation& self, const Request& request) {
   flattened::Solvers solvers;
-  solvers.blocks = {solve_blocks, write_rows};
+  solvers.blocks = block_solver();
   return run_levels(self, request, solvers);
 }
 
@@ -120,6 +118,8 @@ const std::array<ModeRow, 6> kModes = {{
 }};
 
 }  // namespace
+
+flattened::BlockSolver block_solver() { return {solve_blocks, write_rows}; }
 
 const ModeRow& row_of(research::Mode mode) {
   for (const ModeRow& row : kModes) {

@@ -9,8 +9,8 @@ struct EdgeTable {
   cl_uint mask = 0;
 };
 
-// A hash table that is at most three quarters full: the number of edges is half that of half-edges, plus half the
-// hull's.
+// A hash table that is at most three quarters full: the number of edges is half that of half-edges, plus half
+// the hull's.
 EdgeTable make_table(Workspace& work, std::size_t halfedges) {
   std::size_t slots = 16;
   while (3 * slots < 4 * (halfedges + 3) / 2 + 64) slots *= 2;
@@ -29,10 +29,9 @@ void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t c
   runtime.fill(twins, 3 * count, cl_int{-1});
   runtime.map(3 * count,
               kernels::insert_edges{.mask = table.mask, .triangles = triangles, .table = table.slots});
-  runtime.map(3 * count, kernels::match_edges{.mask = table.mask,
-                                              .triangles = triangles,
-                                              .table = table.slots,
-                                              .twins = twins});
+  runtime.map(
+      3 * count,
+      kernels::match_edges{.mask = table.mask, .triangles = triangles, .table = table.slots, .twins = twins});
 }
 
 bool match_loose_edges(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
@@ -46,11 +45,10 @@ bool match_loose_edges(Workspace& work, const PointTable& table, const Buffer<cl
   const EdgeTable edges = make_table(work, loose);
   runtime.map(loose, kernels::insert_loose{
                          .mask = edges.mask, .list = list, .triangles = triangles, .table = edges.slots});
-  runtime.map(loose, kernels::match_loose{.mask = edges.mask,
-                                          .list = list,
-                                          .triangles = triangles,
-                                          .table = edges.slots,
-                                          .twins = twins});
+  runtime.map(
+      loose,
+      kernels::match_loose{
+          .mask = edges.mask, .list = list, .triangles = triangles, .table = edges.slots, .twins = twins});
   return any_cocircular(work, table, triangles, twins, list, loose);
 }
 

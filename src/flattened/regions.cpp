@@ -31,21 +31,21 @@ RegionBlocks make_blocks(Workspace& work, const PointTable& table, const Level& 
                                                          .corner_offsets = level.corner_offsets,
                                                          .offsets = blocks.device_offsets});
   runtime.map(level.points, kernels::place_points{.list = level.x_list,
-                                                   .regions = level.point_regions,
-                                                   .corner_offsets = level.corner_offsets,
-                                                   .points = table.points,
-                                                   .vertices = blocks.vertices,
-                                                   .source = blocks.source,
-                                                   .owners = made.owners,
-                                                   .ids = made.ids});
+                                                  .regions = level.point_regions,
+                                                  .corner_offsets = level.corner_offsets,
+                                                  .points = table.points,
+                                                  .vertices = blocks.vertices,
+                                                  .source = blocks.source,
+                                                  .owners = made.owners,
+                                                  .ids = made.ids});
   runtime.map(level.corners, kernels::place_corners{.corners = level.corner_ids,
-                                                      .regions = level.corner_regions,
-                                                      .point_offsets = level.point_offsets,
-                                                      .points = table.points,
-                                                      .vertices = blocks.vertices,
-                                                      .source = blocks.source,
-                                                      .owners = made.owners,
-                                                      .ids = made.ids});
+                                                    .regions = level.corner_regions,
+                                                    .point_offsets = level.point_offsets,
+                                                    .points = table.points,
+                                                    .vertices = blocks.vertices,
+                                                    .source = blocks.source,
+                                                    .owners = made.owners,
+                                                    .ids = made.ids});
   blocks.offsets = read_all(work, blocks.device_offsets, level.regions + 1);
   return made;
 }
@@ -81,7 +81,8 @@ Buffer<cl_int> find_borders(Workspace& work, const PointTable& table, const Leve
   return border_edge;
 }
 
-// Marks what lies outside of the borders. Returns where the rows of each vertex begin, closed by their number.
+// Marks what lies outside of the borders. Returns where the rows of each vertex begin, closed by their
+// number.
 Buffer<cl_uint> cut_out(Workspace& work, const PointTable& table, const Level& level,
                         const RegionBlocks& made, const points::Rings& rings) {
   host::Runtime& runtime = work.runtime;
@@ -92,11 +93,11 @@ Buffer<cl_uint> cut_out(Workspace& work, const PointTable& table, const Level& l
   const auto vertex_of = scratch.allocate<cl_int>(blocks.points);
   const auto corner_vertex = scratch.allocate<cl_int>(level.corners);
   runtime.map(blocks.points, kernels::name_vertices{.vertex_edge = rings.vertex_edge,
-                                                      .ids = made.ids,
-                                                      .side = table.side,
-                                                      .source = blocks.source,
-                                                      .vertex_of = vertex_of,
-                                                      .counts = rows});
+                                                    .ids = made.ids,
+                                                    .side = table.side,
+                                                    .source = blocks.source,
+                                                    .vertex_of = vertex_of,
+                                                    .counts = rows});
   runtime.map(level.corners, kernels::corner_vertices{.regions = level.corner_regions,
                                                       .point_offsets = level.point_offsets,
                                                       .owners = made.owners,

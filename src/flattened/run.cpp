@@ -168,9 +168,8 @@ void finish_blocks(Call& call, Recursion& recursion, const Borders& borders, con
   Arena::Scope scope(work.scratch());
   const auto twins = work.scratch().allocate<cl_int>(3 * count);
   work.runtime.fill(twins, 3 * count, cl_int{-1});
-  const SolvedRegions solved =
-      solve_regions(work, table, recursion.level(), recursion.other_arena(), solver, triangles,
-                    recursion.done(), twins);
+  const SolvedRegions solved = solve_regions(work, table, recursion.level(), recursion.other_arena(), solver,
+                                             triangles, recursion.done(), twins);
   call.end_levels(recursion.done() + solved.triangles, borders.triangles);
   call.statistics.undecided += solved.undecided;
   call.phases.end("regions");

@@ -245,8 +245,8 @@ bool any_cocircular(Workspace& work, const PointTable& table, const Buffer<cl_in
 void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                   std::size_t count, const Buffer<cl_int>& twins);
 
-/// Sorts triangles, and twins unless they have no memory, by sets. Returns sets + 1 offsets: where the triangles
-/// of each set begin.
+/// Sorts triangles, and twins unless they have no memory, by sets. Returns sets + 1 offsets: where the
+/// triangles of each set begin.
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
                                        const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
                                        std::size_t count);
