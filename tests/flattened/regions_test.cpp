@@ -162,7 +162,9 @@ void check_all(Runtime& runtime, const std::vector<std::size_t>& sizes, MetRegio
 TEST(SmallRegions, AreSolvedAsByTheTwin) {
   MetRegions met;
   check_regions(Runtimes::get(true), make_fixture("uniform", 40, 1), 2, false, met);
-  check_regions(Runtimes::get(true), make_fixture("integer-circle", 60, 1), 3, true, met);
+  for (const char* const name : {"grid", "columns", "nested-circles", "small-integers"}) {
+    check_regions(Runtimes::get(true), make_fixture(name, 60, 1), 3, true, met);
+  }
   EXPECT_GT(met.regions, 4u);
   EXPECT_GT(met.cocircular_borders, 0u);
 }
