@@ -20,12 +20,19 @@ namespace {
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // needed twice: for the current level and for the next one
 constexpr std::size_t kScratchBytesPerPoint = 118;
+constexpr std::size_t kScratchBytesPerPointOfBlocks = 142;
 
 // The share of the time that is over when a stage ends, for progress.
 constexpr double kSorted = 0.05;
 constexpr double kPartitioned = 0.4;
 constexpr double kTriangulated = 0.9;
 constexpr double kCanonical = 0.95;
+
+// Operations are counted in levels alone.
+bool ends_in_blocks(const research::Options& options) {
+  return options.mode == research::Mode::flattened && options.finish == research::Finish::blocks &&
+         !options.count;
+}
 
 // The state of one call: the sorted points, and statistics so far.
 class Call {
@@ -66,7 +73,8 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
   persistent.reserve(n * kPersistentBytesPerPoint);
   memory.even.reserve(n * kStateBytesPerPoint);
   memory.odd.reserve(n * kStateBytesPerPoint);
-  runtime.arena().reserve(n * kScratchBytesPerPoint);
+  runtime.arena().reserve(n *
+                          (ends_in_blocks(wanted) ? kScratchBytesPerPointOfBlocks : kScratchBytesPerPoint));
   work.hull = options.hull;
   work.broken = persistent.allocate<cl_int>(1);
   work.list_length = persistent.allocate<cl_uint>(1);
@@ -216,17 +224,14 @@ void run(host::Runtime& runtime, const Memory& memory, const double* coordinates
          research::Triangulation& result) {
   Call call(runtime, memory, coordinates, offsets, options, result.statistics, result.levels, result.work,
             result.representatives);
-  // Operations are counted in the levels alone.
-  const bool ends_in_blocks = options.mode == research::Mode::flattened &&
-                              options.finish == research::Finish::blocks && !options.count;
-  const bool ends_early = ends_in_blocks || options.mode == research::Mode::partition;
+  const bool ends_early = ends_in_blocks(options) || options.mode == research::Mode::partition;
   Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd},
                       ends_early ? kPartitioned : kTriangulated);
   const Borders borders = recursion.begin();
   call.phases.end("borders");
   if (options.mode == research::Mode::partition) {
     finish_partition(call, recursion, borders, solvers.partition_levels, solvers.regions, result);
-  } else if (ends_in_blocks) {
+  } else if (ends_in_blocks(options)) {
     finish_blocks(call, recursion, borders, solvers.blocks, result);
   } else {
     finish_levels(call, recursion, borders, result);

@@ -166,6 +166,29 @@ TEST_P(OnFixture, FlattenedEndsInBlocks) {
   }
 }
 
+TEST(Modes, FlattenedSetsEndInBlocks) {
+  Coordinates points;
+  std::vector<std::size_t> offsets{0, 0};
+  std::size_t size = 1;
+  for (int k = 0; k < 2; ++k) {
+    for (const Fixture& fixture : all_fixtures()) {
+      const Coordinates set = fixture.make(size % 97, size);
+      points.insert(points.end(), set.begin(), set.end());
+      offsets.push_back(points.size() / 2);
+      size += 13;
+    }
+  }
+  const Triangulation expected = research::triangulate(triangulator(), points.data(), offsets, {});
+  Options options;
+  options.mode = Mode::flattened;
+  for (const char* const name : {"small-blocks", "small-blocks,region_points=30", "cpu,region_points=6"}) {
+    SCOPED_TRACE(name);
+    const ScopedEnvironment tuning("FLAUNAY_TUNING", name);
+    Triangulator tuned(device_under_test());
+    expect_same(research::triangulate(tuned, points.data(), offsets, options), expected);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Fixtures, OnFixture, ::testing::ValuesIn(fixture_names()), instance_name);
 
 TEST(Modes, OnFiles) {
