@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -22,6 +21,7 @@
 #include "flattened/partition.hpp"
 #include "partition/regions.hpp"
 #include "tests/flattened/support.hpp"
+#include "tests/support/neighbors_twin.hpp"
 
 namespace flaunay::flattened {
 namespace {
@@ -39,32 +39,12 @@ std::vector<Row> sorted_rows(const std::vector<cl_int>& triangles) {
   return rows;
 }
 
-/// The half-edge from b to a for each one from a to b, or -1.
-std::vector<cl_int> twins_twin(const std::vector<cl_int>& triangles) {
-  const auto ends = [&](std::size_t h) {
-    return std::pair(triangles[h], triangles[h % 3 == 2 ? h - 2 : h + 1]);
-  };
-  std::map<std::pair<cl_int, cl_int>, cl_int> found;
-  for (std::size_t h = 0; h < triangles.size(); ++h) found[ends(h)] = static_cast<cl_int>(h);
-  EXPECT_EQ(found.size(), triangles.size()) << "a half-edge is there twice";
-  std::vector<cl_int> twins;
-  for (std::size_t h = 0; h < triangles.size(); ++h) {
-    const auto [from, to] = ends(h);
-    const auto other = found.find({to, from});
-    twins.push_back(other == found.end() ? -1 : other->second);
-  }
-  return twins;
-}
-
 std::vector<cl_int> slice(const std::vector<cl_int>& values, std::size_t first, std::size_t last) {
   return {values.begin() + static_cast<std::ptrdiff_t>(first),
           values.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
-/// What a test met, so that it can say that it met it.
-struct MetRegions {
-  std::size_t regions = 0, retired = 0, cocircular_borders = 0, several_corners = 0;
-};
+}  // namespace
 
 void check_regions(Runtime& runtime, const Coordinates& coordinates, int levels, bool has_ties,
                    MetRegions& met) {
@@ -107,7 +87,7 @@ void check_regions(Runtime& runtime, const Coordinates& coordinates, int levels,
   }
 
   // Twins are known wherever both half-edges are in one region. A border parts every two regions.
-  std::vector<cl_int> within = twins_twin(all);
+  std::vector<cl_int> within = testing::twins_twin(all);
   const std::vector<cl_int> complete = within;
   std::set<std::pair<cl_int, cl_int>> border;
   std::set<cl_int> vertices;
@@ -140,6 +120,8 @@ void check_regions(Runtime& runtime, const Coordinates& coordinates, int levels,
   EXPECT_TRUE(same(call.read(twins, 3 * count), complete));
   EXPECT_EQ(call.broken(), 0);
 }
+
+namespace {
 
 const std::vector<std::string> kWithoutTies{"uniform", "kuzmin", "line", "normal", "clusters"};
 const std::vector<std::string> kWithTies{"grid",     "integer-circle", "circle",         "columns",
