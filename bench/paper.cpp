@@ -266,6 +266,7 @@ Json cross_check_row(Triangulator& triangulator, const std::string& distribution
   const research::Options of_twin = options_of(kMethods[kDefaultMethod]);
   research::Options of_kernels = of_twin;
   of_kernels.mode = research::Mode::flattened;
+  of_kernels.finish = research::Finish::levels;
   const auto kernels = unsorted(call(triangulator, input, of_kernels).work);
   const auto twin = unsorted(call_on_host(input, of_twin).work);
   Json row{{"distribution", distribution}, {"n", n}, {"all", ratio_of(total(kernels), total(twin))}};

@@ -148,6 +148,9 @@ TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
     if (info.mode != research::Mode::recursive) {
       refused("--hull-variant", mode, {"--mode", mode, "--hull-variant", "monotone-chain"});
     }
+    if (info.mode != research::Mode::flattened) {
+      refused("--finish", "--mode flattened", {"--mode", mode, "--finish", "levels"});
+    }
     if (info.mode != research::Mode::partition) {
       refused("--partition-levels", "--mode partition", {"--mode", mode, "--partition-levels", "2"});
       refused("--threads", "--mode partition", {"--mode", mode, "--threads", "2"});
@@ -155,6 +158,7 @@ TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
   }
   refused("--cut", "--mode flattened", {"--cut", "alternate"});
   refused("--count", "--mode flattened", {"--count"});
+  refused("--finish", "--finish levels", {"--mode", "flattened", "--count", "--finish", "blocks"});
   refused("--threads", "0", {"--mode", "partition", "--threads", "0"});
   refused("--partition-levels", "0", {"--mode", "partition", "--partition-levels", "0"});
 }
@@ -733,8 +737,9 @@ TEST_F(CommandTriangulateTest, ThreePointsAreOneTriangle) {
 
 TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   run_well({"generate", "uniform", "2000", "-o", path("points.npy")}, kNoPlatform);
-  const Outcome outcome = run_well({"triangulate", path("points.npy"), "--mode", "flattened", "--cut",
-                                    "alternate", "--stats", path("stats.json"), "--profile"});
+  const Outcome outcome =
+      run_well({"triangulate", path("points.npy"), "--mode", "flattened", "--finish", "levels", "--cut",
+                "alternate", "--stats", path("stats.json"), "--profile"});
   EXPECT_NE(outcome.out.find("kernel"), std::string::npos) << outcome.out;
   const auto stats = nlohmann::json::parse(contents(path("stats.json")), nullptr, false);
   ASSERT_FALSE(stats.is_discarded());
@@ -846,6 +851,7 @@ TEST_F(CommandTriangulateTest, EveryModeGivesTheSameTriangles) {
   std::vector<Arguments> modes = {
       {"--mode", "flattened", "--hull-variant", "quickhull"},
       {"--mode", "flattened", "--hull-variant", "balanced"},
+      {"--mode", "flattened", "--finish", "levels"},
       {"--mode", "recursive", "--hull-variant", "monotone-chain", "--cut", "alternate"},
       {"--mode", "partition", "--partition-levels", "3", "--threads", "2"}};
   std::set<std::string> on_host;

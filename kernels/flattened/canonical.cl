@@ -1,7 +1,8 @@
 // The canonical result: where an empty circle passes through more than three points, their polygon becomes a fan
 // from its lexicographically smallest vertex, which is the one with the smallest id.
 //
-// cocircular_flags tests each interior edge; cocircular_exact decides those left undecided (a packed list). If there
+// cocircular_flags tests each interior edge; cocircular_exact decides those left undecided (a packed list).
+// cocircular_listed only tells whether there are any among the listed ones. If there
 // are cocircular edges, cell_flags finds the half-edges around their cells, and cell_links makes each cell's border a
 // cycle. jump_labels brings each cycle's smallest id to all of the cycle by pointer jumping, in as many passes as the
 // logarithm of the longest cycle. fan_flags and fan_write replace the cells' triangles. The other kernels are one pass
@@ -10,6 +11,15 @@
 #include "shared/codes.h"
 #include "shared/halfedges.h"
 #include "shared/planar.h"
+
+// The in-circle test of the apexes beside half-edge h and its twin: 0 if they are cocircular, 1 if the edge is not
+// Delaunay, UNDECIDED.
+static inline int circle_beside(int h, int twin, global const int* triangles, global const double2* points,
+                                double bound, int exact) {
+  const double2 apex = points[triangles[opposite_corner(h)]], beyond = points[triangles[opposite_corner(twin)]];
+  const double2 from = points[halfedge_from(triangles, h)], to = points[halfedge_to(triangles, h)];
+  return exact ? circle_undecided(apex, from, to, beyond, bound) : circle_filtered(apex, from, to, beyond, bound);
+}
 
 // flags[h], for the smaller half-edge of each interior edge: 1 cocircular, 0 not, or FLAG_UNDECIDED; 0 for all others.
 // broken[0] gets BROKEN_CIRCLE if an edge is not Delaunay.
@@ -21,9 +31,7 @@ kernel void cocircular_flags(int n, double bound, global const int* restrict tri
     const int twin = twins[h];
     int flag = 0;
     if (twin > h) {
-      const int sign =
-          circle_filtered(points[triangles[opposite_corner(h)]], points[halfedge_from(triangles, h)],
-                          points[halfedge_to(triangles, h)], points[triangles[opposite_corner(twin)]], bound);
+      const int sign = circle_beside(h, twin, triangles, points, bound, 0);
       flag = sign == UNDECIDED ? FLAG_UNDECIDED : sign == 0;
       if (sign == 1) atomic_or(broken, BROKEN_CIRCLE);
     }
@@ -38,11 +46,26 @@ kernel void cocircular_exact(double bound, global const uint* restrict count, gl
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int h = list[k];
-    const int sign =
-        circle_undecided(points[triangles[opposite_corner(h)]], points[halfedge_from(triangles, h)],
-                         points[halfedge_to(triangles, h)], points[triangles[opposite_corner(twins[h])]], bound);
+    const int sign = circle_beside(h, twins[h], triangles, points, bound, 1);
     flags[h] = sign == 0;
     if (sign > 0) atomic_or(broken, BROKEN_CIRCLE);
+  }
+}
+
+// found[0]: whether the apexes beside one of the listed half-edges are cocircular.
+kernel void cocircular_listed(int n, double bound, global const int* restrict list,
+                              global const int* restrict triangles, global const int* restrict twins,
+                              global const double2* restrict points, global volatile int* restrict found,
+                              global volatile int* restrict broken) {
+  const int k = get_global_id(0);
+  if (k < n) {
+    const int h = list[k], twin = twins[h];
+    if (twin > h) {
+      int sign = circle_beside(h, twin, triangles, points, bound, 0);
+      if (sign == UNDECIDED) sign = circle_beside(h, twin, triangles, points, bound, 1);
+      if (sign == 0) atomic_or(found, 1);
+      if (sign > 0) atomic_or(broken, BROKEN_CIRCLE);
+    }
   }
 }
 

@@ -4,6 +4,9 @@
 // that ascend (from a smaller to a larger vertex) into free slots; match_edges looks there for the twins of the others.
 // Which slot an edge gets depends on scheduling; the result does not, since each edge is in the table once.
 
+//
+// loose_edges flags half-edges that have no twin yet; insert_loose and match_loose do the same for a list of them.
+
 #include "shared/halfedges.h"
 
 static inline uint edge_hash(int low, int high) {
@@ -23,36 +26,59 @@ static inline uint edge_slot(int low, int high, uint attempt) {
   return hash + (attempt - SLOTS_NEAR) * (hash >> 7 | 1);
 }
 
+static inline void insert_edge(int h, uint mask, global const int* restrict triangles,
+                               global volatile int* restrict table) {
+  const int from = halfedge_from(triangles, h);
+  const int to = halfedge_to(triangles, h);
+  int searching = from < to;
+  for (uint attempt = 0; searching; ++attempt) {
+    searching = atomic_cmpxchg(&table[edge_slot(from, to, attempt) & mask], -1, h) != -1;
+  }
+}
+
+static inline void match_edge(int h, uint mask, global const int* restrict triangles, global const int* restrict table,
+                              global int* restrict twins) {
+  const int from = halfedge_from(triangles, h);
+  const int to = halfedge_to(triangles, h);
+  int searching = from > to;
+  for (uint attempt = 0; searching; ++attempt) {
+    const int other = table[edge_slot(to, from, attempt) & mask];
+    if (other < 0) {
+      searching = 0;
+    } else if (halfedge_from(triangles, other) == to && halfedge_to(triangles, other) == from) {
+      twins[h] = other;
+      twins[other] = h;
+      searching = 0;
+    }
+  }
+}
+
 // table: mask + 1 slots (a power of two, more than there are edges), -1 throughout.
 kernel void insert_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table) {
   const int h = get_global_id(0);
-  if (h < n) {
-    const int from = halfedge_from(triangles, h);
-    const int to = halfedge_to(triangles, h);
-    int searching = from < to;
-    for (uint attempt = 0; searching; ++attempt) {
-      searching = atomic_cmpxchg(&table[edge_slot(from, to, attempt) & mask], -1, h) != -1;
-    }
-  }
+  if (h < n) insert_edge(h, mask, triangles, table);
 }
 
 // twins: -1 throughout.
 kernel void match_edges(int n, uint mask, global const int* restrict triangles, global const int* restrict table,
                         global int* restrict twins) {
   const int h = get_global_id(0);
-  if (h < n) {
-    const int from = halfedge_from(triangles, h);
-    const int to = halfedge_to(triangles, h);
-    int searching = from > to;
-    for (uint attempt = 0; searching; ++attempt) {
-      const int other = table[edge_slot(to, from, attempt) & mask];
-      if (other < 0) {
-        searching = 0;
-      } else if (halfedge_from(triangles, other) == to && halfedge_to(triangles, other) == from) {
-        twins[h] = other;
-        twins[other] = h;
-        searching = 0;
-      }
-    }
-  }
+  if (h < n) match_edge(h, mask, triangles, table, twins);
+}
+
+kernel void loose_edges(int n, global const int* restrict twins, global uchar* restrict flags) {
+  const int h = get_global_id(0);
+  if (h < n) flags[h] = twins[h] < 0;
+}
+
+kernel void insert_loose(int n, uint mask, global const int* restrict list, global const int* restrict triangles,
+                         global volatile int* restrict table) {
+  const int k = get_global_id(0);
+  if (k < n) insert_edge(list[k], mask, triangles, table);
+}
+
+kernel void match_loose(int n, uint mask, global const int* restrict list, global const int* restrict triangles,
+                        global const int* restrict table, global int* restrict twins) {
+  const int k = get_global_id(0);
+  if (k < n) match_edge(list[k], mask, triangles, table, twins);
 }

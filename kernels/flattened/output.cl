@@ -1,7 +1,8 @@
 // Output: ids become indices of the input, and each row begins with its smallest index.
 //
 // finish_rows does so for triangles and their neighbours, map_ids for the hull. If there are several sets,
-// triangle_sets and reorder_triangles put their triangles into the order of the sets. Each kernel is one pass, with one
+// triangle_sets and reorder_triangles put their triangles into the order of the sets, triangle_places and reorder_twins
+// their twins, if they are known. Each kernel is one pass, with one
 // work-item per triangle or hull vertex.
 
 #include "shared/halfedges.h"
@@ -54,5 +55,22 @@ kernel void reorder_triangles(int n, global const int* restrict order, global co
   if (t < n) {
     const int from = order[t];
     for (int j = 0; j < 3; ++j) reordered[3 * t + j] = triangles[3 * from + j];
+  }
+}
+
+// order: the triangle that goes to each place; places: where each triangle goes.
+kernel void triangle_places(int n, global const int* restrict order, global int* restrict places) {
+  const int t = get_global_id(0);
+  if (t < n) places[order[t]] = t;
+}
+
+kernel void reorder_twins(int n, global const int* restrict order, global const int* restrict places,
+                          global const int* restrict twins, global int* restrict reordered) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    for (int j = 0; j < 3; ++j) {
+      const int twin = twins[3 * order[t] + j];
+      reordered[3 * t + j] = twin < 0 ? -1 : 3 * places[twin / 3] + twin % 3;
+    }
   }
 }

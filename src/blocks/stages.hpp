@@ -12,6 +12,7 @@
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 #include "points/distribute.hpp"
+#include "points/rings.hpp"
 #include "shared/limits.h"
 #include "shared/records.h"
 #include "tuning/tuning.hpp"
@@ -33,18 +34,6 @@ constexpr double kBlocksSolved = 0.7;
 constexpr double kBlocksMerged = 0.8;
 constexpr double kMeshCounted = 0.85;
 constexpr double kTrianglesWritten = 0.95;
-
-/// The triangulations of all sets, as rings of edges around their vertices.
-struct Rings {
-  Buffer<kernel::ring_edge> edges{};  ///< kernel::EDGES_PER_VERTEX per point
-  Buffer<cl_int> vertex_edge{};
-  Buffer<kernel::solved_block> solved{};
-  Buffer<cl_int> device_distinct{};
-  Buffer<cl_uint> device_account{};
-  std::vector<cl_int> distinct;  ///< number of vertices of each block
-  std::size_t undecided = 0;     ///< predicates that were evaluated exactly
-  std::size_t ties = 0;          ///< how many of them found cocircular points
-};
 
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
 /// sets the numbers in Rings that are on the host. Sets a milestone for some of the blocks each, and for each

@@ -12,6 +12,7 @@ namespace flaunay::c {
 namespace {
 
 using research::Cut;
+using research::Finish;
 using research::Hull;
 using research::Mode;
 
@@ -64,6 +65,16 @@ Hull to_hull(int hull) {
       return Hull::monotone_chain;
   }
   throw_usage(fmt::format("there is no variant of hulls {}", hull));
+}
+
+Finish to_finish(int finish) {
+  switch (finish) {
+    case FLAUNAY_FINISH_BLOCKS:
+      return Finish::blocks;
+    case FLAUNAY_FINISH_LEVELS:
+      return Finish::levels;
+  }
+  throw_usage(fmt::format("there is no finish {}", finish));
 }
 
 Precision to_precision(int precision) {
@@ -155,6 +166,7 @@ research::Options to_options(const flaunay_options* options) {
   result.mode = to_mode(options->mode);
   result.cut = to_cut(options->cut);
   result.hull = to_hull(options->hull);
+  result.finish = to_finish(options->finish);
   if (options->parts != 0) {
     for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
       const auto option = kResultArrays[k].option;

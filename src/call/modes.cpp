@@ -3,9 +3,9 @@
 #include <array>
 #include <utility>
 
+#include "blocks/stages.hpp"
 #include "call/host_modes.hpp"
 #include "dwyer/run.hpp"
-#include "flattened/run.hpp"
 #include "partition/regions.hpp"
 #include "recursive/run.hpp"
 
@@ -58,9 +58,9 @@ research::Triangulation run_blocks(TriangulatorAccess::Implementation& self, con
   return result;
 }
 
-// Runs the modes that go level by level on the device. solve_regions: empty except in Mode::partition.
+// Runs the modes that go level by level on the device.
 research::Triangulation run_levels(TriangulatorAccess::Implementation& self, const Request& request,
-                                   int partition_levels, const flattened::SolveRegions& solve_regions) {
+                                   const flattened::Solvers& solvers) {
   const std::size_t n = request.offsets.back();
   Engine& engine = self.on_device();
   engine.check_size(n);
@@ -72,26 +72,45 @@ research::Triangulation run_levels(TriangulatorAccess::Implementation& self, con
   const Recording recording(engine, request.options.record);
   engine.begin_call(request.options.profile);
   flattened::run(engine.runtime, {engine.persistent, engine.even, engine.odd}, coordinates, request.offsets,
-                 request.options, partition_levels, solve_regions, result);
+                 request.options, solvers, result);
   engine.write_accounts(result.statistics);
   result.launches = recording.launches();
   return result;
 }
 
+points::Rings solve_blocks(points::Workspace& work, const points::Blocks& blocks,
+                           const host::Buffer<cl_int>& representatives) {
+  points::Rings rings = blocks::divide(work, blocks, representatives);
+  blocks::await_rings(work, blocks, rings);
+  return rings;
+}
+
+void write_rows(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
+                const host::Buffer<cl_uint>& first_rows, const host::Buffer<cl_int>& triangles,
+                const host::Buffer<cl_int>& twins) {
+  blocks::MeshSizes sizes;
+  sizes.first_rows = first_rows;
+  blocks::write_mesh(work, blocks, rings, sizes, {triangles, {}, twins, {}});
+}
+
 research::Triangulation run_flattened(TriangulatorAccess::Implementation& self, const Request& request) {
-  return run_levels(self, request, 0, {});
+  flattened::Solvers solvers;
+  solvers.blocks = block_solver();
+  return run_levels(self, request, solvers);
 }
 
 // Dwyer's algorithm triangulates the regions that are left after the levels.
 research::Triangulation run_partition(TriangulatorAccess::Implementation& self, const Request& request) {
   const research::Options& options = request.options;
-  const int levels = partition::levels_for(request.offsets.back(), options.partition_levels, options.threads);
-  return run_levels(self, request, levels,
-                    [&](const geometry::PointSets& sets, const geometry::RegionArrays& regions,
+  flattened::Solvers solvers;
+  solvers.partition_levels =
+      partition::levels_for(request.offsets.back(), options.partition_levels, options.threads);
+  solvers.regions = [&](const geometry::PointSets& sets, const geometry::RegionArrays& regions,
                         research::OperationCounts* counts) {
-                      return partition::solve_regions(sets.predicates, sets.points.data(), regions,
-                                                      dwyer::triangulate, options.threads, counts);
-                    });
+    return partition::solve_regions(sets.predicates, sets.points.data(), regions, dwyer::triangulate,
+                                    options.threads, counts);
+  };
+  return run_levels(self, request, solvers);
 }
 
 research::Triangulation run_recursive(const double* coordinates, const Request& request) {
@@ -139,6 +158,8 @@ const std::array<ModeRow, 6> kModes = {{
 
 }  // namespace
 
+flattened::BlockSolver block_solver() { return {solve_blocks, write_rows}; }
+
 const ModeRow& row_of(research::Mode mode) {
   for (const ModeRow& row : kModes) {
     if (row.info.mode == mode) return row;
@@ -167,6 +188,8 @@ const char* to_string(Mode mode) noexcept {
 }
 
 const char* to_string(Cut cut) noexcept { return cut == Cut::alternate ? "alternate" : "iqr"; }
+
+const char* to_string(Finish finish) noexcept { return finish == Finish::levels ? "levels" : "blocks"; }
 
 const char* to_string(Hull hull) noexcept {
   switch (hull) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "call/host_call.hpp"
+#include "flattened/run.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::call {
@@ -23,6 +24,9 @@ struct ModeRow {
   /// Runs the mode on the host; null for a mode that needs an engine. coordinates: in double precision.
   research::Triangulation (*on_host)(const double* coordinates, const Request& request);
 };
+
+/// Mode blocks as the solver of the regions of mode flattened.
+flattened::BlockSolver block_solver();
 
 /// The row of a mode. Throws Error(usage) for an unknown mode.
 const ModeRow& row_of(research::Mode mode);

@@ -14,8 +14,11 @@ namespace flaunay::cli {
 /// compiling.
 template <typename Call>
 double compile_kernels(std::size_t points, research::Mode mode, const Call& call) {
-  // More than one block; but a mode that launches kernels for each region needs a thousand times longer.
-  const std::size_t enough = mode == research::Mode::recursive_device ? 64 : 2500;
+  // More than one block, or than the region at which levels may end; but a mode that launches kernels for
+  // each region needs a thousand times longer.
+  const std::size_t enough = mode == research::Mode::recursive_device ? 64
+                             : mode == research::Mode::flattened      ? 10000
+                                                                      : 2500;
   const Stopwatch stopwatch;
   call(std::min(points, enough));
   return stopwatch.seconds();

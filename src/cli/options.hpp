@@ -11,6 +11,7 @@
 namespace flaunay::cli {
 
 using research::Cut;
+using research::Finish;
 using research::Hull;
 using research::Mode;
 

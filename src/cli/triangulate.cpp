@@ -26,6 +26,7 @@ struct TriangulateRequest {
   Mode mode = Mode::blocks;
   Cut cut = Cut::interquartile;
   Hull dividing_paths = Hull::prune;
+  Finish finish = Finish::blocks;
   int partition_levels = 0;
   int threads = 0;
   bool count = false;
@@ -58,6 +59,11 @@ void check_combination(const CLI::App& command, const TriangulateRequest& reques
   if (!mode.counts) {
     refuse(command, "--count", fmt::format("mode {} does not count; take --mode flattened", mode.name));
   }
+  if (request.mode != Mode::flattened) {
+    refuse(command, "--finish", fmt::format("needs --mode flattened, not {}", mode.name));
+  } else if (request.count && request.finish == Finish::blocks) {
+    refuse(command, "--finish", "--count needs --finish levels");
+  }
   if (request.mode != Mode::partition) {
     for (const char* option : {"--partition-levels", "--threads"}) {
       refuse(command, option, fmt::format("needs --mode partition, not {}", mode.name));
@@ -82,6 +88,7 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
   options.mode = request.mode;
   options.cut = request.cut;
   options.hull = request.dividing_paths;
+  options.finish = request.finish;
   ask_for(request.results, options);
   options.profile = request.profile;
   options.count = request.count;
@@ -159,6 +166,9 @@ void add_triangulate(CLI::App& app, Action& action) {
                    {Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain},
                    "How dividing paths are computed; the triangles do not depend on it. monotone-chain: mode "
                    "recursive only");
+  add_choice<Finish>(command, "--finish", request->finish,
+                     "Mode flattened: where its levels end, at regions as small as blocks or without points",
+                     {Finish::blocks, Finish::levels});
   command
       ->add_option("--partition-levels", request->partition_levels,
                    "Mode partition: number of levels on the device; default: enough for the threads")

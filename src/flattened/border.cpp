@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "flattened/stages.hpp"
 #include "launchers/flattened/border.cl.hpp"
 
@@ -70,6 +72,7 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   borders.size = offsets.back();
   for (std::size_t s = 0; s < sets; ++s) {
     const std::size_t count = static_cast<std::size_t>(ids[s + 1] - ids[s]);
+    borders.largest_set = std::max(borders.largest_set, count);
     if (!flat[s]) borders.triangles += 2 * count - 2 - (offsets[s + 1] - offsets[s]);
   }
 

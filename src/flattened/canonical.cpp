@@ -5,6 +5,20 @@
 
 namespace flaunay::flattened {
 
+bool any_cocircular(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
+                    const Buffer<cl_int>& twins, const Buffer<cl_int>& list, std::size_t listed) {
+  const auto found = work.scratch().allocate<cl_int>(1);
+  work.runtime.fill(found, 1, cl_int{0});
+  work.runtime.map(listed, kernels::cocircular_listed{.bound = work.bounds.circle,
+                                                      .list = list,
+                                                      .triangles = triangles,
+                                                      .twins = twins,
+                                                      .points = table.points,
+                                                      .found = found,
+                                                      .broken = work.broken});
+  return work.runtime.read_one(found, 0) != 0;
+}
+
 void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                   std::size_t count, const Buffer<cl_int>& twins) {
   host::Runtime& runtime = work.runtime;

@@ -31,6 +31,8 @@ Borders Recursion::begin() {
   RetiredRegions retired;
   const Borders borders = initial_borders(work_, table_, level_, retired);
   internal_points_ = level_.points;
+  // A median goes to the border, so that a region's children have at most half of its points each.
+  largest_ = std::min(borders.largest_set, level_.points);
   triangles_ = work_.persistent.allocate<cl_int>(3 * borders.triangles);
   done_ = endgame(work_, table_, retired, triangles_, 0);
   if (work_.counting != nullptr) work_.counting->end_step(-1);
@@ -80,6 +82,12 @@ void Recursion::flattened(int levels) {
     // A few levels end with most points left, so that their number tells more.
     report(depth, std::max(share_without(level_.points), static_cast<double>(depth + 1) / levels));
   }
+}
+
+int Recursion::levels_to(std::size_t internal_points) const {
+  int levels = 0;
+  while (internal_points << levels < largest_) ++levels;
+  return levels;
 }
 
 void Recursion::recursive() {

@@ -29,12 +29,18 @@ class Recursion {
   /// Cuts all regions of a level at once, until no region has internal points or `levels` levels are done.
   void flattened(int levels = kMostLevels);
 
+  /// The number of levels after which no region has more than so many internal points.
+  int levels_to(std::size_t internal_points) const;
+
   /// Cuts one region at a time with the same kernels, depth first.
   void recursive();
 
   /// Copies the regions that are left to the host. There are no offsets if no regions are left.
   RegionArrays read_regions();
 
+  const Level& level() const { return level_; }  ///< the regions that are left
+  /// The arena that does not hold these regions.
+  Arena& other_arena() const { return *arenas_[work_.children == arenas_[0] ? 1 : 0]; }
   const Buffer<cl_int>& triangles() const { return triangles_; }
   std::size_t done() const { return done_; }  ///< number of triangles so far
   /// Copies the triangles so far to the host, 3 ids each.
@@ -61,6 +67,7 @@ class Recursion {
   Buffer<cl_int> triangles_{};
   std::size_t done_ = 0;
   std::size_t internal_points_ = 0;
+  std::size_t largest_ = 0;  ///< no first region has more internal points
   std::size_t finished_points_ = 0;
 };
 

@@ -5,7 +5,8 @@
 namespace flaunay::flattened {
 
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
-                                       const Buffer<cl_int>& triangles, std::size_t count) {
+                                       const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
+                                       std::size_t count) {
   if (table.sets == 1) return {0, count};
   host::Runtime& runtime = work.runtime;
   Arena::Scope scope(work.scratch());
@@ -23,6 +24,13 @@ std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
   runtime.copy(triangles, 0, unsorted, 0, 3 * count);
   runtime.map(count,
               kernels::reorder_triangles{.order = order, .triangles = unsorted, .reordered = triangles});
+  if (twins.memory() != nullptr) {
+    const auto places = work.scratch().allocate<cl_int>(count);
+    runtime.map(count, kernels::triangle_places{.order = order, .places = places});
+    runtime.copy(twins, 0, unsorted, 0, 3 * count);
+    runtime.map(count, kernels::reorder_twins{
+                           .order = order, .places = places, .twins = unsorted, .reordered = twins});
+  }
   std::vector<std::size_t> offsets{0};
   for (const cl_uint size : read_all(work, counts, table.sets)) offsets.push_back(offsets.back() + size);
   return offsets;
@@ -32,23 +40,23 @@ void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& t
                const Buffer<cl_int>& twins, std::size_t count, const Options& options,
                Triangulation& result) {
   host::Runtime& runtime = work.runtime;
-  const std::size_t rows = 3 * count;
+  const host::Runtime::Settled settled(runtime);
   Arena::Scope scope(work.scratch());
-  const auto output = work.scratch().allocate<cl_int>(rows);
   const bool with_neighbors = options.neighbors || options.halfedges;
-  const auto neighbors = work.scratch().allocate<cl_int>(with_neighbors ? rows : 0);
+  runtime.resize(result.triangles, 3 * count);
+  runtime.resize(result.neighbors, with_neighbors ? 3 * count : 0);
+  const auto output = runtime.output(result.triangles);
+  const auto neighbors = runtime.output(result.neighbors);
   runtime.map(count, kernels::finish_rows{.with_neighbors = with_neighbors,
                                           .triangles = triangles,
                                           .twins = twins,
                                           .source = table.source,
                                           .rows = output,
                                           .neighbors = neighbors});
-  result.triangles.resize(rows);
-  runtime.read(output, 0, rows, result.triangles.data());
-  if (!with_neighbors) return;
-  result.neighbors.resize(rows);
-  runtime.read(neighbors, 0, rows, result.neighbors.data());
-  geometry::write_halfedges(options, result);
+  runtime.fetch_later(output, result.triangles);
+  runtime.fetch_later(neighbors, result.neighbors);
+  runtime.finish();
+  if (with_neighbors) geometry::write_halfedges(options, result);
 }
 
 std::vector<std::int32_t> read_indices(Workspace& work, const PointTable& table, const Buffer<cl_int>& ids,

@@ -7,6 +7,7 @@
 
 #include "flattened/levels.hpp"
 #include "flattened/partition.hpp"
+#include "flattened/regions.hpp"
 #include "flattened/stages.hpp"
 #include "geometry/mesh.hpp"
 #include "statistics/phases.hpp"
@@ -19,12 +20,19 @@ namespace {
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // needed twice: for the current level and for the next one
 constexpr std::size_t kScratchBytesPerPoint = 118;
+constexpr std::size_t kScratchBytesPerPointOfBlocks = 142;
 
 // The share of the time that is over when a stage ends, for progress.
 constexpr double kSorted = 0.05;
 constexpr double kPartitioned = 0.4;
 constexpr double kTriangulated = 0.9;
 constexpr double kCanonical = 0.95;
+
+// Operations are counted in levels alone.
+bool ends_in_blocks(const research::Options& options) {
+  return options.mode == research::Mode::flattened && options.finish == research::Finish::blocks &&
+         !options.count;
+}
 
 // The state of one call: the sorted points, and statistics so far.
 class Call {
@@ -65,7 +73,8 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
   persistent.reserve(n * kPersistentBytesPerPoint);
   memory.even.reserve(n * kStateBytesPerPoint);
   memory.odd.reserve(n * kStateBytesPerPoint);
-  runtime.arena().reserve(n * kScratchBytesPerPoint);
+  runtime.arena().reserve(n *
+                          (ends_in_blocks(wanted) ? kScratchBytesPerPointOfBlocks : kScratchBytesPerPoint));
   work.hull = options.hull;
   work.broken = persistent.allocate<cl_int>(1);
   work.list_length = persistent.allocate<cl_uint>(1);
@@ -111,31 +120,75 @@ void Call::end_levels(std::size_t done, std::size_t wanted) {
 }
 
 void Call::finish_statistics(const Borders& borders) {
-  statistics.undecided = work.runtime.read_one(work.undecided, 0);
+  statistics.undecided += work.runtime.read_one(work.undecided, 0);
   statistics.triangles = borders.triangles;
   statistics.hull_vertices = borders.size;
   phases.write(statistics);
 }
 
-// Makes the triangles canonical, finds neighbours, and copies all results to the host.
-void write_result(Call& call, const Buffer<cl_int>& triangles, const Borders& borders,
-                  research::Triangulation& result) {
+// Copies all results to the host.
+void write_result(Call& call, const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
+                  const Borders& borders, research::Triangulation& result) {
+  Workspace& work = call.work;
+  const PointTable& table = call.table;
+  call.phases.progress("output", kCanonical);
+  read_rows(work, table, triangles, twins, borders.triangles, call.options, result);
+  result.hull = read_indices(work, table, borders.hull, borders.size);
+  result.hull_offsets = borders.hull_offsets;
+  call.phases.end("output");
+}
+
+// Runs the levels to the bottom. Then makes the triangles canonical and finds neighbours.
+void finish_levels(Call& call, Recursion& recursion, const Borders& borders,
+                   research::Triangulation& result) {
+  if (call.options.mode == research::Mode::flattened) {
+    recursion.flattened();
+  } else {
+    recursion.recursive();
+  }
+  call.end_levels(recursion.done(), borders.triangles);
+  call.phases.end("levels");
+  call.phases.progress("canonical form", kTriangulated);
   Workspace& work = call.work;
   const PointTable& table = call.table;
   const std::size_t count = borders.triangles;
+  const Buffer<cl_int>& triangles = recursion.triangles();
   Arena::Scope scope(work.scratch());
-  result.triangle_offsets = order_by_sets(work, table, triangles, count);
   const auto twins = work.scratch().allocate<cl_int>(3 * count);
+  result.triangle_offsets = order_by_sets(work, table, triangles, {}, count);
   match_edges(work, triangles, count, twins);
   canonicalize(work, table, triangles, count, twins);
   check_invariants(work);
   call.phases.end("canonical form");
+  write_result(call, triangles, twins, borders, result);
+}
 
-  call.phases.progress("output", kCanonical);
-  read_rows(work, table, triangles, twins, count, call.options, result);
-  result.hull = read_indices(work, table, borders.hull, borders.size);
-  result.hull_offsets = borders.hull_offsets;
-  call.phases.end("output");
+// Runs levels until regions are as small as blocks, which the solver of blocks triangulates.
+void finish_blocks(Call& call, Recursion& recursion, const Borders& borders, const BlockSolver& solver,
+                   research::Triangulation& result) {
+  Workspace& work = call.work;
+  const PointTable& table = call.table;
+  recursion.flattened(recursion.levels_to(tuning_of(work.runtime).region_points));
+  call.phases.end("levels");
+  call.phases.progress("regions", kPartitioned);
+  const std::size_t count = borders.triangles;
+  const Buffer<cl_int>& triangles = recursion.triangles();
+  Arena::Scope scope(work.scratch());
+  const auto twins = work.scratch().allocate<cl_int>(3 * count);
+  work.runtime.fill(twins, 3 * count, cl_int{-1});
+  const SolvedRegions solved = solve_regions(work, table, recursion.level(), recursion.other_arena(), solver,
+                                             triangles, recursion.done(), twins);
+  call.end_levels(recursion.done() + solved.triangles, borders.triangles);
+  call.statistics.undecided += solved.undecided;
+  call.phases.end("regions");
+  call.phases.progress("canonical form", kTriangulated);
+  if (match_loose_edges(work, table, triangles, count, twins) || solved.ties > 0) {
+    canonicalize(work, table, triangles, count, twins);
+    check_invariants(work);
+  }
+  result.triangle_offsets = order_by_sets(work, table, triangles, twins, count);
+  call.phases.end("canonical form");
+  write_result(call, triangles, twins, borders, result);
 }
 
 // Runs a few levels on the device. The host triangulates the remaining regions and makes the result
@@ -167,26 +220,21 @@ void finish_partition(Call& call, Recursion& recursion, const Borders& borders, 
 }  // namespace
 
 void run(host::Runtime& runtime, const Memory& memory, const double* coordinates,
-         const std::vector<std::size_t>& offsets, const research::Options& options, int partition_levels,
-         const SolveRegions& solve_regions, research::Triangulation& result) {
+         const std::vector<std::size_t>& offsets, const research::Options& options, const Solvers& solvers,
+         research::Triangulation& result) {
   Call call(runtime, memory, coordinates, offsets, options, result.statistics, result.levels, result.work,
             result.representatives);
+  const bool ends_early = ends_in_blocks(options) || options.mode == research::Mode::partition;
   Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd},
-                      solve_regions ? kPartitioned : kTriangulated);
+                      ends_early ? kPartitioned : kTriangulated);
   const Borders borders = recursion.begin();
   call.phases.end("borders");
-  if (solve_regions) {
-    finish_partition(call, recursion, borders, partition_levels, solve_regions, result);
+  if (options.mode == research::Mode::partition) {
+    finish_partition(call, recursion, borders, solvers.partition_levels, solvers.regions, result);
+  } else if (ends_in_blocks(options)) {
+    finish_blocks(call, recursion, borders, solvers.blocks, result);
   } else {
-    if (options.mode == research::Mode::flattened) {
-      recursion.flattened();
-    } else {
-      recursion.recursive();
-    }
-    call.end_levels(recursion.done(), borders.triangles);
-    call.phases.end("levels");
-    call.phases.progress("canonical form", kTriangulated);
-    write_result(call, recursion.triangles(), borders, result);
+    finish_levels(call, recursion, borders, result);
   }
   call.finish_statistics(borders);
   call.phases.progress("output", 1);

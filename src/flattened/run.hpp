@@ -9,6 +9,8 @@
 #include "geometry/point_sets.hpp"
 #include "geometry/region_arrays.hpp"
 #include "host/runtime.hpp"
+#include "points/distribute.hpp"
+#include "points/rings.hpp"
 
 namespace flaunay::flattened {
 
@@ -25,13 +27,35 @@ using SolveRegions = std::function<std::vector<std::int32_t>(const geometry::Poi
                                                              const geometry::RegionArrays& regions,
                                                              research::OperationCounts* counts)>;
 
+/// How blocks of points are triangulated.
+struct BlockSolver {
+  /// Triangulates blocks, which are independent of each other: blocks.merges is empty. Of equal points the
+  /// first represents the others. Waits once.
+  std::function<points::Rings(points::Workspace& work, const points::Blocks& blocks,
+                              const host::Buffer<cl_int>& representatives)>
+      solve;
+  /// Writes the triangles left of edges, but of those edges whose `next` is a complement, into the rows of
+  /// the triangle's middle vertex along x; and the half-edges' twins. first_rows: the first row of each
+  /// vertex, closed by the number of all. Does not wait.
+  std::function<void(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
+                     const host::Buffer<cl_uint>& first_rows, const host::Buffer<cl_int>& triangles,
+                     const host::Buffer<cl_int>& twins)>
+      write_rows;
+};
+
+/// Solves what the levels leave.
+struct Solvers {
+  int partition_levels = 0;   ///< mode partition stops after so many levels
+  SolveRegions regions = {};  ///< mode partition
+  BlockSolver blocks = {};    ///< mode flattened with Finish::blocks
+};
+
 /// Triangulates sets with at least one point, whose offsets were checked, in one of the modes flattened,
-/// recursive_device and partition. Mode partition stops after partition_levels levels and calls solve_regions
-/// for the remaining regions. The offsets in `result` must have their sizes. Throws what
+/// recursive_device and partition. The offsets in `result` must have their sizes. Throws what
 /// research::triangulate throws. O(n log n) work.
 void run(host::Runtime& runtime, const Memory& memory, const double* coordinates,
-         const std::vector<std::size_t>& offsets, const research::Options& options, int partition_levels,
-         const SolveRegions& solve_regions, research::Triangulation& result);
+         const std::vector<std::size_t>& offsets, const research::Options& options, const Solvers& solvers,
+         research::Triangulation& result);
 
 /// Implements research::partition for at least one point.
 void partition(host::Runtime& runtime, const Memory& memory, const double* coordinates, std::size_t n,

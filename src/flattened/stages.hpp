@@ -101,7 +101,8 @@ struct Borders {
   std::size_t size = 0;
   Buffer<cl_int> hull{};  ///< ids, set by set
   std::vector<std::size_t> hull_offsets;
-  std::size_t triangles = 0;  ///< number of triangles that all sets will have
+  std::size_t triangles = 0;    ///< number of triangles that all sets will have
+  std::size_t largest_set = 0;  ///< distinct points of the largest set
 };
 
 /// Checks, scales and sorts the points, and numbers the distinct ones. representatives: host memory for one
@@ -231,13 +232,24 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
 void match_edges(Workspace& work, const Buffer<cl_int>& triangles, std::size_t count,
                  const Buffer<cl_int>& twins);
 
+/// Finds the twins of the half-edges that have none. Returns whether the points beside one of their edges are
+/// cocircular. Waits twice.
+bool match_loose_edges(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
+                       std::size_t count, const Buffer<cl_int>& twins);
+
+/// Whether the points beside one of the listed half-edges are cocircular. Waits once.
+bool any_cocircular(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
+                    const Buffer<cl_int>& twins, const Buffer<cl_int>& list, std::size_t listed);
+
 /// Replaces the triangles of cocircular points by the canonical ones, and updates the twins.
 void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                   std::size_t count, const Buffer<cl_int>& twins);
 
-/// Sorts triangles by their sets. Returns sets + 1 offsets: where the triangles of each set begin.
+/// Sorts triangles, and twins unless they have no memory, by sets. Returns sets + 1 offsets: where the
+/// triangles of each set begin.
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
-                                       const Buffer<cl_int>& triangles, std::size_t count);
+                                       const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
+                                       std::size_t count);
 /// Copies triangles and, if the options ask for them, neighbours and half-edges to the result.
 void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                const Buffer<cl_int>& twins, std::size_t count, const Options& options, Triangulation& result);

@@ -261,6 +261,12 @@ constexpr Row kTable[] = {
      {2048},
      {2048},
      "With what its solution needs, a block stays in a core's second-level cache."},
+    {"region_points",
+     &Tuning::region_points,
+     {4096},
+     {4096},
+     {4096},
+     "A level more takes longer than blocks of twice the size, whose borders are a smaller part of them."},
     {"samples_per_block",
      &Tuning::samples_per_block,
      {16},
@@ -322,7 +328,7 @@ std::optional<Tuning> kind_named(const std::string& name, const Target& target) 
   if (name == "small") return column(&Row::small, target);
   if (name == "small-blocks") {
     Tuning tuning = column(&Row::small, target);
-    tuning.block_points = kPointsOfASmallBlock;
+    tuning.block_points = tuning.region_points = kPointsOfASmallBlock;
     return tuning;
   }
   const std::string prefix = "gpu:";

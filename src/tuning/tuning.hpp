@@ -68,6 +68,8 @@ struct Tuning : host::Sizes {
   std::size_t small_region = 1;
   /// The largest number of points of a block.
   std::size_t block_points = 1;
+  /// Mode flattened hands regions to the solver of blocks when they have at most so many internal points.
+  std::size_t region_points = 1;
   /// Samples per block, for the tree of cuts.
   std::size_t samples_per_block = 1;
 

@@ -13,6 +13,7 @@
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
 #include "io/points.hpp"
+#include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -21,6 +22,7 @@ namespace flaunay::testing {
 namespace {
 
 using research::Cut;
+using research::Finish;
 using research::Hull;
 using research::Mode;
 using research::Options;
@@ -93,6 +95,12 @@ std::vector<Execution> executions(bool one_by_one) {
   }
   add(Mode::partition, Hull::balanced, Cut::interquartile, 3);
   add(Mode::dwyer, Hull::prune, Cut::interquartile, 0);
+  // The levels of mode flattened end in blocks unless it is told otherwise.
+  for (const Cut cut : {Cut::interquartile, Cut::alternate}) {
+    add(Mode::flattened, Hull::prune, cut, 0);
+    all.back().name += " to the bottom";
+    all.back().options.finish = Finish::levels;
+  }
   return all;
 }
 
@@ -131,6 +139,54 @@ std::vector<std::string> fixture_names() {
   std::vector<std::string> names;
   for (const Fixture& fixture : all_fixtures()) names.push_back(fixture.name);
   return names;
+}
+
+// Tiny inputs take levels and blocks, with regions of all kinds: cocircular polygons across borders, borders
+// that touch themselves, vertices with several corners.
+TEST_P(OnFixture, FlattenedEndsInBlocks) {
+  for (const std::size_t most : {1, 2, 6, 40}) {
+    const ScopedEnvironment tuning("FLAUNAY_TUNING",
+                                   ("small-blocks,region_points=" + std::to_string(most)).c_str());
+    Triangulator tuned(device_under_test());
+    for (const std::size_t n : {3, 7, 12, 30, 200, 900}) {
+      SCOPED_TRACE(std::to_string(n) + " points, regions of " + std::to_string(most));
+      const Coordinates points = make_fixture(GetParam(), n, n);
+      const Coordinates moved = perturbed(make_fixture(GetParam(), n, 2), 3);
+      for (const Coordinates& input : {points, moved}) {
+        const Triangulation expected = triangulate(input, {});
+        for (const Cut cut : {Cut::interquartile, Cut::alternate}) {
+          Options options;
+          options.mode = Mode::flattened;
+          options.cut = cut;
+          expect_same(research::triangulate(tuned, input.data(), n, options), expected);
+        }
+      }
+      if (HasFailure()) return;
+    }
+  }
+}
+
+TEST(Modes, FlattenedSetsEndInBlocks) {
+  Coordinates points;
+  std::vector<std::size_t> offsets{0, 0};
+  std::size_t size = 1;
+  for (int k = 0; k < 2; ++k) {
+    for (const Fixture& fixture : all_fixtures()) {
+      const Coordinates set = fixture.make(size % 97, size);
+      points.insert(points.end(), set.begin(), set.end());
+      offsets.push_back(points.size() / 2);
+      size += 13;
+    }
+  }
+  const Triangulation expected = research::triangulate(triangulator(), points.data(), offsets, {});
+  Options options;
+  options.mode = Mode::flattened;
+  for (const char* const name : {"small-blocks", "small-blocks,region_points=30", "cpu,region_points=6"}) {
+    SCOPED_TRACE(name);
+    const ScopedEnvironment tuning("FLAUNAY_TUNING", name);
+    Triangulator tuned(device_under_test());
+    expect_same(research::triangulate(tuned, points.data(), offsets, options), expected);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Fixtures, OnFixture, ::testing::ValuesIn(fixture_names()), instance_name);
@@ -310,6 +366,7 @@ TEST(RecursiveDevice, LaunchesAndWaitsForEveryRegion) {
   one_by_one.mode = Mode::recursive_device;
   Options all_at_once;
   all_at_once.mode = Mode::flattened;
+  all_at_once.finish = Finish::levels;
   const Triangulation flattened = triangulate(points, all_at_once);
   const Triangulation recursive = triangulate(points, one_by_one);
   ASSERT_EQ(recursive.levels.size(), flattened.levels.size());

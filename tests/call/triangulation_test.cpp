@@ -1051,6 +1051,7 @@ TEST(Statistics, CountsAreConsistent) {
     const Coordinates points = make_fixture(name, 20000, 2);
     Options options = defaults();
     options.profile = true;
+    options.finish = research::Finish::levels;
     const research::Triangulation result = triangulate(points, options);
     const Statistics& statistics = result.statistics;
     const std::size_t distinct = statistics.points - statistics.duplicates;

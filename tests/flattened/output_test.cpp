@@ -103,6 +103,16 @@ void check_output(Runtime& runtime, const TriangleSet& mesh, FixtureRandom& rand
                               triangles.begin() + 3 * t + 3);
   }
   EXPECT_TRUE(same(testing::download(runtime, reordered, 3 * count), expected_reordered));
+
+  // Their twins go along.
+  const auto places = testing::guarded<cl_int>(runtime, count);
+  const auto reordered_twins = testing::guarded<cl_int>(runtime, 3 * count);
+  runtime.map(count, kernels::triangle_places{.order = order, .places = places});
+  runtime.map(count,
+              kernels::reorder_twins{
+                  .order = order, .places = places, .twins = device_twins, .reordered = reordered_twins});
+  EXPECT_TRUE(
+      same(testing::download(runtime, reordered_twins, 3 * count), testing::twins_twin(expected_reordered)));
 }
 
 namespace {

@@ -386,6 +386,14 @@ void check_cells(Runtime& runtime, const std::vector<cl_double2>& places,
 void make_cells(std::int64_t square, const std::vector<std::size_t>& sizes, FixtureRandom& random,
                 std::vector<cl_double2>& places, std::vector<std::vector<int>>& cells);
 /// Rows of the result; see output_test.cpp.
+/// What a test of regions that end in blocks met.
+struct MetRegions {
+  std::size_t regions = 0, retired = 0, cocircular_borders = 0, several_corners = 0;
+};
+/// Cuts the points by some levels, and solves what is left as blocks. has_ties: whether triangles may differ
+/// from the twin's.
+void check_regions(Runtime& runtime, const Coordinates& coordinates, int levels, bool has_ties,
+                   MetRegions& met);
 void check_output(Runtime& runtime, const TriangleSet& mesh, FixtureRandom& random);
 
 }  // namespace flaunay::flattened

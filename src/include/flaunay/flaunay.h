@@ -71,6 +71,12 @@ typedef enum flaunay_hull {
   FLAUNAY_HULL_MONOTONE_CHAIN = 3  ///< Andrew's scan; FLAUNAY_MODE_RECURSIVE only
 } flaunay_hull;
 
+/// Where the levels of FLAUNAY_MODE_FLATTENED end. The triangles are the same, in another order.
+typedef enum flaunay_finish {
+  FLAUNAY_FINISH_BLOCKS = 0,  ///< when regions are as small as a block, which is then solved on its own
+  FLAUNAY_FINISH_LEVELS = 1   ///< when no region has internal points left
+} flaunay_finish;
+
 /// The type of coordinates in device memory: double or float.
 typedef enum flaunay_precision { FLAUNAY_FLOAT64 = 0, FLAUNAY_FLOAT32 = 1 } flaunay_precision;
 
@@ -125,6 +131,7 @@ typedef struct flaunay_options {
   int profile;           ///< other than 0: measure the time of every kernel; this costs a little time
   int partition_levels;  ///< FLAUNAY_MODE_PARTITION: number of levels on the device; 0: chosen by size
   int threads;           ///< FLAUNAY_MODE_PARTITION: number of host threads; 0: one per core
+  int finish;            ///< a flaunay_finish, for FLAUNAY_MODE_FLATTENED
   /// If not NULL, called from time to time on the calling thread. stage: the name of the stage that begins;
   /// level: the level of the recursion, or -1 if there is none; done: the finished share of the work, 0 to 1.
   /// It must return normally.

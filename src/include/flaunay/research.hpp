@@ -37,12 +37,20 @@ enum class Hull {
   monotone_chain,  ///< Andrew's scan over points sorted along the cut; Mode::recursive only
 };
 
+/// Where the levels of Mode::flattened end. The triangles are the same, in another order.
+enum class Finish {
+  blocks,  ///< when regions are as small as a block; each is then solved like a block of Mode::blocks
+  levels,  ///< when no region has internal points left, as in the paper
+};
+
 /// The name on the command line: "recursive-device" and so on. The text is static.
 FLAUNAY_API const char* to_string(Mode mode) noexcept;
 /// The name on the command line: "iqr" or "alternate". The text is static.
 FLAUNAY_API const char* to_string(Cut cut) noexcept;
 /// The name on the command line: "monotone-chain" and so on. The text is static.
 FLAUNAY_API const char* to_string(Hull hull) noexcept;
+/// The name on the command line: "blocks" or "levels". The text is static.
+FLAUNAY_API const char* to_string(Finish finish) noexcept;
 
 /// The parts into which the paper divides the algorithm's work.
 enum class Component {
@@ -122,12 +130,13 @@ struct LaunchStatistics {
 
 /// The options of one triangulation, and how to compute it.
 struct Options : flaunay::Options {
-  Mode mode = Mode::blocks;         ///< decides the order of the triangles, but not which they are
-  Cut cut = Cut::interquartile;     ///< ignored by Mode::blocks and Mode::dwyer
-  Hull hull = Hull::prune;          ///< ignored by Mode::blocks and Mode::dwyer
-  bool count = false;               ///< count operations into Triangulation::work; slow; not in Mode::blocks
-  int partition_levels = 0;         ///< Mode::partition: number of levels on the device; 0: chosen by size
-  int threads = 0;                  ///< Mode::partition: number of host threads; 0: one per core
+  Mode mode = Mode::blocks;        ///< decides the order of the triangles, but not which they are
+  Cut cut = Cut::interquartile;    ///< ignored by Mode::blocks and Mode::dwyer
+  Hull hull = Hull::prune;         ///< ignored by Mode::blocks and Mode::dwyer
+  Finish finish = Finish::blocks;  ///< Mode::flattened; with `count` its levels go to the bottom anyway
+  bool count = false;              ///< count operations into Triangulation::work; slow; not in Mode::blocks
+  int partition_levels = 0;        ///< Mode::partition: number of levels on the device; 0: chosen by size
+  int threads = 0;                 ///< Mode::partition: number of host threads; 0: one per core
   Record record = Record::nothing;  ///< fills Triangulation::launches; needs `count` to be false
 };
 
