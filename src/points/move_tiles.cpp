@@ -55,8 +55,9 @@ Keys allocate_keys(Workspace& work, std::size_t points) {
 }
 
 void count_tile_blocks(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
-                       const Buffer<cl_double>& input, const Buffer<kernel::cut_node>& nodes, const Tiles& tiles,
-                       const Buffer<cl_int>& block_of_point, const Buffer<cl_int>& representatives) {
+                       const Buffer<cl_double>& input, const Buffer<kernel::cut_node>& nodes,
+                       const Tiles& tiles, const Buffer<cl_int>& block_of_point,
+                       const Buffer<cl_int>& representatives) {
   const auto set_offsets =
       work.runtime.upload(work.scratch(), std::vector<cl_int>(offsets.begin(), offsets.end()));
   const auto sets = work.runtime.upload(work.scratch(), plan.sets);

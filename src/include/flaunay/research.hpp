@@ -130,13 +130,13 @@ struct LaunchStatistics {
 
 /// The options of one triangulation, and how to compute it.
 struct Options : flaunay::Options {
-  Mode mode = Mode::blocks;        ///< decides the order of the triangles, but not which they are
-  Cut cut = Cut::interquartile;    ///< ignored by Mode::blocks and Mode::dwyer
-  Hull hull = Hull::prune;         ///< ignored by Mode::blocks and Mode::dwyer
-  Finish finish = Finish::blocks;  ///< Mode::flattened; with `count` its levels go to the bottom anyway
-  bool count = false;              ///< count operations into Triangulation::work; slow; not in Mode::blocks
-  int partition_levels = 0;        ///< Mode::partition: number of levels on the device; 0: chosen by size
-  int threads = 0;                 ///< Mode::partition: number of host threads; 0: one per core
+  Mode mode = Mode::blocks;         ///< decides the order of the triangles, but not which they are
+  Cut cut = Cut::interquartile;     ///< ignored by Mode::blocks and Mode::dwyer
+  Hull hull = Hull::prune;          ///< ignored by Mode::blocks and Mode::dwyer
+  Finish finish = Finish::blocks;   ///< Mode::flattened; with `count` its levels go to the bottom anyway
+  bool count = false;               ///< count operations into Triangulation::work; slow; not in Mode::blocks
+  int partition_levels = 0;         ///< Mode::partition: number of levels on the device; 0: chosen by size
+  int threads = 0;                  ///< Mode::partition: number of host threads; 0: one per core
   Record record = Record::nothing;  ///< fills Triangulation::launches; needs `count` to be false
 };
 
