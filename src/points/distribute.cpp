@@ -73,10 +73,10 @@ void make_trees(Workspace& work, const Plan& plan, const Buffer<cl_double>& inpu
 
 // The host's part of blocks, and memory for the others.
 Plan begin_blocks(Workspace& work, const std::vector<std::size_t>& offsets, std::size_t block_points,
-                  Blocks& blocks) {
+                  std::size_t alone, Blocks& blocks) {
   blocks.sets = offsets.size() - 1;
   blocks.points = offsets.back();
-  Plan plan = make_plan(block_points, tuning_of(work.runtime).block_points, offsets, blocks);
+  Plan plan = make_plan(block_points, alone, offsets, blocks);
   if (plan.nodes > 0) blocks.device_nodes = work.persistent.allocate<kernel::cut_node>(plan.nodes);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
@@ -101,7 +101,8 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
                    const Buffer<cl_int>& representatives) {
   Blocks blocks;
   const host::Runtime::Settled settled(work.runtime);
-  const Plan plan = begin_blocks(work, offsets, tuning_of(work.runtime).block_points, blocks);
+  const std::size_t block_points = tuning_of(work.runtime).block_points;
+  const Plan plan = begin_blocks(work, offsets, block_points, block_points, blocks);
   Arena::Scope scope(work.scratch());
   const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
   work.bounds = uniform.scaling.bounds;
@@ -114,7 +115,8 @@ Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
                       const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts) {
   Blocks blocks;
   const host::Runtime::Settled settled(work.runtime);
-  const Plan plan = begin_blocks(work, offsets, block_points, blocks);
+  // A set of two blocks would need one more round than a single block.
+  const Plan plan = begin_blocks(work, offsets, block_points, 2 * block_points, blocks);
   Arena::Scope scope(work.scratch());
   // Not needed: these points have no duplicates.
   const auto representatives = work.scratch().allocate<cl_int>(blocks.points);
