@@ -209,7 +209,9 @@ static inline void decide_ghost(const emission* m, const block_frame* frame, int
   const int is_final =
       !has_other_blocks(frame) || (!is_line && is_half_plane_inside(frame, m->points[to], m->points[from]));
   const int missing = is_final && !m->is_first ? is_missing(m, from, to, 1, exactly) : is_final;
-  if (missing == 1) emit_hull_edge(m, to, from, is_line);
+  // If something is emitted, the set has triangles, and points on one line are what is left along its hull.
+  const int is_set_on_line = is_line && (m->is_first || open_count(m, from) == 0);
+  if (missing == 1) emit_hull_edge(m, to, from, is_set_on_line);
   m->states[e] = missing == 1 ? GHOST : missing == UNDECIDED ? UNSURE_GHOST : OPEN_GHOST;
 }
 
