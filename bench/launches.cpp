@@ -30,6 +30,11 @@ constexpr double kMostWork = 0.9;
 // Kernels whose steps are not those of merges: they walk along hulls.
 bool walks_hulls(const std::string& kernel) { return kernel == "mark_outside" || kernel == "write_hulls"; }
 
+// Kernels that merge the parts of blocks, not the blocks.
+bool solves_blocks(const std::string& kernel) {
+  return kernel == "solve_blocks" || kernel == "merge_parts" || kernel == "finish_parts";
+}
+
 /// One call whose kernels counted their steps, and others that were timed.
 struct Call {
   std::string mode;
@@ -47,7 +52,7 @@ std::size_t steps_of_work_item(const LaunchStatistics& launch) {
 std::uint64_t merge_chain(const std::vector<LaunchStatistics>& launches, bool from_leaves) {
   std::uint64_t sum = 0;
   for (const LaunchStatistics& launch : launches) {
-    const bool is_left_out = walks_hulls(launch.kernel) || (!from_leaves && launch.kernel == "solve_blocks");
+    const bool is_left_out = walks_hulls(launch.kernel) || (!from_leaves && solves_blocks(launch.kernel));
     if (!is_left_out) sum += launch.longest_chain;
   }
   return sum;

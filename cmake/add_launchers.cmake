@@ -1,7 +1,8 @@
 # flaunay_add_launchers(TARGET DIRECTORY OUTPUT FILES files... [NATIVE files... NATIVE_OUTPUT folder]) adds a target that
 # generates a C++ header with launchers for each kernel file of the directory: OUTPUT/flattened/cut.cl.hpp for
 # flattened/cut.cl. If another kernel file includes the file, that one is its program. For those of NATIVE, it also
-# generates C++ files that compile the kernels for the host, such as NATIVE_OUTPUT/blocks/mesh.cpp.
+# generates C++ files that compile the kernels for the host, such as NATIVE_OUTPUT/blocks/mesh.cpp. Kernels of one name in
+# two files are an error: their launchers would be structs of one name, which the linker mixes up without a word.
 function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
   cmake_parse_arguments(PARSE_ARGV 3 GIVEN "" "NATIVE_OUTPUT" "FILES;NATIVE")
   foreach(FILE IN LISTS GIVEN_FILES)
@@ -10,6 +11,17 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
       string(REGEX REPLACE "^#include \"(.*)\"$" "\\1" INCLUDED "${INCLUDE}")
       string(REGEX REPLACE "\\.cl$" "" PROGRAM_OF_${INCLUDED} ${FILE})
       list(APPEND INCLUDED_BY_${FILE} ${DIRECTORY}/${INCLUDED})
+    endforeach()
+  endforeach()
+  foreach(FILE IN LISTS GIVEN_FILES)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${DIRECTORY}/${FILE})
+    file(STRINGS ${DIRECTORY}/${FILE} KERNELS REGEX "kernel void [a-z_0-9]+\\(")
+    foreach(KERNEL IN LISTS KERNELS)
+      string(REGEX REPLACE ".*kernel void ([a-z_0-9]+)\\(.*" "\\1" KERNEL "${KERNEL}")
+      if(DEFINED FILE_OF_${KERNEL})
+        message(FATAL_ERROR "${DIRECTORY}: ${FILE} and ${FILE_OF_${KERNEL}} both have a kernel ${KERNEL}")
+      endif()
+      set(FILE_OF_${KERNEL} ${FILE})
     endforeach()
   endforeach()
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/launchers.cmake)

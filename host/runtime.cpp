@@ -367,7 +367,8 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
     group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
   ++launches_;
   const std::size_t elements = std::exchange(elements_, 1);
-  if (log_ != nullptr) log_->add({kernel.name, work_items, group, elements});
+  const std::size_t busy = std::exchange(busy_items_, std::numeric_limits<std::size_t>::max());
+  if (log_ != nullptr) log_->add({kernel.name, std::min(work_items, busy), group, elements});
   if (is_native()) return run_natively(kernel, work_items, group);
   cl_event event = nullptr;
   for (;;) {

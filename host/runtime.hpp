@@ -13,6 +13,7 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -113,6 +114,7 @@ class Runtime {
   void launch(std::size_t work_items, std::size_t group, std::size_t n, const Kernel& kernel) {
     static_assert(Kernel::form == Form::PerElement);
     if (n > work_items) note_elements((n + work_items - 1) / work_items);
+    if (n < work_items) busy_items_ = n;
     launch_with(work_items, group, kernel, Value<cl_int>(n));
   }
 
@@ -417,6 +419,8 @@ class Runtime {
   double all_build_seconds_ = 0;  // never reset
   std::unique_ptr<LaunchLog> log_;
   std::size_t elements_ = 1;  // of the next launch
+  // How many of the next launch's work-items have work, if the launch spreads these over more.
+  std::size_t busy_items_ = std::numeric_limits<std::size_t>::max();
 };
 
 /// The text of kernels/<file>.cl with all included files inserted. It is read from the folder

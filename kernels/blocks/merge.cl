@@ -14,23 +14,25 @@ kernel void merge_parts(int n, int spread, int height, int places, global const 
                         global const int* restrict distinct, global const int* restrict block_of_place,
                         global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                        global solved_block* solved, global int* restrict states) {
+                        global solved_block* solved, global int* restrict states COUNTERS) {
   const int cell = (int)get_global_id(0) / spread;
   if (cell < n && cell * spread == (int)get_global_id(0)) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[cell] = do_cell(&g, &blocks, height, cell, MERGE_IS_NEW);
+    COUNT_STEPS(g.counted.steps);
   }
 }
 
 kernel void merge_trees(int n, int spread, int first_merge, global const block_merge* restrict merges,
                         global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
-                        global int* restrict states) {
+                        global int* restrict states COUNTERS) {
   const int m = (int)get_global_id(0) / spread;
   if (m < n && m * spread == (int)get_global_id(0)) {
     const block_merge merge = merges[first_merge + m];
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[m] = merge_two_blocks(&g, solved, merge, cut_axis(nodes[merge.node]), MERGE_IS_NEW);
+    COUNT_STEPS(g.counted.steps);
   }
 }

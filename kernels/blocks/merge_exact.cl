@@ -12,12 +12,14 @@ kernel void finish_parts(int n, int height, int places, global const int* restri
                          global const int* restrict distinct, global const int* restrict block_of_place,
                          global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                         global solved_block* solved, global int* restrict states, global volatile uint* account) {
+                         global solved_block* solved, global int* restrict states,
+                         global volatile uint* account COUNTERS) {
   const int cell = get_global_id(0);
   if (cell < n && states[cell] != MERGE_IS_DONE) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[cell] = do_cell(&g, &blocks, height, cell, states[cell]);
+    COUNT_STEPS(g.counted.steps);
     add_to_account(&g, account);
   }
 }
@@ -25,12 +27,13 @@ kernel void finish_parts(int n, int height, int places, global const int* restri
 kernel void finish_trees(int n, int first_merge, global const block_merge* restrict merges,
                          global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
-                         global int* restrict states, global volatile uint* account) {
+                         global int* restrict states, global volatile uint* account COUNTERS) {
   const int m = get_global_id(0);
   if (m < n && states[m] != MERGE_IS_DONE) {
     const block_merge merge = merges[first_merge + m];
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[m] = merge_two_blocks(&g, solved, merge, cut_axis(nodes[merge.node]), states[m]);
+    COUNT_STEPS(g.counted.steps);
     add_to_account(&g, account);
   }
 }

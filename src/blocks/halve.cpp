@@ -96,6 +96,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                             scratch.allocate<cl_uint>(has_large ? blocks.points + 1 : 1)};
   if (has_large) drop_duplicates(work, blocks, halved, capacity, representatives, sorted);
   const std::size_t group = group_for(tuning, blocks);
+  runtime.note_elements((std::min(blocks.largest, capacity) + group - 1) / group);
   runtime.launch(group * blocks.count, group,
                  kernels::halve_blocks{.blocks = blocks.count,
                                        .capacity = capacity,

@@ -136,7 +136,7 @@ void emit(Workspace& work, Round& round, const Emitted& emitted) {
   const Blocks& blocks = round.blocks;
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
-  runtime.map(blocks.points, kernels::name_vertices{.is_first = round.is_first,
+  runtime.map(blocks.points, kernels::name_round_vertices{.is_first = round.is_first,
                                                     .listed = blocks.source,
                                                     .listed_vertices = round.open.vertices,
                                                     .vertices = round.vertices});

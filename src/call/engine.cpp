@@ -19,6 +19,11 @@ namespace {
 constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
 // The most device memory per point that any measured input has needed, including adversarial inputs.
 constexpr std::size_t kBytesPerPoint = 320;
+constexpr std::size_t kBytesPerPointInRounds = 384;
+
+std::size_t bytes_per_point(const host::Runtime& runtime) {
+  return tuning_of(runtime).round_points > 0 ? kBytesPerPointInRounds : kBytesPerPoint;
+}
 
 // Calls that need no more memory than this are not checked, because asking the system would take a part of
 // their time that can be measured.
@@ -73,15 +78,15 @@ void Engine::check_arithmetic() {
 
 std::size_t Engine::capacity() const {
   return std::min(largest_call(runtime.memory()),
-                  usable_memory(runtime, held_at_rest).bytes / kBytesPerPoint);
+                  usable_memory(runtime, held_at_rest).bytes / bytes_per_point(runtime));
 }
 
 void Engine::check_size(std::size_t n) const {
   const host::MemorySource source = runtime.memory();
   const std::size_t most = largest_call(source);
-  if (n <= most && n <= std::max<std::size_t>(kNeverLacking, held_at_rest) / kBytesPerPoint) return;
+  if (n <= most && n <= std::max<std::size_t>(kNeverLacking, held_at_rest) / bytes_per_point(runtime)) return;
   const host::MemoryLeft memory = usable_memory(runtime, held_at_rest);
-  const std::size_t fitting = std::min(most, memory.bytes / kBytesPerPoint);
+  const std::size_t fitting = std::min(most, memory.bytes / bytes_per_point(runtime));
   if (n <= fitting) return;
   const std::string in_one_piece =
       runtime.is_native() ? "" : fmt::format(", {} in one piece", host::mebibytes(source.largest));
@@ -89,7 +94,7 @@ void Engine::check_size(std::size_t n) const {
       n > kMostPoints ? ErrorKind::input : ErrorKind::device,
       fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point)", n,
                   fitting, runtime.name(), host::mebibytes(memory.bytes), memory.limit, in_one_piece,
-                  kBytesPerPoint));
+                  bytes_per_point(runtime)));
 }
 
 void Engine::use_own_memory() {

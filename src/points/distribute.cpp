@@ -10,8 +10,10 @@
 namespace flaunay::points {
 namespace {
 
-int depth_for(std::size_t n, std::size_t block_points) {
+// alone: sets of at most so many points are one block.
+int depth_for(std::size_t n, std::size_t block_points, std::size_t alone) {
   int depth = 0;
+  if (n <= alone) return 0;
   while (n > block_points << depth) ++depth;
   return depth;
 }
@@ -30,13 +32,14 @@ void add_merges(int depth, std::size_t nodes, std::size_t first_block,
   }
 }
 
-Plan make_plan(std::size_t block_points, const std::vector<std::size_t>& offsets, Blocks& blocks) {
+Plan make_plan(std::size_t block_points, std::size_t alone, const std::vector<std::size_t>& offsets,
+               Blocks& blocks) {
   Plan plan;
   std::vector<std::vector<kernel::block_merge>> levels;
   blocks.set_blocks.push_back(0);
   for (std::size_t s = 0; s < blocks.sets; ++s) {
     const std::size_t first = offsets[s], last = offsets[s + 1];
-    const int depth = depth_for(last - first, block_points);
+    const int depth = depth_for(last - first, block_points, alone);
     plan.sets.push_back({static_cast<cl_int>(blocks.count), depth, static_cast<cl_int>(plan.nodes)});
     if (depth > 0) {
       plan.cut.push_back({depth, first, last - first});
@@ -73,7 +76,7 @@ Plan begin_blocks(Workspace& work, const std::vector<std::size_t>& offsets, std:
                   Blocks& blocks) {
   blocks.sets = offsets.size() - 1;
   blocks.points = offsets.back();
-  Plan plan = make_plan(block_points, offsets, blocks);
+  Plan plan = make_plan(block_points, tuning_of(work.runtime).block_points, offsets, blocks);
   if (plan.nodes > 0) blocks.device_nodes = work.persistent.allocate<kernel::cut_node>(plan.nodes);
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);

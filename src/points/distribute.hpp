@@ -55,8 +55,8 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
 enum class Cuts { at_medians, in_gaps };
 
 /// Distributes points that are scaled and checked already to blocks of at most so many points, as a rule.
-/// Their sources are their places in `points`. On devices without groups for tiles, all cuts are at medians.
-/// O(n log n).
+/// Their sources are their places in `points`. Sets of at most Tuning::block_points are one block. On devices
+/// without groups for tiles, all cuts are at medians. O(n log n).
 Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
                       const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts);
 
