@@ -3,7 +3,7 @@
 //
 // 1. region_offsets, place_points and place_corners make a block of each region: its internal points, and behind them
 //    the vertices of its corners. A vertex with several corners is there several times; the solver drops equal points.
-// 2. The solver triangulates the blocks. identify_vertices names the rings' vertices by ids, and tells where they are;
+// 2. The solver triangulates the blocks. name_vertices names the rings' vertices by ids, and tells where they are;
 //    corner_vertices finds the vertex of each corner. (strips.cl has the two passes that follow: border_edges finds the
 //    edges of the borders, and restore_border flips in those that ties have kept out.)
 // 3. What lies left of an edge at a border's vertex is inside if and only if the edge is in the wedge of a corner
@@ -53,7 +53,7 @@ kernel void place_corners(int n, global const int* restrict corners, global cons
 
 // source: of the solver's vertices, their places; becomes their ids. vertex_of: by place. counts: the rows of internal
 // points; those of borders are still to be counted.
-kernel void identify_vertices(int n, global const int* restrict vertex_edge, global const int* restrict ids,
+kernel void name_vertices(int n, global const int* restrict vertex_edge, global const int* restrict ids,
                           global const uchar* restrict side, global int* restrict source,
                           global int* restrict vertex_of, global uint* restrict counts) {
   const int v = get_global_id(0);

@@ -92,7 +92,7 @@ Buffer<cl_uint> cut_out(Workspace& work, const PointTable& table, const Level& l
   Arena::Scope scope(scratch);
   const auto vertex_of = scratch.allocate<cl_int>(blocks.points);
   const auto corner_vertex = scratch.allocate<cl_int>(level.corners);
-  runtime.map(blocks.points, kernels::identify_vertices{.vertex_edge = rings.vertex_edge,
+  runtime.map(blocks.points, kernels::name_vertices{.vertex_edge = rings.vertex_edge,
                                                     .ids = made.ids,
                                                     .side = table.side,
                                                     .source = blocks.source,
