@@ -413,9 +413,10 @@ void Runtime::enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, co
   }
   FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, wait, offset, bytes, from, 0, nullptr, nullptr));
   bytes_to_device_ += bytes;
+  // A blocking write may return as soon as the driver has a copy, before earlier commands have ended, as it
+  // does with Intel's CPU runtime: so kept values stay.
   if (wait) {
     ++waits_;
-    kept_.clear();
   } else {
     keep_order();
   }

@@ -21,7 +21,7 @@ struct Emitted {
   Buffer<cl_double2> points{};  // the vertices, as the first round numbers them
   Buffer<cl_int> indices{};     // in the input
   Buffer<cl_int> places{};      // 3 per place of a triangle, 2 places per vertex
-  Buffer<cl_int> links{};       // the same for their neighbours; no memory if these are not wanted
+  Buffer<cl_int> links{};       // the same for their neighbours; null if these are not wanted
   Buffer<cl_int> hull_next{}, hull_previous{};
 };
 
@@ -313,7 +313,7 @@ Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
   Arena& arena = work.persistent;
   const std::size_t corners = 3 * kMostTrianglesPerPoint * blocks.points;
   emitted.places = arena.allocate<cl_int>(corners);
-  emitted.links = arena.allocate<cl_int>(with_links ? corners : 0);
+  if (with_links) emitted.links = arena.allocate<cl_int>(corners);
   emitted.hull_next = arena.allocate<cl_int>(blocks.points);
   emitted.hull_previous = arena.allocate<cl_int>(blocks.points);
   for (const auto& array : {emitted.places, emitted.links, emitted.hull_next, emitted.hull_previous}) {
