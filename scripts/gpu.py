@@ -21,10 +21,12 @@ import time
 # What is measured. The record contains these settings, too.
 MODES = "blocks,flattened,dwyer"
 DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
-# Values of src/tuning/tuning.cpp that are tried, one name after the other. With block_group=1 a warp has one lane that
-# solves a block or merges two, and nothing diverges.
-TUNED = {"block_group": [1, 4, 32], "block_points": [512, 1024, 2048], "map_group": [64, 128, 256],
-         "chunk_group": [32, 64, 128], "chunk_least": [16, 32, 64], "sort_items": [8, 16, 32]}
+# Values of src/tuning/tuning.cpp that are tried, one name after the other. round_points=0 merges up the trees instead
+# of rounds. With block_group=1 a warp has one lane that merges, and nothing diverges; merge_items says up to how many
+# merges have a warp each.
+TUNED = {"round_points": [0, 256, 512, 1024], "merge_items": [0, 16384, 65536, 262144], "block_group": [1, 4, 32],
+         "block_points": [512, 1024, 2048], "halve_group": [64, 128, 256], "tile_group": [0, 128, 256],
+         "blocks_in_parallel": [0, 1], "map_group": [64, 128, 256], "sort_items": [8, 16, 32]}
 # What is less than this share faster may be noise.
 WORTH_A_CHANGE = 0.02
 FULL = {"peer_size": 10000000, "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000, "runs": 5,
