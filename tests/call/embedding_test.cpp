@@ -265,7 +265,9 @@ TEST(SmallEmbedding, OnlyWhatIsAskedForIsMade) {
     EXPECT_EQ(result.hull.memory() != nullptr, parts.hull);
     EXPECT_EQ(result.representatives.memory() != nullptr, parts.representatives);
     expect_same(result, expected);
-    EXPECT_LE(result.statistics.kernel_launches, launches);
+    // In rounds, hulls are put in order by some launches of their own.
+    const bool has_more = result.statistics.rounds > 0 && parts.hull;
+    if (!has_more) EXPECT_LE(result.statistics.kernel_launches, launches);
     if (parts.triangles) launches = result.statistics.kernel_launches + 1;
   }
   DeviceTriangulation result;
@@ -452,6 +454,16 @@ TEST(SmallEmbedding, DestroyingWaitsForWhatWasEnqueued) {
   EXPECT_EQ(locator->locate(coordinates.data(), 500).size(), 500u);
 }
 
+// What docs/embedding.md says. merging: without rounds.
+void expect_documented_waits(const Statistics& statistics, std::size_t merging) {
+  if (statistics.rounds == 0) {
+    EXPECT_EQ(statistics.host_waits, merging);
+  } else {
+    EXPECT_GE(statistics.host_waits, 3 + statistics.rounds);
+    EXPECT_LE(statistics.host_waits, 3 + 2 * statistics.rounds);
+  }
+}
+
 // Counted where the calls are made, and by flaunay itself.
 TEST(Embedding, ASecondCallAllocatesNothingAndOnlySizesCross) {
   const std::size_t n = 100000;
@@ -474,10 +486,10 @@ TEST(Embedding, ASecondCallAllocatesNothingAndOnlySizesCross) {
     EXPECT_EQ(calls.waits, result.statistics.host_waits);
     // Some numbers for each of the 64 blocks: the points alone are 1,600,000 bytes.
     EXPECT_LE(calls.bytes_to_host + calls.bytes_to_device, 64u * 200);
-    EXPECT_EQ(calls.waits, 6u);
+    expect_documented_waits(result.statistics, 6);
   }
   fresh.triangulate(points_in(first, 1000), result, kAll, on_own());
-  EXPECT_EQ(result.statistics.host_waits, 5u);
+  expect_documented_waits(result.statistics, 5);
   // Nor do points that need more of it: others at random, or all in one block; nor fewer.
   for (const Coordinates& other :
        {make_fixture("uniform", n, 12), make_fixture("line", n, 13), Coordinates(2 * n, 0.5)}) {

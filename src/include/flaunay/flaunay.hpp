@@ -247,16 +247,16 @@ class FLAUNAY_API Triangulator {
                             const research::Options& options) = delete;
 
   /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
-  /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them
-  /// (Statistics::host_waits). The call returns when everything is enqueued; the number of triangles is known
-  /// then. The results are complete when the event is complete, and for all commands that are enqueued later
-  /// on the same in-order queue; until then the points and the buffers of the results must not be changed. A
-  /// second call of the same size allocates no device memory.
-  /// Throws Error(usage) for buffers that are too small or of another context, a queue of another context or
-  /// device, offsets that decrease or do not end with the number of points; Error(input) and Error(device) as
-  /// for points in host memory. The results are unspecified after an error. The queue, the events and the
-  /// buffers must be alive when the call is made; the behaviour with a released one is undefined. O(n log n)
-  /// work.
+  /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them, on
+  /// devices with many lanes once or twice per round (Statistics::host_waits). The call returns when
+  /// everything is enqueued; the number of triangles is known then. The results are complete when the event
+  /// is complete, and for all commands that are enqueued later on the same in-order queue; until then the
+  /// points and the buffers of the results must not be changed. A second call of the same size allocates no
+  /// device memory. Throws Error(usage) for buffers that are too small or of another context, a queue of
+  /// another context or device, offsets that decrease or do not end with the number of points; Error(input)
+  /// and Error(device) as for points in host memory. The results are unspecified after an error. The queue,
+  /// the events and the buffers must be alive when the call is made; the behaviour with a released one is
+  /// undefined. O(n log n) work.
   void triangulate(const DevicePoints& points, DeviceTriangulation& result,
                    const Parts& parts = triangles_alone(), const Enqueue& enqueue = own_queue());
 
