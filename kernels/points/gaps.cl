@@ -145,8 +145,10 @@ kernel void cut_at_gaps(int groups, int level, int tree_count, global const int*
     }
   }
   const int has_samples = node.size > 0;
+  // Of a node without samples.
   gap_cut cut;
   cut.axis = cut.split = 0;
+  cut.node = node_of(0, VECTOR(double2, 0.0, 0.0));
   int rank = 0;
   if (has_samples) {
     cut = cut_in_gap(node, gaps, extent, place.x, place.y, all_samples, samples, from);
@@ -164,7 +166,7 @@ kernel void cut_at_gaps(int groups, int level, int tree_count, global const int*
     const int sample = from[other + node.begin + i];
     to[other + (ranks[2 * sample + cut.axis] < rank ? low++ : high++)] = sample;
   }
-  if (has_samples && me == 0) {
+  if ((int)get_group_id(0) < groups && me == 0) {
     nodes[node.own.first_node + node.number] = cut.node;
     if (2 * node.number < node.own.samples / node.own.leaf) {
       const int split = node.begin + cut.split;

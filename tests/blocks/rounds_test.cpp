@@ -1,0 +1,381 @@
+// Rounds of blocks: the same bytes as merging, and what a round's steps write against plain loops.
+#include "blocks/rounds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "statistics/phases.hpp"
+#include "tests/blocks/support.hpp"
+
+namespace flaunay::blocks {
+namespace {
+
+/// All parts of a mesh, in host memory.
+class WholeExchange : public Exchange {
+ public:
+  WholeExchange(Runtime& runtime, const Coordinates& coordinates, Triangulation& result)
+      : runtime_(runtime), coordinates_(coordinates), result_(result) {}
+
+  Buffer<cl_double> points() override { return runtime_.view(coordinates_.data(), coordinates_.size()); }
+  Buffer<cl_int> representatives() override {
+    result_.representatives.assign(coordinates_.size() / 2, -7);  // not yet written
+    return own_ = runtime_.output(result_.representatives);
+  }
+  bool wants_links() const override { return true; }
+  MeshBuffers mesh(const MeshSizes& sizes) override {
+    const auto room = [&](std::vector<std::int32_t>& values, std::size_t count) {
+      values.assign(count, -7);
+      return runtime_.output(values);
+    };
+    result_.triangle_offsets = sizes.triangle_offsets;
+    result_.hull_offsets = sizes.hull_offsets;
+    const std::size_t corners = 3 * sizes.triangles();
+    return mesh_ = {room(result_.triangles, corners), room(result_.neighbors, corners),
+                    room(result_.halfedges, corners), room(result_.hull, sizes.hull_vertices())};
+  }
+  void fetch() {
+    runtime_.fetch_later(own_, result_.representatives);
+    runtime_.fetch_later(mesh_.triangles, result_.triangles);
+    runtime_.fetch_later(mesh_.neighbors, result_.neighbors);
+    runtime_.fetch_later(mesh_.halfedges, result_.halfedges);
+    runtime_.fetch_later(mesh_.hull, result_.hull);
+    runtime_.finish();
+  }
+
+ private:
+  Runtime& runtime_;
+  const Coordinates& coordinates_;
+  Triangulation& result_;
+  Buffer<cl_int> own_{};
+  MeshBuffers mesh_{};
+};
+
+/// With round_points as the tuning has them; 0: merged.
+Triangulation run_blocks(Runtime& runtime, const Coordinates& coordinates, const Offsets& offsets) {
+  Call call(runtime);
+  Triangulation result;
+  WholeExchange exchange(runtime, coordinates, result);
+  const Options options;
+  statistics::Phases phases(options);
+  const Outcome outcome = run(runtime, call.work.persistent, offsets, exchange, phases);
+  exchange.fetch();
+  outcome.write(offsets.back(), result.statistics);
+  return result;
+}
+
+/// What rounds depend on. tile_group: 0 for cuts at medians.
+struct RoundSizes {
+  std::size_t block_points, round_points, merge_from_percent = 100, tile_group = 0, samples = 4;
+};
+
+/// Calls check with these sizes.
+template <typename Check>
+void with_sizes(const RoundSizes& sizes, const Check& check) {
+  Runtime& runtime = Runtimes::get("rounds");
+  const Tuning before = tuning_of(runtime);
+  Tuning tuning = before;
+  tuning.block_points = sizes.block_points;
+  tuning.round_points = sizes.round_points;
+  tuning.merge_from_percent = sizes.merge_from_percent;
+  tuning.samples_per_gap_block = sizes.samples;
+  if (!runtime.is_native()) {
+    tuning.blocks_in_parallel = 1;
+    tuning.tile_group = sizes.tile_group;
+  }
+  runtime.set_sizes(std::make_shared<Tuning>(tuning));
+  check(runtime);
+  runtime.set_sizes(std::make_shared<Tuning>(before));
+}
+
+/// What tests of rounds met.
+struct MetRounds {
+  std::size_t most = 0, merged = 0, points = 0;
+};
+
+/// Rounds against merging, byte by byte.
+void compare(const RoundSizes& sizes, const Coordinates& coordinates, const Offsets& offsets,
+             MetRounds& met) {
+  SCOPED_TRACE("blocks of " + std::to_string(sizes.block_points) + ", then " +
+               std::to_string(sizes.round_points) + ", merged from " +
+               std::to_string(sizes.merge_from_percent) + " %, tile_group " +
+               std::to_string(sizes.tile_group));
+  Triangulation expected, found;
+  RoundSizes merging = sizes;
+  merging.round_points = 0;
+  with_sizes(merging, [&](Runtime& runtime) { expected = run_blocks(runtime, coordinates, offsets); });
+  with_sizes(sizes, [&](Runtime& runtime) { found = run_blocks(runtime, coordinates, offsets); });
+  EXPECT_EQ(expected.statistics.rounds, 0u);
+  EXPECT_EQ(expected.statistics.round_points, 0u);
+  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+  EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
+  EXPECT_TRUE(same(found.triangles, expected.triangles)) << "triangles";
+  EXPECT_TRUE(same(found.neighbors, expected.neighbors)) << "neighbors";
+  EXPECT_TRUE(same(found.halfedges, expected.halfedges)) << "halfedges";
+  EXPECT_TRUE(same(found.hull, expected.hull)) << "hull";
+  EXPECT_TRUE(same(found.representatives, expected.representatives)) << "representatives";
+  EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
+  EXPECT_GE(found.statistics.rounds, 1u);
+  EXPECT_GE(found.statistics.round_points, offsets.back());
+  EXPECT_LE(found.statistics.merged_points, offsets.back());
+  met.most = std::max(met.most, found.statistics.rounds);
+  met.merged += found.statistics.merged_points > 0;
+  met.points += found.statistics.round_points;
+}
+
+void compare(const RoundSizes& sizes, const Coordinates& coordinates, MetRounds& met) {
+  compare(sizes, coordinates, {0, coordinates.size() / 2}, met);
+}
+
+/// Many kinds natively, where they are fast; on a device those that differ there.
+std::vector<RoundSizes> all_sizes() {
+  if (testing::tests_native()) {
+    return {{5, 4}, {6, 12}, {13, 5, 50}, {20, 20}, {64, 33}, {64, 64, 50}, {40, 7}};
+  }
+  return {{6, 5, 100, 4}, {24, 12, 50, 32}, {30, 30, 100, 0}};
+}
+
+/// Without the larger ones on a device, where rounds of few points take as long as those of many.
+std::vector<std::size_t> point_counts(const std::vector<std::size_t>& natively, std::size_t on_device) {
+  return testing::tests_native() ? natively : std::vector<std::size_t>{on_device};
+}
+
+/// n points as close to one another as doubles allow, around each of several points.
+Coordinates one_ulp_clouds(std::size_t n, std::size_t clouds, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  const Coordinates centres = make_fixture("uniform", clouds, seed);
+  Coordinates points;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (const std::size_t c : {0, 1}) {
+      const double centre = centres[2 * (i % clouds) + c] + 1;
+      points.push_back(centre + static_cast<double>(random.integer(-4, 4)) * 0x1p-52);
+    }
+  }
+  return points;
+}
+
+/// Uniform cells, 2^20 times as long as wide: circles reach beyond any block.
+Coordinates long_thin_cells(std::size_t n, std::uint64_t seed) {
+  Coordinates points = make_fixture("uniform", n, seed);
+  for (std::size_t i = 0; i < points.size(); i += 2) points[i] *= 0x1p20;
+  return points;
+}
+
+/// On lines in all directions.
+Coordinates on_lines(std::size_t n, std::size_t lines, std::uint64_t seed) {
+  return testing::fixtures_detail::on_lines(n, seed, lines);
+}
+
+/// A square lattice, turned by an angle that rounds its coordinates.
+Coordinates turned_lattice(std::size_t n) {
+  const auto width = static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
+  Coordinates points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto x = static_cast<double>(i % width), y = static_cast<double>(i / width);
+    points.push_back(0.8 * x - 0.6 * y);
+    points.push_back(0.6 * x + 0.8 * y);
+  }
+  return points;
+}
+
+/// Of which a round emits little or nothing.
+std::vector<std::pair<std::string, Coordinates>> stalling(std::size_t n, std::uint64_t seed) {
+  Coordinates columns;
+  FixtureRandom random(seed);
+  for (std::size_t i = 0; i < n; ++i) {
+    append(columns, {static_cast<double>(i % 3), static_cast<double>(random.integer(0, 1000000))});
+  }
+  return {{"circle", make_fixture("circle", n, seed)},
+          {"integer circle", make_fixture("integer-circle", n, seed)},
+          {"columns", columns},
+          {"long thin cells", long_thin_cells(n, seed)},
+          {"one-ulp clouds", one_ulp_clouds(n, 5, seed)},
+          {"30 lines", on_lines(n, 30, seed)},
+          {"turned lattice", turned_lattice(n)},
+          {"perturbed lattice", testing::perturbed(turned_lattice(n), seed)},
+          {"collinear", make_fixture("collinear", n, seed)}};
+}
+
+/// Many sets, empty ones, single points, collinear ones and those of equal points among them.
+Nested sets_of_all_kinds(std::size_t most, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Nested sets;
+  sets.add({});
+  sets.add({3, -0.0});
+  sets.add(Coordinates(2 * most, 0.5));
+  sets.add({});
+  for (std::size_t n = 1; n <= most; n += 1 + n / 3) {
+    sets.add(make_fixture("uniform", n, seed + n));
+    sets.add(coarse(n, 5, 5, random));
+    if (n % 2 == 0) sets.add(make_fixture("collinear", n, n));
+    if (n % 3 == 0) sets.add({});
+    sets.add(Coordinates(2 * (n % 7), -1.25));
+    sets.add(make_fixture("slender", n, n));
+  }
+  sets.add({});
+  return sets;
+}
+
+TEST(SmallRounds, AreTheSameAsMerges) {
+  MetRounds met;
+  const RoundSizes sizes{6, 5, 100, 3};
+  compare(sizes, make_fixture("uniform", 40, 1), met);
+  EXPECT_GE(met.most, 2u);
+  compare({6, 8, 50, 0}, make_fixture("grid", 25, 1), met);
+  compare(sizes, make_fixture("circle", 20, 1), met);
+  EXPECT_GE(met.merged, 1u);
+  const Nested sets = sets_of_all_kinds(9, 2);
+  compare(sizes, sets.coordinates, sets.offsets, met);
+}
+
+TEST(Rounds, OfFixturesAreTheSameAsMerges) {
+  MetRounds met;
+  for (const testing::Fixture& fixture : testing::all_fixtures()) {
+    SCOPED_TRACE(fixture.name);
+    for (const RoundSizes& sizes : all_sizes()) {
+      for (const std::size_t n : point_counts({7, 31, 150, 700}, 70)) compare(sizes, fixture.make(n, n), met);
+      if (testing::tests_native()) compare(sizes, testing::perturbed(fixture.make(90, 2), 3), met);
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GE(met.most, 4u);
+  EXPECT_GE(met.merged, 30u);
+}
+
+TEST(Rounds, OfAwkwardInputAreTheSameAsMerges) {
+  MetRounds met;
+  for (const RoundSizes& sizes : all_sizes()) {
+    for (const auto& [name, points] : awkward(400, 4)) {
+      SCOPED_TRACE(name);
+      compare(sizes, points, met);
+    }
+  }
+  EXPECT_GE(met.most, 3u);
+}
+
+TEST(Rounds, ThatStallAreTheSameAsMerges) {
+  MetRounds met;
+  for (const RoundSizes& sizes : all_sizes()) {
+    for (const std::size_t n : point_counts({60, 500, 2000}, 150)) {
+      for (const auto& [name, points] : stalling(n, n)) {
+        SCOPED_TRACE(name + ", " + std::to_string(n) + " points");
+        compare(sizes, points, met);
+      }
+    }
+  }
+  EXPECT_GE(met.merged, testing::tests_native() ? 50u : 10u);
+}
+
+TEST(Rounds, OfManySetsAreTheSameAsMerges) {
+  MetRounds met;
+  for (const RoundSizes& sizes : all_sizes()) {
+    const Nested sets = sets_of_all_kinds(300, 5);
+    compare(sizes, sets.coordinates, sets.offsets, met);
+    // Each set stalls or ends at another time.
+    Nested others;
+    for (const auto& [name, points] : stalling(200, 6)) {
+      others.add(points);
+      others.add(make_fixture("uniform", 350, 7));
+    }
+    compare(sizes, others.coordinates, others.offsets, met);
+    Nested tiny;
+    FixtureRandom random(8);
+    for (int s = 0; s < 500; ++s)
+      tiny.add(coarse(static_cast<std::size_t>(random.integer(0, 30)), 6, 5, random));
+    compare(sizes, tiny.coordinates, tiny.offsets, met);
+  }
+  EXPECT_GE(met.most, 4u);
+}
+
+/// Parallelograms and ellipses full of points, in all directions. Of some, a round leaves two points: those
+/// of an edge of the upper hull, with nothing missing but the outside.
+TEST(Rounds, ThatLeaveAHullEdgeAreTheSameAsMerges) {
+  MetRounds met;
+  FixtureRandom random(12);
+  Nested sets;
+  for (int s = 0; s < 400; ++s) {
+    const bool is_round = s % 2 == 0;
+    double map[4];
+    for (double& entry : map) entry = 2 * random.unit() - 1;
+    Coordinates points;
+    for (std::int64_t left = random.integer(31, 120); left > 0;) {
+      const double x = 2 * random.unit() - 1, y = 2 * random.unit() - 1;
+      if (is_round && x * x + y * y > 1) continue;
+      append(points, {map[0] * x + map[1] * y, map[2] * x + map[3] * y});
+      --left;
+    }
+    sets.add(points);
+  }
+  for (const std::size_t round_points : {6, 10, 20}) {
+    compare({30, round_points, 100, 4}, sets.coordinates, sets.offsets, met);
+  }
+  EXPECT_GE(met.most, 8u);
+}
+
+/// Nothing and nearly nothing: a single set of no points is not run.
+TEST(SmallRounds, OfFewPoints) {
+  MetRounds met;
+  for (const RoundSizes& sizes : {RoundSizes{2, 2}, RoundSizes{6, 5, 100, 2}}) {
+    for (const Coordinates& points : std::vector<Coordinates>{
+             {1, 2}, {1, 2, 1, 2}, {0, 0, 1, 1}, {0, 0, 1, 1, 2, 2}, {0, 0, 1, 0, 0, 1}}) {
+      compare(sizes, points, met);
+    }
+    compare(sizes, {0, 0, 1, 1, 5, 5, 5, 5}, {0, 0, 1, 2, 2, 4, 4}, met);
+  }
+}
+
+TEST(Rounds, OfManyPointsAreTheSameAsMerges) {
+  MetRounds met;
+  const std::size_t n = testing::tests_native() ? 60000 : 15000;
+  for (const char* const name : {"uniform", "kuzmin", "line", "corners", "grid", "circle"}) {
+    SCOPED_TRACE(name);
+    compare({64, 50, 50, 64, 16}, make_fixture(name, n, 9), met);
+    compare({300, 200, 100, 256, 64}, make_fixture(name, n, 10), met);
+  }
+  EXPECT_GE(met.most, 3u);
+}
+
+Statistics statistics_of(const RoundSizes& sizes, const Coordinates& coordinates) {
+  Statistics statistics;
+  with_sizes(sizes, [&](Runtime& runtime) {
+    statistics = run_blocks(runtime, coordinates, {0, coordinates.size() / 2}).statistics;
+  });
+  return statistics;
+}
+
+TEST(Rounds, StatisticsSayWhatTheyDid) {
+  const std::size_t n = 20000;
+  const RoundSizes sizes{512, 256, 50, 64, 64};
+  const Coordinates uniform = make_fixture("uniform", n, 11), circle = make_fixture("circle", n, 11);
+  const Statistics one = statistics_of({n, n}, uniform);
+  EXPECT_EQ(one.rounds, 1u);
+  EXPECT_EQ(one.round_points, n);
+  EXPECT_EQ(one.merged_points, 0u);
+
+  const Statistics many = statistics_of(sizes, uniform);
+  EXPECT_GE(many.rounds, 2u);
+  EXPECT_GT(many.round_points, n + n / 20);
+  EXPECT_LT(many.round_points, 2 * n);
+  // Medians fall on the old cuts; cuts in gaps get on without merging.
+  if (!testing::tests_native()) {
+    EXPECT_EQ(many.merged_points, 0u);
+  }
+
+  // No triangle is local: the second round has all points, and is merged.
+  const Statistics stalled = statistics_of(sizes, circle);
+  EXPECT_EQ(stalled.rounds, 2u);
+  EXPECT_EQ(stalled.merged_points, n);
+  EXPECT_EQ(stalled.round_points, 2 * n);
+}
+
+}  // namespace
+}  // namespace flaunay::blocks

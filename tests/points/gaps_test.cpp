@@ -1,0 +1,192 @@
+// Cut trees of points along earlier cuts (kernels/points/gaps.cl) against a plain twin, node by node.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/points/support.hpp"
+
+namespace flaunay::points {
+namespace {
+
+using Samples = std::vector<cl_double2>;
+
+/// What the twin met.
+struct MetGaps {
+  std::size_t gaps = 0, medians = 0, empty = 0, along[2] = {0, 0};
+};
+
+/// A tree of samples, as gaps.cl describes it. half_size: the samples of a half if all leaves were equal.
+class GapTwin {
+ public:
+  GapTwin(Samples samples, int depth, MetGaps& met)
+      : nodes(std::size_t{1} << depth), all_(samples.size()), met_(met) {
+    if (depth > 0) cut(1, 0, std::move(samples));
+  }
+
+  std::vector<kernel::cut_node> nodes;
+
+ private:
+  struct Gap {
+    double extent = 0;
+    std::size_t first = 0;
+    int axis = 0;
+  };
+
+  static double at(const cl_double2& p, int axis) { return p.s[axis] + 0.0; }
+
+  static Samples sorted_along(Samples samples, int axis) {
+    std::stable_sort(samples.begin(), samples.end(),
+                     [axis](const auto& p, const auto& q) { return comes_first(p, q, axis); });
+    return samples;
+  }
+
+  static Gap widest_gap(const Samples* sorted, std::size_t half_size) {
+    const auto size = static_cast<long>(sorted[0].size());
+    const auto width = std::max(1L, static_cast<long>(std::sqrt(static_cast<float>(size))));
+    // The smallest part that may be made, from what both parts may have at least and at most.
+    const double half = static_cast<double>(half_size);
+    const long least = std::max({static_cast<long>(0.3 * static_cast<double>(size)),
+                                 static_cast<long>(0.5 * half), size - static_cast<long>(1.4 * half), 1L});
+    const long most = std::min(size - least, size - 1);
+    Gap gap;
+    for (const int axis : {0, 1}) {
+      for (long first = 0; first + width < size; ++first) {
+        const long middle = first + width / 2;
+        if (middle < std::min(least, most) || middle > std::max(least, most)) continue;
+        const double extent = at(sorted[axis][first + width], axis) - at(sorted[axis][first], axis);
+        if (extent > gap.extent) gap = {extent, static_cast<std::size_t>(first), axis};
+      }
+    }
+    return gap;
+  }
+
+  void cut(std::size_t node, int level, Samples samples) {
+    if (node >= nodes.size()) return;
+    const std::size_t half_size = all_ >> (level + 1);
+    const Samples sorted[2] = {sorted_along(samples, 0), sorted_along(samples, 1)};
+    Samples low, high;
+    if (samples.empty()) {
+      ++met_.empty;
+      nodes[node] = testing::cut_tree_detail::node_of({{0, 0}}, 0);
+    } else {
+      const Gap gap = widest_gap(sorted, half_size);
+      const Samples& along = sorted[gap.axis];
+      std::size_t split = along.size() / 2;
+      nodes[node] = testing::cut_tree_detail::node_of(along[split], gap.axis);
+      if (gap.extent > 0) {
+        const double begin = at(along[gap.first], gap.axis), middle = begin + 0.5 * gap.extent;
+        const double cut = middle > begin ? middle : begin + gap.extent;
+        split = 0;
+        while (at(along[split], gap.axis) < cut) ++split;
+        nodes[node].major = geometry::sort_key(cut + 0.0);
+        nodes[node].minor = 0;
+        ++met_.along[gap.axis];
+        ++met_.gaps;
+      } else {
+        ++met_.medians;
+      }
+      const auto middle = along.begin() + static_cast<std::ptrdiff_t>(split);
+      low.assign(along.begin(), middle);
+      high.assign(middle, along.end());
+    }
+    cut(2 * node, level + 1, low);
+    cut(2 * node + 1, level + 1, high);
+  }
+
+  std::size_t all_;
+  MetGaps& met_;
+};
+
+void check_gap_trees(Runtime& runtime, const std::vector<std::pair<Coordinates, int>>& sets,
+                     std::size_t samples_per_leaf, MetGaps& met) {
+  const Arena::Scope scope(runtime.arena());
+  Coordinates all{NAN, NAN};
+  std::vector<SetToCut> to_cut;
+  for (const auto& [coordinates, depth] : sets) {
+    to_cut.push_back({depth, all.size() / 2, coordinates.size() / 2});
+    append(all, coordinates);
+    append(all, {NAN, NAN});
+  }
+  const auto input = testing::upload(runtime, all);
+  const CutTrees trees(runtime, to_cut, samples_per_leaf);
+  const auto nodes = testing::guarded<kernel::cut_node>(runtime, trees.nodes());
+  trees.cut_at_gaps(trees.draw(input).points, nodes);
+  const std::vector<kernel::cut_node> found = testing::download(runtime, nodes, trees.nodes());
+  std::size_t first = 0;
+  for (const auto& [coordinates, depth] : sets) {
+    Samples samples;
+    for (const cl_int i : spread_indices(coordinates.size() / 2, samples_per_leaf << depth)) {
+      samples.push_back(point_of(coordinates, static_cast<std::size_t>(i)));
+    }
+    const GapTwin twin(samples, depth, met);
+    for (std::size_t k = 1; k < twin.nodes.size(); ++k) {
+      const kernel::cut_node &node = found[first + k], &expected = twin.nodes[k];
+      ASSERT_TRUE(node.major == expected.major && node.minor == expected.minor && node.turn == expected.turn)
+          << "node " << k << " of a tree of depth " << depth << " from node " << first;
+    }
+    first += twin.nodes.size();
+  }
+}
+
+/// Points within a narrow strip along each line of a coarse grid, as an earlier tree's cuts leave them.
+Coordinates along_cuts(std::size_t n, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double line = static_cast<double>(random.integer(0, 3)) + 0.1 * random.unit(),
+                 along = 4 * random.unit();
+    append(points, i % 2 == 0 ? Coordinates{line, along} : Coordinates{along, line});
+  }
+  return points;
+}
+
+std::vector<std::pair<Coordinates, int>> gap_sets(std::size_t n, const std::vector<int>& depths) {
+  std::vector<std::pair<Coordinates, int>> sets;
+  std::size_t k = 0;
+  const auto add = [&](const Coordinates& points) { sets.emplace_back(points, depths[k++ % depths.size()]); };
+  for (const auto& [name, points] : awkward(n, 50)) {
+    // Extents overflow unless points are scaled, as they are when rounds cut them.
+    if (name != "overflowing" && name != "huge") add(points);
+  }
+  add(along_cuts(n, 51));
+  add(along_cuts(3 * n, 52));
+  add({1, 2, 3, 4});
+  add({0.5, -0.5});
+  add(testing::perturbed(make_fixture("grid", n, 53), 54));
+  return sets;
+}
+
+TEST(SmallGaps, AreThoseOfTheTwin) {
+  under_tiles("tiles", [](Runtime& runtime) {
+    MetGaps met;
+    check_gap_trees(runtime, {{along_cuts(40, 55), 3}}, 4, met);
+    check_gap_trees(runtime, {{along_cuts(9, 56), 0}, {Coordinates(20, 1.5), 2}, {along_cuts(30, 57), 1}}, 3,
+                    met);
+    check_gap_trees(runtime, gap_sets(9, {2, 1, 3}), 1, met);
+    EXPECT_GT(met.gaps, 10u);
+    EXPECT_GT(met.medians, 3u);
+    EXPECT_GT(met.empty, 0u);
+  });
+}
+
+TEST(Gaps, AreThoseOfTheTwin) {
+  MetGaps met;
+  under_each_group_of_tiles([&](Runtime& runtime) {
+    check_gap_trees(runtime, gap_sets(1000, {5, 1, 8, 0, 3}), 64, met);
+    check_gap_trees(runtime, gap_sets(300, {4, 7, 2}), 5, met);
+    for (const std::size_t samples : {1, 2, 3})
+      check_gap_trees(runtime, gap_sets(90, {6, 3, 5}), samples, met);
+  });
+  if (testing::tests_native()) return;
+  EXPECT_GT(met.along[0], 100u);
+  EXPECT_GT(met.along[1], 100u);
+  EXPECT_GT(met.medians, 100u);
+}
+
+}  // namespace
+}  // namespace flaunay::points
