@@ -202,13 +202,29 @@ static inline void emit_hull_edge(const emission* m, int v, int w, int is_line) 
   m->hull_previous[m->vertices[w]] = m->vertices[v];
 }
 
+// The emitted corner beyond the open edge from one vertex, where that side begins, to another; GHOST if there is none.
+static inline int corner_beyond(int listed, int to, global const int* open_offsets,
+                                global const open_edge* open_edges) {
+  for (int k = open_offsets[listed]; k < open_offsets[listed + 1]; ++k) {
+    if (open_edges[k].to == to && open_edges[k].begins) return open_edges[k].corner;
+  }
+  return GHOST;
+}
+
+// The same for the outside left of the edge. If something is emitted and the points that are left are on one line, they
+// are vertices of the hull, and there are triangles on the other side of the line alone, all of them emitted.
+static inline int is_ghost_missing(const emission* m, int from, int to, int is_line, int exactly) {
+  if (!is_line || open_count(m, from) == 0) return is_missing(m, from, to, 1, exactly);
+  return corner_beyond(m->listed[from], m->vertices[to], m->open_offsets, m->open_edges) != GHOST;
+}
+
 static inline void decide_ghost(const emission* m, const block_frame* frame, int e, int exactly) {
   const int to = m->edges[e].to, from = m->edges[e ^ 1].to;
   const int is_line = is_outside(e ^ 1, m->edges, frame);
   // Of points on one line it is not known on which side others are.
   const int is_final =
       !has_other_blocks(frame) || (!is_line && is_half_plane_inside(frame, m->points[to], m->points[from]));
-  const int missing = is_final && !m->is_first ? is_missing(m, from, to, 1, exactly) : is_final;
+  const int missing = is_final && !m->is_first ? is_ghost_missing(m, from, to, is_line, exactly) : is_final;
   // If something is emitted, the set has triangles, and points on one line are what is left along its hull.
   const int is_set_on_line = is_line && (m->is_first || open_count(m, from) == 0);
   if (missing == 1) emit_hull_edge(m, to, from, is_set_on_line);
@@ -291,15 +307,6 @@ kernel void emit_unsure(int n, int is_first, double bound, int blocks, global co
       decide_triangle(&m, &frame, e, 1);
     }
   }
-}
-
-// The emitted corner beyond the open edge from one vertex, where that side begins, to another; GHOST if there is none.
-static inline int corner_beyond(int listed, int to, global const int* open_offsets,
-                                global const open_edge* open_edges) {
-  for (int k = open_offsets[listed]; k < open_offsets[listed + 1]; ++k) {
-    if (open_edges[k].to == to && open_edges[k].begins) return open_edges[k].corner;
-  }
-  return GHOST;
 }
 
 // n pairs of edges. links: the corner on the other side of the edge opposite to each corner.

@@ -60,10 +60,12 @@ static inline gap_range gaps_of(gap_node node) {
   gap_range gaps;
   gaps.size = max(1, (int)sqrt((float)node.size));
   const int least = max((int)(LEAST_OF_NODE * node.size), (int)(LEAST_OF_HALF * node.half_size));
-  const int low = max(max(least, node.size - (int)(MOST_OF_HALF * node.half_size)), 1);
-  const int high = min(node.size - low, node.size - 1);
-  gaps.first = max(0, min(low, high) - gaps.size / 2);
-  gaps.last = min(node.size - 1 - gaps.size, max(low, high) - gaps.size / 2);
+  const int most = max(least, node.size - (int)(MOST_OF_HALF * node.half_size));
+  // If no cut leaves both parts enough, the node is cut in the middle.
+  const int low = clamp(most, 1, max(1, node.size / 2));
+  const int high = max(low, node.size - low);
+  gaps.first = max(0, low - gaps.size / 2);
+  gaps.last = min(node.size - 1 - gaps.size, high - gaps.size / 2);
   return gaps;
 }
 

@@ -60,7 +60,7 @@ static inline int circle_through(double2 a, double2 b, double2 c, circle_found* 
 static inline double gap_to(double x, double low, double high, double error) {
   const double below = low - x, above = x - high;
   const double gap = below > above ? below : above;
-  const double sure = gap - error - 4.0 * ROUNDOFF * (fabs(x) + fabs(low) + fabs(high));
+  const double sure = gap - error - 4.0 * ROUNDOFF * (fabs(x) + fabs(below > above ? low : high));
   return sure > 0.0 ? sure : 0.0;
 }
 

@@ -124,7 +124,7 @@ ASSERT_SIZE(vertex_box, 32);
 
 // Where a block of points lies in its set. All other points of the round are on or beyond the sides of its rectangle,
 // which are infinite where there are none beyond; `all` is the box around the set. outside: if the block's hull has
-// three vertices, the edges that have the outside on their left; otherwise NO_EDGE.
+// three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
 typedef struct {
   vertex_box rectangle, all;
   int outside[4];

@@ -349,7 +349,8 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
   }();
   phases.end("blocks");
 
-  phases.progress("triangulate", kBlocksMade);
+  double done = kBlocksMade;
+  phases.progress("triangulate", done);
   const Emitted emitted = make_emitted(work, blocks, exchange.wants_links());
   // What a round needs is given back when it ends.
   Workspace rounds_work{runtime, runtime.arena(), work.bounds};
@@ -380,9 +381,9 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
     outcome.round_points += open.count();
     if (is_merged) outcome.merged_points = open.count();
     is_merged = 100 * next.count() > tuning.merge_from_percent * open.count() || next.count() == open.count();
-    phases.progress("triangulate", kBlocksMerged - (kBlocksMerged - kBlocksMade) *
-                                                       static_cast<double>(next.count()) /
-                                                       static_cast<double>(offsets.back()));
+    done = std::max(done, kBlocksMerged - (kBlocksMerged - kBlocksMade) * static_cast<double>(next.count()) /
+                                              static_cast<double>(offsets.back()));
+    phases.progress("triangulate", done);
   }
   phases.end("triangulate");
 

@@ -404,6 +404,7 @@ void fit_tiles(Tuning& tuning) {
   };
   fit(tuning.point_tile, kernel::LARGEST_POINT_TILE);
   fit(tuning.sample_tile, kernel::LARGEST_SAMPLE_TILE);
+  fit(tuning.samples_per_gap_block, kernel::LARGEST_SAMPLE_TILE);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
 }
 

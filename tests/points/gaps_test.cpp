@@ -50,14 +50,15 @@ class GapTwin {
     const auto width = std::max(1L, static_cast<long>(std::sqrt(static_cast<float>(size))));
     // The smallest part that may be made, from what both parts may have at least and at most.
     const double half = static_cast<double>(half_size);
-    const long least = std::max({static_cast<long>(0.3 * static_cast<double>(size)),
-                                 static_cast<long>(0.5 * half), size - static_cast<long>(1.4 * half), 1L});
-    const long most = std::min(size - least, size - 1);
+    const long wanted = std::max({static_cast<long>(0.3 * static_cast<double>(size)),
+                                  static_cast<long>(0.5 * half), size - static_cast<long>(1.4 * half)});
+    const long least = std::clamp(wanted, 1L, std::max(1L, size / 2));
+    const long most = std::max(least, size - least);
     Gap gap;
     for (const int axis : {0, 1}) {
       for (long first = 0; first + width < size; ++first) {
         const long middle = first + width / 2;
-        if (middle < std::min(least, most) || middle > std::max(least, most)) continue;
+        if (middle < least || middle > most) continue;
         const double extent = at(sorted[axis][first + width], axis) - at(sorted[axis][first], axis);
         if (extent > gap.extent) gap = {extent, static_cast<std::size_t>(first), axis};
       }

@@ -402,14 +402,15 @@ FLAUNAY_API const flaunay_statistics* flaunay_device_triangulation_statistics(
     const flaunay_device_triangulation* triangulation);
 
 /// Triangulates points in device memory into device memory, in mode blocks. Points and results are not copied
-/// to the host, only sizes are; the host waits 5 or 6 times for them. The call returns when everything is
-/// enqueued. The results are complete when the event is complete, and for all commands that are enqueued
-/// later on the same in-order queue; until then the points and the buffers of the results must not be
-/// changed. A second call of the same size allocates no device memory. parts: bits of flaunay_part, 0 for the
-/// triangles alone; neighbours and halfedges need the triangles. enqueue: NULL for the triangulator's own
-/// queue. FLAUNAY_ERROR_USAGE for buffers that are too small or of another context, a queue of another
-/// context or device, offsets that decrease or do not end with the number of points; FLAUNAY_ERROR_INPUT as
-/// for points in host memory. The result is unspecified after an error. O(n log n) work.
+/// to the host, only sizes are; the host waits 5 or 6 times for them, on GPUs once or twice per round. The
+/// call returns when everything is enqueued. The results are complete when the event is complete, and for all
+/// commands that are enqueued later on the same in-order queue; until then the points and the buffers of the
+/// results must not be changed. A second call of the same size allocates no device memory. parts: bits of
+/// flaunay_part, 0 for the triangles alone; neighbours and halfedges need the triangles. enqueue: NULL for
+/// the triangulator's own queue. FLAUNAY_ERROR_USAGE for buffers that are too small or of another context, a
+/// queue of another context or device, offsets that decrease or do not end with the number of points;
+/// FLAUNAY_ERROR_INPUT as for points in host memory. The result is unspecified after an error. O(n log n)
+/// work.
 FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                                       const flaunay_device_points* points, unsigned parts,
                                                       const flaunay_enqueue* enqueue,
