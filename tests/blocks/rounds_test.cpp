@@ -141,7 +141,7 @@ std::vector<RoundSizes> all_sizes() {
   if (testing::tests_native()) {
     return {{5, 4}, {6, 12}, {13, 5, 50}, {20, 20}, {64, 33}, {64, 64, 50}, {40, 7}};
   }
-  return {{6, 5, 100, 4}, {24, 12, 50, 32}, {30, 30, 100, 0}};
+  return {{16, 9, 100, 4}, {24, 12, 50, 32}, {30, 30, 100, 0}};
 }
 
 /// Without the larger ones on a device, where rounds of few points take as long as those of many.
@@ -225,11 +225,26 @@ Nested sets_of_all_kinds(std::size_t most, std::uint64_t seed) {
   return sets;
 }
 
+}  // namespace
+
+void run_rounds_of_all_kinds() {
+  const Coordinates uniform = make_fixture("uniform", 500, 1), circle = make_fixture("integer-circle", 60, 1);
+  for (const Coordinates& points : {uniform, circle}) {
+    with_sizes({24, 12, 100, 3}, [&](Runtime& runtime) {
+      run_blocks(runtime, points, {0, points.size() / 2});
+    });
+  }
+}
+
+namespace {
+
 TEST(SmallRounds, AreTheSameAsMerges) {
   MetRounds met;
   const RoundSizes sizes{6, 5, 100, 3};
   compare(sizes, make_fixture("uniform", 40, 1), met);
   EXPECT_GE(met.most, 2u);
+  compare({24, 9, 100, 3}, make_fixture("uniform", 90, 1), met);
+  EXPECT_GE(met.most, 3u);
   compare({6, 8, 50, 0}, make_fixture("grid", 25, 1), met);
   compare(sizes, make_fixture("circle", 20, 1), met);
   EXPECT_GE(met.merged, 1u);
