@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "launchers/blocks/rounds.cl.hpp"
 #include "statistics/phases.hpp"
 #include "tests/blocks/support.hpp"
 
@@ -141,7 +142,7 @@ std::vector<RoundSizes> all_sizes() {
   if (testing::tests_native()) {
     return {{5, 4}, {6, 12}, {13, 5, 50}, {20, 20}, {64, 33}, {64, 64, 50}, {40, 7}};
   }
-  return {{6, 5, 100, 4}, {24, 12, 50, 32}, {30, 30, 100, 0}};
+  return {{16, 9, 100, 4}, {24, 12, 50, 32}, {30, 30, 100, 0}};
 }
 
 /// Without the larger ones on a device, where rounds of few points take as long as those of many.
@@ -225,11 +226,26 @@ Nested sets_of_all_kinds(std::size_t most, std::uint64_t seed) {
   return sets;
 }
 
+}  // namespace
+
+void run_rounds_of_all_kinds() {
+  const Coordinates uniform = make_fixture("uniform", 500, 1), circle = make_fixture("integer-circle", 60, 1);
+  for (const Coordinates& points : {uniform, circle}) {
+    with_sizes({24, 12, 100, 3}, [&](Runtime& runtime) {
+      run_blocks(runtime, points, {0, points.size() / 2});
+    });
+  }
+}
+
+namespace {
+
 TEST(SmallRounds, AreTheSameAsMerges) {
   MetRounds met;
   const RoundSizes sizes{6, 5, 100, 3};
   compare(sizes, make_fixture("uniform", 40, 1), met);
   EXPECT_GE(met.most, 2u);
+  compare({24, 9, 100, 3}, make_fixture("uniform", 90, 1), met);
+  EXPECT_GE(met.most, 3u);
   compare({6, 8, 50, 0}, make_fixture("grid", 25, 1), met);
   compare(sizes, make_fixture("circle", 20, 1), met);
   EXPECT_GE(met.merged, 1u);
@@ -375,6 +391,78 @@ TEST(Rounds, StatisticsSayWhatTheyDid) {
   EXPECT_EQ(stalled.rounds, 2u);
   EXPECT_EQ(stalled.merged_points, n);
   EXPECT_EQ(stalled.round_points, 2 * n);
+}
+
+// -----------------------------------------------------------------------------------------------------------
+// Kernels against plain loops
+
+TEST(SmallRounds, BoxesOfSetsAreJoined) {
+  Runtime& runtime = Runtimes::get("rounds");
+  const Arena::Scope scope(runtime.arena());
+  FixtureRandom random(20);
+  // Sets of 1, 2, 16, 17, 300 and 4 blocks, some of them empty.
+  std::vector<cl_int> set_blocks{0};
+  for (const cl_int blocks : {1, 2, 16, 17, 300, 4}) set_blocks.push_back(set_blocks.back() + blocks);
+  std::vector<kernel::vertex_box> boxes(static_cast<std::size_t>(set_blocks.back()));
+  for (kernel::vertex_box& box : boxes) {
+    const double x = random.unit(), y = random.unit();
+    box = {{x, y}, {x + random.unit(), y + random.unit()}};
+    if (random.integer(0, 3) == 0) box = {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+  }
+  const auto on_device = testing::upload(runtime, boxes);
+  const std::size_t sets = set_blocks.size() - 1;
+  for (std::size_t step = 1; step < 300; step *= 16) {
+    runtime.map(boxes.size(), kernels::join_boxes{.sets = sets,
+                                                  .step = step,
+                                                  .set_blocks = testing::upload(runtime, set_blocks),
+                                                  .boxes = on_device});
+  }
+  const auto found = testing::download(runtime, on_device, boxes.size());
+  for (std::size_t s = 0; s < sets; ++s) {
+    const auto first = static_cast<std::size_t>(set_blocks[s]),
+               end = static_cast<std::size_t>(set_blocks[s + 1]);
+    kernel::vertex_box all = boxes[first];
+    for (std::size_t b = first; b < end; ++b) {
+      all.low = {std::min(all.low.x, boxes[b].low.x), std::min(all.low.y, boxes[b].low.y)};
+      all.high = {std::max(all.high.x, boxes[b].high.x), std::max(all.high.y, boxes[b].high.y)};
+    }
+    EXPECT_EQ(found[first].low.x, all.low.x) << s;
+    EXPECT_EQ(found[first].low.y, all.low.y) << s;
+    EXPECT_EQ(found[first].high.x, all.high.x) << s;
+    EXPECT_EQ(found[first].high.y, all.high.y) << s;
+  }
+}
+
+/// Chains of any length: each element finds the last one of its chain, and how far away it is.
+TEST(SmallRounds, HullsAreRanked) {
+  Runtime& runtime = Runtimes::get("rounds");
+  const Arena::Scope scope(runtime.arena());
+  FixtureRandom random(21);
+  std::vector<cl_int2> ahead, expected;
+  for (const std::size_t length : {1, 2, 3, 64, 65, 100}) {
+    std::vector<std::size_t> order(length);
+    for (std::size_t k = 0; k < length; ++k) order[k] = ahead.size() + k;
+    random.shuffle(order);
+    ahead.resize(ahead.size() + length);
+    expected.resize(ahead.size());
+    const auto last = static_cast<cl_int>(order.back());
+    for (std::size_t k = 0; k < length; ++k) {
+      const bool is_last = k + 1 == length;
+      ahead[order[k]] = {{is_last ? last : static_cast<cl_int>(order[k + 1]), is_last ? 0 : 1}};
+      expected[order[k]] = {{last, static_cast<cl_int>(length - 1 - k)}};
+    }
+  }
+  const std::size_t n = ahead.size();
+  auto from = testing::upload(runtime, ahead), to = testing::guarded<cl_int2>(runtime, n);
+  for (std::size_t reach = 1; reach < 100; reach *= 2) {
+    runtime.map(n, kernels::rank_hull{.from = from, .to = to});
+    std::swap(from, to);
+  }
+  const auto found = testing::download(runtime, from, n);
+  for (std::size_t k = 0; k < n; ++k) {
+    EXPECT_EQ(found[k].s[0], expected[k].s[0]) << k;
+    EXPECT_EQ(found[k].s[1], expected[k].s[1]) << k;
+  }
 }
 
 }  // namespace

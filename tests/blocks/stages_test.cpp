@@ -8,7 +8,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <string>
@@ -16,6 +19,7 @@
 #include <vector>
 
 #include "tests/blocks/support.hpp"
+#include "tests/support/paths.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -287,11 +291,12 @@ TEST(Stages, ResultsDoNotDependOnTuning) {
 TEST(Kernels, AllAreLaunched) {
   // Those of points/inspect.cl are in the same program; inspect_test.cpp launches them.
   std::set<std::string> launched{"inspect", "inspect_sets", "scale_sets", "widen_points"};
-  std::vector<std::string> files{"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh"};
+  std::vector<std::string> files{"points/distribute", "blocks/divide", "blocks/fans", "blocks/mesh",
+                                 "blocks/rounds"};
   std::vector<std::string> tunings{"odd"};
   if (!testing::tests_native()) {
-    files.insert(files.end(),
-                 {"blocks/halve", "blocks/merge", "blocks/merge_exact", "points/distribute_tiles"});
+    files.insert(files.end(), {"blocks/halve", "blocks/merge", "blocks/merge_exact",
+                               "points/distribute_tiles", "points/gaps"});
     tunings.insert(tunings.end(), {"small lanes", "tiles"});
   }
   for (const std::string& tuning : tunings) {
@@ -306,6 +311,11 @@ TEST(Kernels, AllAreLaunched) {
     for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
     runtime.set_profiling(false);
   }
+  Runtime& rounds = Runtimes::get("rounds");
+  rounds.set_profiling(true);
+  run_rounds_of_all_kinds();
+  for (const auto& [name, time] : rounds.kernel_times()) launched.insert(name);
+  rounds.set_profiling(false);
   std::size_t kernels = 0;
   for (const std::string& file : files) {
     const std::string source = host::kernel_source(file);
@@ -315,7 +325,23 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, testing::tests_native() ? 26u : 50u);
+  EXPECT_EQ(kernels, testing::tests_native() ? 43u : 68u);
+}
+
+/// Launchers are named after their kernels, all in one namespace.
+TEST(Kernels, HaveNamesOfTheirOwn) {
+  std::set<std::string> names;
+  const std::filesystem::path kernels = std::filesystem::path(test_data()) / "../../kernels";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kernels)) {
+    if (entry.path().extension() != ".cl") continue;
+    std::ifstream file(entry.path());
+    const std::string source{std::istreambuf_iterator<char>(file), {}};
+    const std::regex pattern("\nkernel void (\\w+)\\(");
+    for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
+      EXPECT_TRUE(names.insert((*it)[1]).second) << "two kernels are called " << (*it)[1];
+    }
+  }
+  EXPECT_GT(names.size(), 100u);
 }
 
 }  // namespace

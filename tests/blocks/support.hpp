@@ -33,6 +33,9 @@ Triangulation check_stages(Runtime& runtime, const Coordinates& coordinates, con
                            bool exact = false);
 void check_stages(Runtime& runtime, const Coordinates& coordinates, Met& met, bool exact = false);
 
+/// Rounds that launch all of their kernels, with runtime "rounds"; see rounds_test.cpp.
+void run_rounds_of_all_kinds();
+
 /// Blocks of any points, as rounds have them: with places behind the last block.
 struct BlockPoints {
   std::vector<cl_int> offsets{0};

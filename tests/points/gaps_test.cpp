@@ -171,7 +171,6 @@ TEST(SmallGaps, AreThoseOfTheTwin) {
     check_gap_trees(runtime, gap_sets(9, {2, 1, 3}), 1, met);
     EXPECT_GT(met.gaps, 10u);
     EXPECT_GT(met.medians, 3u);
-    EXPECT_GT(met.empty, 0u);
   });
 }
 
@@ -187,6 +186,7 @@ TEST(Gaps, AreThoseOfTheTwin) {
   EXPECT_GT(met.along[0], 100u);
   EXPECT_GT(met.along[1], 100u);
   EXPECT_GT(met.medians, 100u);
+  EXPECT_GT(met.empty, 0u);
 }
 
 }  // namespace

@@ -182,6 +182,36 @@ inline Coordinates random_integers(std::size_t n, std::uint64_t seed) {
   return points;
 }
 
+/// Six points nearly on a line, which a triangulator with rounded predicates refuses; then the same again,
+/// each farther off along the line.
+inline Coordinates nearly_collinear(std::size_t n, std::uint64_t) {
+  constexpr double kPlaces[6][2] = {{-5.88538145, -4.29185831}, {6.16914963, 4.99256718},
+                                    {-3.00473339, -2.71106304}, {-0.14600758, 1.82462075},
+                                    {1.15481746, -0.56118624},  {0.41423983, 1.01326104}};
+  Coordinates points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double shift = 16 * static_cast<double>(i / 6);
+    add(points, kPlaces[i % 6][0] + shift, kPlaces[i % 6][1] + 0.75 * shift);
+  }
+  return points;
+}
+
+/// A lattice that is turned, so that its rounded squares are cocircular or not, with one point in eight moved
+/// by one unit in the last place.
+inline Coordinates nearly_cocircular(std::size_t n, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  const auto width = static_cast<std::size_t>(std::sqrt(static_cast<double>(n))) + 1;
+  Coordinates points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i % width) + 1, y = static_cast<double>(i / width) + 1;
+    double across = 0.8 * x - 0.6 * y + 4096;
+    if (random.integer(0, 7) == 0)
+      across = std::nextafter(across, random.integer(0, 1) == 0 ? -HUGE_VAL : HUGE_VAL);
+    add(points, across, 0.6 * x + 0.8 * y);
+  }
+  return points;
+}
+
 }  // namespace fixtures_detail
 
 /// Every distribution of io::generate, and more. Each accepts any n and may hold duplicates.
@@ -207,6 +237,8 @@ inline const std::vector<Fixture>& all_fixtures() {
     list.push_back({"slender", detail::slender});
     list.push_back({"corners", detail::corners});
     list.push_back({"random-integers", detail::random_integers});
+    list.push_back({"nearly-collinear", detail::nearly_collinear});
+    list.push_back({"nearly-cocircular", detail::nearly_cocircular});
     return list;
   }();
   return all;
