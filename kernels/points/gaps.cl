@@ -56,9 +56,18 @@ typedef struct {
   int size, first, last;  // may begin at `first` to `last`
 } gap_range;
 
+// Devices may round a square root in their own ways.
+static inline int whole_root(int x) {
+  int root = 0;
+  for (int bit = 1 << 14; bit > 0; bit /= 2) {
+    if ((root + bit) * (root + bit) <= x) root += bit;
+  }
+  return root;
+}
+
 static inline gap_range gaps_of(gap_node node) {
   gap_range gaps;
-  gaps.size = max(1, (int)sqrt((float)node.size));
+  gaps.size = max(1, whole_root(node.size));
   const int least = max((int)(LEAST_OF_NODE * node.size), (int)(LEAST_OF_HALF * node.half_size));
   const int most = max(least, node.size - (int)(MOST_OF_HALF * node.half_size));
   // If no cut leaves both parts enough, the node is cut in the middle.
