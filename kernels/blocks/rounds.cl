@@ -131,7 +131,7 @@ kernel void frame_blocks(int n, int sets, int is_merged, global const int* restr
 // n vertices of a round. listed: where they stood in the list that was made into blocks; listed_vertices: their numbers
 // in the first round, which all rounds use; of the first round itself, there is no list.
 kernel void name_round_vertices(int n, int is_first, global const int* restrict listed,
-                          global const int* restrict listed_vertices, global int* restrict vertices) {
+                                global const int* restrict listed_vertices, global int* restrict vertices) {
   const int k = get_global_id(0);
   if (k < n) vertices[k] = is_first ? k : listed_vertices[listed[k]];
 }

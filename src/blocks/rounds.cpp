@@ -137,9 +137,9 @@ void emit(Workspace& work, Round& round, const Emitted& emitted) {
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
   runtime.map(blocks.points, kernels::name_round_vertices{.is_first = round.is_first,
-                                                    .listed = blocks.source,
-                                                    .listed_vertices = round.open.vertices,
-                                                    .vertices = round.vertices});
+                                                          .listed = blocks.source,
+                                                          .listed_vertices = round.open.vertices,
+                                                          .vertices = round.vertices});
   frame(work, round);
   launch_emission<kernels::emit_triangles>(work, round, emitted);
   launch_emission<kernels::emit_unsure>(work, round, emitted);

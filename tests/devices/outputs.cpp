@@ -1,5 +1,5 @@
-// Prints a line per array of results, with its hash, for all fixtures and data files: what scripts/devices.py compares
-// between devices. The lines do not name the device.
+// Prints a line per array of results, with its hash, for all fixtures and data files: what scripts/devices.py
+// compares between devices. The lines do not name the device.
 //
 //   device_outputs [MOST]     without inputs of more than MOST points
 //
