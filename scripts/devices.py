@@ -18,6 +18,7 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 SKIPPED = 77
 TIMEOUT_SECONDS = 600
+INSTALL_SECONDS = 120
 # Kernels with barriers run with a GPU's sizes. A simulator takes long: little input, and the sizes that it has by name.
 TUNINGS = ["", "gpu"]
 SIMULATED_POINTS = 3
@@ -53,14 +54,15 @@ class Comparison:
         if done.exists() and done.read_text().split() == runtime.packages:
             return None
         python = self.folder / "bin/python"
-        if not python.exists():
-            subprocess.run([sys.executable, "-m", "venv", self.folder], check=True)
         pip = [python, "-m", "pip", "--disable-pip-version-check", "--no-input", "--quiet"]
-        ended = subprocess.run([*pip, "install", "--retries=1", "--timeout=20", "--only-binary=:all:",
-                                *runtime.packages], capture_output=True, text=True, timeout=TIMEOUT_SECONDS)
-        if ended.returncode != 0:
-            lines = ended.stderr.strip().splitlines() or ["pip failed"]
-            return lines[-1]
+        download = [*pip, "install", "--retries=1", "--timeout=20", "--only-binary=:all:", *runtime.packages]
+        try:
+            for command in [download] if python.exists() else [[sys.executable, "-m", "venv", self.folder], download]:
+                subprocess.run(command, capture_output=True, text=True, timeout=INSTALL_SECONDS, check=True)
+        except subprocess.CalledProcessError as error:
+            return (error.stderr.strip().splitlines() or ["pip failed"])[-1]
+        except subprocess.TimeoutExpired:
+            return f"it takes more than {INSTALL_SECONDS} s"
         done.write_text("\n".join(runtime.packages))
         return None
 
