@@ -1,6 +1,7 @@
 // Error-free transformations and expansions (Dekker 1971; Shewchuk, "Adaptive precision floating-point arithmetic
 // and fast robust geometric predicates", 1997). All need IEEE double arithmetic without contraction: every file
-// that includes this has FP_CONTRACT off, and selftest.cl checks the device.
+// that includes this has FP_CONTRACT off, and call/self_test.cl checks the device. With SPLIT_PRODUCTS, fma is not
+// used.
 #ifndef FLAUNAY_EXACT_ARITHMETIC_H
 #define FLAUNAY_EXACT_ARITHMETIC_H
 
@@ -22,10 +23,27 @@ static inline double2 fast_two_sum(double a, double b) {
   return VECTOR(double2, x, b - (x - a));
 }
 
+#ifdef SPLIT_PRODUCTS
+// a = x + y, two halves of at most 26 bits each (Veltkamp 1968).
+static inline double2 split(double a) {
+  const double c = 134217729.0 * a;  // 2^27 + 1
+  const double x = c - (c - a);
+  return VECTOR(double2, x, a - x);
+}
+
+// a * b - x for x = fl(a * b), exactly: no product of halves is rounded (Dekker 1971).
+static inline double error_of_product(double a, double b, double x) {
+  const double2 p = split(a), q = split(b);
+  return p.y * q.y - (((x - p.x * q.x) - p.y * q.x) - p.x * q.y);
+}
+#else
+static inline double error_of_product(double a, double b, double x) { return fma(a, b, -x); }
+#endif
+
 // x + y = a * b exactly, x = fl(a * b).
 static inline double2 two_product(double a, double b) {
   const double x = a * b;
-  return VECTOR(double2, x, fma(a, b, -x));
+  return VECTOR(double2, x, error_of_product(a, b, x));
 }
 
 static inline int sign_of(double x) { return (x > 0.0) - (x < 0.0); }

@@ -8,7 +8,8 @@
 namespace flaunay::call {
 
 /// Runs the self test. Returns "" if exact predicates can rely on the device's arithmetic, otherwise what
-/// failed.
+/// failed. If nothing but fma is wrong, the runtime's kernels do without it from then on
+/// (Tuning::split_products).
 std::string self_test_failure(host::Runtime& runtime);
 
 }  // namespace flaunay::call

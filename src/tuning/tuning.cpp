@@ -251,6 +251,12 @@ constexpr Row kTable[] = {
      {0},
      {1},
      "Shows a simulator every access beyond an array."},
+    {"split_products",
+     &Tuning::split_products,
+     {0},
+     {0},
+     {0},
+     "17 operations in place of 2; the self-test sets it for a device whose fma rounds twice."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
@@ -284,7 +290,8 @@ struct NamedDevice {
   const char* reason;
 };
 constexpr NamedDevice kNamedDevices[] = {
-    {"Oclgrind", "cpu,fetch_ahead=0", "A simulator has no cache to fetch into."},
+    {"Oclgrind", "gpu:32",
+     "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
 };
 
 constexpr std::size_t kPointsOfASmallBlock = 6;
@@ -366,9 +373,8 @@ std::vector<std::string> parts_of(const std::string& list) {
   return parts;
 }
 
-// given: as FLAUNAY_TUNING has it; what it leaves open is as the target's kind has it.
-Tuning tuning_named(const std::string& given, const Target& target) {
-  Tuning tuning = column(target.is_cpu ? &Row::cpu : &Row::gpu, target);
+// given: as FLAUNAY_TUNING has it; what it leaves open is as in `tuning`.
+Tuning tuning_named(const std::string& given, const Target& target, Tuning tuning) {
   if (given.empty()) return tuning;
   bool is_first = true;
   for (const std::string& part : parts_of(given)) {
@@ -392,9 +398,10 @@ std::string tuning_by_name(const Target& target) {
 }
 
 Tuning tuning_of_target(const Target& target) {
+  const Tuning of_kind = column(target.is_cpu ? &Row::cpu : &Row::gpu, target);
+  const Tuning own = tuning_named(tuning_by_name(target), target, of_kind);
   const char* const given = std::getenv("FLAUNAY_TUNING");
-  const bool is_given = given != nullptr && *given != '\0';
-  return tuning_named(is_given ? given : tuning_by_name(target), target);
+  return tuning_named(given != nullptr ? given : "", target, own);
 }
 
 // Reduces sizes to what kernels have local memory for.
@@ -411,13 +418,19 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}", Sizes::build_options(), small_region,
-                     fetch_ahead);
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}{}", Sizes::build_options(), small_region,
+                     fetch_ahead, split_products != 0 ? " -DSPLIT_PRODUCTS" : "");
+}
+
+Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
+  // Simulators may be of several types.
+  const bool is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0 && (type & CL_DEVICE_TYPE_GPU) == 0;
+  return tuning_of_target({name, is_cpu, units});
 }
 
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
-  const bool is_cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
-  auto tuning = std::make_shared<Tuning>(tuning_of_target({device.name(), is_cpu, device.compute_units()}));
+  auto tuning =
+      std::make_shared<Tuning>(tuning_of_kind(device.name(), device.type(), device.compute_units()));
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
@@ -436,6 +449,7 @@ std::shared_ptr<const Tuning> native_tuning() {
   tuning->sort_bits = compiled.sort_bits;
   tuning->sort_group = compiled.sort_group;
   tuning->fetch_ahead = compiled.fetch_ahead;
+  tuning->split_products = compiled.split_products;
   tuning->tile_group = compiled.tile_group;
   tuning->in_host_memory = 1;
   tuning->blocks_in_parallel = 0;

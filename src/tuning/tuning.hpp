@@ -61,6 +61,9 @@ struct Tuning : host::Sizes {
   /// merged.
   std::size_t merge_from_percent = 1;
 
+  /// Other than 0: kernels compute the errors of products without fma, as for devices whose fma is not exact.
+  std::size_t split_products = 0;
+
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.
 
@@ -82,6 +85,9 @@ struct Tuning : host::Sizes {
 /// 1024, "small", "small-blocks"), or values by name ("block_group=64"), or both, separated by commas. Throws
 /// DeviceError, which says what is allowed, if FLAUNAY_TUNING is not valid.
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device);
+
+/// The sizes for a device of this name, type and number of compute units, not reduced to any limits.
+Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units);
 
 /// The sizes for kernels that run natively on the host. FLAUNAY_TUNING overrides them, too, except what the
 /// kernels are compiled for.

@@ -6,12 +6,21 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <vector>
 
+#include "flaunay/flaunay.hpp"
 #include "launchers/call/self_test.cl.hpp"
 #include "tests/points/support.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/runtimes.hpp"
+#include "tests/support/shared_triangulator.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::call {
 namespace {
@@ -57,7 +66,7 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   };
   EXPECT_EQ(failed_bits(operands, right), 0u);
   // Which checks rest on which expected value.
-  const cl_uint checks[] = {1, 2, 4, 8 | 32, 16 | 64 | 128, 32, 64, 256};
+  const cl_uint checks[] = {1 | 512 | 1024, 2, 4, 8 | 32, 16 | 64 | 128, 32, 64, 256};
   for (std::size_t k = 0; k < right.size(); ++k) {
     std::vector<cl_ulong> wrong = right;
     wrong[k] ^= 1;
@@ -67,6 +76,46 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   std::vector<cl_double> flushed = operands;
   flushed[3] = 0.0;
   EXPECT_EQ(failed_bits(flushed, right), 4u);
+}
+
+/// For as long as this lives, kernels have an fma that rounds twice, as that of Mesa's rusticl does.
+class InexactFma {
+ public:
+  InexactFma() : environment_("FLAUNAY_KERNEL_PATH", folder_.path().c_str()) {
+    namespace fs = std::filesystem;
+    const fs::path kernels = fs::absolute(fs::path(test_data()).parent_path().parent_path() / "kernels");
+    fs::copy(kernels, folder_.path(), fs::copy_options::recursive);
+    std::ofstream language(folder_.path() + "/shared/language.h", std::ios::app);
+    language << "\n#undef fma\n#define fma(a, b, c) ((a) * (b) + (c))\n";
+  }
+
+ private:
+  testing::TemporaryFolder folder_;
+  testing::ScopedEnvironment environment_;
+};
+
+// Points on lines and circles, and others whose predicates need expansions.
+TEST(SelfTest, ADeviceWhoseFmaRoundsTwiceDoesWithoutIt) {
+  if (testing::tests_native()) GTEST_SKIP() << "the host's fma is exact";
+  const char* const fixtures[] = {"two-lines", "log-spiral", "integer-star"};
+  std::vector<testing::Coordinates> inputs;
+  std::vector<std::vector<std::int32_t>> expected;
+  for (const char* const fixture : fixtures) {
+    inputs.push_back(testing::perturbed(testing::make_fixture(fixture, 900, 2), 3));
+    const auto mesh = testing::triangulator().triangulate(inputs.back().data(), inputs.back().size() / 2);
+    EXPECT_GT(mesh.statistics.undecided, 0u) << fixture;
+    expected.push_back(mesh.triangles);
+  }
+  const InexactFma inexact;
+  const auto runtime = testing::make_tuned_runtime("own");
+  EXPECT_EQ(tuning_of(*runtime).split_products, 0u);
+  EXPECT_EQ(self_test_failure(*runtime), "");
+  EXPECT_EQ(tuning_of(*runtime).split_products, 1u);
+  Triangulator without_fma(testing::device_under_test());
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    EXPECT_EQ(without_fma.triangulate(inputs[k].data(), inputs[k].size() / 2).triangles, expected[k])
+        << fixtures[k];
+  }
 }
 
 }  // namespace

@@ -18,8 +18,10 @@ TEST(SmallTuning, IsNamedByTheEnvironment) {
   EXPECT_NE(tuning_named("cpu").chunk_group, tuning_named("gpu").chunk_group);
   {
     const ScopedEnvironment unset("FLAUNAY_TUNING", nullptr);
+    const bool is_simulator = device.name().find("Oclgrind") != std::string::npos;
     const bool cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
-    EXPECT_EQ(tuning_for(device)->map_group, tuning_named(cpu ? "cpu" : "gpu").map_group);
+    const char* const kind = is_simulator ? "gpu:32" : cpu ? "cpu" : "gpu";
+    EXPECT_EQ(tuning_for(device)->map_group, tuning_named(kind).map_group);
   }
   for (const char* const name : {"fast", "gpu:", "gpu:0", "gpu:1025", "gpu:x", "gpu:-1", "gpu:32 ",
                                  "gpu:032x", "gpu:99999999999999999999", "cpu:32", "GPU"}) {
@@ -27,6 +29,34 @@ TEST(SmallTuning, IsNamedByTheEnvironment) {
     const std::string message = message_of([&] { tuning_for(device); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, std::string("'") + name + "'")) << message;
   }
+}
+
+TEST(SmallTuning, DependsOnTypeAndName) {
+  constexpr cl_device_type kCpu = CL_DEVICE_TYPE_CPU, kGpu = CL_DEVICE_TYPE_GPU;
+  const auto tuning_of = [](const char* name, cl_device_type type) { return tuning_of_kind(name, type, 4); };
+  {
+    const ScopedEnvironment unset("FLAUNAY_TUNING", nullptr);
+    EXPECT_EQ(tuning_of("a", kCpu).chunk_group, 1u);
+    EXPECT_GT(tuning_of("a", kCpu).fetch_ahead, 0u);
+    EXPECT_EQ(tuning_of("a", kCpu).in_host_memory, 1u);
+    // Devices that are both, as simulators say, are none of a CPU's cores.
+    for (const cl_device_type type : {kGpu, kCpu | kGpu, cl_device_type{CL_DEVICE_TYPE_ACCELERATOR}}) {
+      EXPECT_EQ(tuning_of("a", type).chunk_group, 64u) << type;
+      EXPECT_EQ(tuning_of("a", type).fetch_ahead, 0u) << type;
+      EXPECT_EQ(tuning_of("a", type).in_host_memory, 0u) << type;
+    }
+    for (const cl_device_type type : {kCpu, kCpu | kGpu}) {
+      const Tuning simulator = tuning_of("Oclgrind Simulator", type);
+      EXPECT_EQ(simulator.chunk_group, 32u);
+      EXPECT_EQ(simulator.tile_group, 32u);
+      EXPECT_EQ(simulator.fetch_ahead, 0u);
+    }
+  }
+  const ScopedEnvironment given("FLAUNAY_TUNING", "block_points=7");
+  EXPECT_EQ(tuning_of("Oclgrind Simulator", kCpu | kGpu).block_points, 7u);
+  EXPECT_EQ(tuning_of("Oclgrind Simulator", kCpu | kGpu).chunk_group, 32u) << "the rest stays as by name";
+  const ScopedEnvironment other("FLAUNAY_TUNING", "cpu");
+  EXPECT_EQ(tuning_of("Oclgrind Simulator", kCpu | kGpu).chunk_group, 1u);
 }
 
 TEST(SmallTuning, EveryValueCanBeOverridden) {

@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""Compares the results of all OpenCL runtimes that can be had for CPUs with those of Debian's PoCL, byte for byte: both
+modes, queries and Voronoi diagrams on all fixtures, with the sizes for the device and with those of GPUs. Those of PyPI
+are installed by pip in an environment of its own, build/device-runtimes. Each process loads one driver.
+
+Exit code: 0; 1 if a result differed or a run failed; 77 if no runtime of PyPI could be installed, which takes a
+network. See docs/known-issues.md for the devices that were tried.
+"""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+SKIPPED = 77
+TIMEOUT_SECONDS = 600
+INSTALL_SECONDS = 120
+# Kernels with barriers run with a GPU's sizes. A simulator takes long: little input, and the sizes that it has by name.
+TUNINGS = ["", "gpu"]
+SIMULATED_POINTS = 3
+
+
+class Runtime:
+    """packages: of PyPI; library: a pattern below their environment, or a path. known: what a message of a runtime says
+    which cannot work on this machine, by no fault of flaunay."""
+
+    def __init__(self, name, library, packages=(), known=None):
+        self.name, self.library, self.packages, self.known = name, library, packages, known
+
+
+REFERENCE = Runtime("PoCL of the system", "/etc/OpenCL/vendors/pocl.icd")
+RUNTIMES = [
+    Runtime("PoCL 3.0", "lib/python3*/site-packages/pyopencl/.libs/libpocl*.so", ["pocl-binary-distribution==3.0"],
+            # Its LLVM is older than the processor.
+            known="unknown target CPU"),
+    Runtime("Intel's CPU runtime", "lib/libintelocl.so",
+            ["intel-opencl-rt==2026.2.0", "intel-cmplr-lib-rt==2026.2.0", "tbb==2023.2.0"]),
+]
+
+
+class Comparison:
+    def __init__(self, build, folder):
+        self.program, self.folder = build / "tests/device_outputs", folder
+        self.outputs = folder / "outputs"
+        self.failures = 0
+
+    def install(self, runtime):
+        """Installs the packages unless they are there. Returns why it could not."""
+        done = self.folder / f"{self.key(runtime)}.installed"
+        if done.exists() and done.read_text().split() == runtime.packages:
+            return None
+        python = self.folder / "bin/python"
+        pip = [python, "-m", "pip", "--disable-pip-version-check", "--no-input", "--quiet"]
+        download = [*pip, "install", "--retries=1", "--timeout=20", "--only-binary=:all:", *runtime.packages]
+        try:
+            for command in [download] if python.exists() else [[sys.executable, "-m", "venv", self.folder], download]:
+                subprocess.run(command, capture_output=True, text=True, timeout=INSTALL_SECONDS, check=True)
+        except subprocess.CalledProcessError as error:
+            return (error.stderr.strip().splitlines() or ["pip failed"])[-1]
+        except subprocess.TimeoutExpired:
+            return f"it takes more than {INSTALL_SECONDS} s"
+        done.write_text("\n".join(runtime.packages))
+        return None
+
+    @staticmethod
+    def key(runtime):
+        return re.sub(r"[^a-z0-9]+", "-", runtime.name.lower())
+
+    def drivers(self, runtime):
+        """A folder that names the runtime's driver alone."""
+        folder = self.folder / "drivers" / self.key(runtime)
+        folder.mkdir(parents=True, exist_ok=True)
+        library = pathlib.Path(runtime.library)
+        if library.is_absolute():
+            shutil.copy(library, folder / "driver.icd")
+        else:
+            found = sorted(self.folder.glob(runtime.library))[0]
+            (folder / "driver.icd").write_text(f"{found}\n")
+        return folder
+
+    def environment(self, runtime, tuning):
+        environment = {**os.environ, "OCL_ICD_VENDORS": str(self.drivers(runtime)), "FLAUNAY_DEVICE": "#0",
+                       "FLAUNAY_TUNING": tuning, "FLAUNAY_CACHE_DIR": str(self.folder / "cache")}
+        # Two versions of PoCL do not share a folder; that of the system has compiled most kernels already.
+        if runtime is not REFERENCE:
+            environment["POCL_CACHE_DIR"] = str(self.folder / "cache" / self.key(runtime))
+        return environment
+
+    def run(self, name, tuning, command, environment, known=None):
+        """Returns the path of the output, or None."""
+        self.outputs.mkdir(exist_ok=True)
+        path = self.outputs / re.sub(r"[^a-z0-9]+", "-", f"{name} {tuning or 'default'}".lower())
+        begin = time.time()
+        with path.open("wb") as output:
+            ended = subprocess.run(command, stdout=output, stderr=subprocess.PIPE, text=True, env=environment,
+                                   errors="replace", timeout=TIMEOUT_SECONDS)
+        said = ended.stderr.strip()
+        label = f"{name}, tuning {tuning or 'of the device'}"
+        if ended.returncode == 0:
+            print(f"{label}: {said}, ran for {time.time() - begin:.0f} s", flush=True)
+            return path
+        if known is not None and known in said:
+            print(f"{label}: left out, it does not work on this processor ({known})", flush=True)
+        else:
+            self.failures += 1
+            print(f"{label}: FAILED, exit code {ended.returncode}\n{said}", flush=True)
+        return None
+
+    def compare(self, found, expected):
+        if found is None or expected is None:
+            return
+        lines = [path.read_text().splitlines() for path in (found, expected)]
+        if lines[0] == lines[1]:
+            print(f"  the same bytes in {len(lines[0])} arrays", flush=True)
+            return
+        self.failures += 1
+        differing = [pair for pair in zip(*lines) if pair[0] != pair[1]]
+        print(f"  DIFFERENT: {len(differing)} arrays of {len(lines[1])}; {len(lines[0])} were written")
+        for pair in differing[:10]:
+            print(f"    {pair[0]}\n    {pair[1]} expected")
+
+    def run_on(self, runtime, tuning):
+        return self.run(runtime.name, tuning, [self.program], self.environment(runtime, tuning), runtime.known)
+
+    def simulate(self):
+        """Oclgrind comes before the loader; its interpreter lacks intrinsics of optimised kernels."""
+        most = str(SIMULATED_POINTS)
+        command = ["oclgrind", "--build-options", "-O0", self.program, most]
+        environment = {**os.environ, "FLAUNAY_DEVICE": "oclgrind", "FLAUNAY_TUNING": "",
+                       "FLAUNAY_CACHE_DIR": str(self.folder / "cache")}
+        found = self.run("Oclgrind", "", command, environment)
+        small = self.run("PoCL of the system, few points", "", [self.program, most], self.environment(REFERENCE, ""))
+        self.compare(found, small)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=SOURCE / "build/release",
+                        help="the build folder, which has tests/device_outputs")
+    parser.add_argument("--runtimes", type=pathlib.Path, default=SOURCE / "build/device-runtimes",
+                        help="where runtimes are installed")
+    arguments = parser.parse_args()
+    comparison = Comparison(arguments.build.resolve(), arguments.runtimes.resolve())
+
+    installed = []
+    for runtime in RUNTIMES:
+        reason = comparison.install(runtime)
+        if reason is None:
+            installed.append(runtime)
+        else:
+            print(f"{runtime.name}: left out, it cannot be installed ({reason})", flush=True)
+    if not installed:
+        print("devices: SKIPPED, no runtime can be installed: is there no network?")
+        return SKIPPED
+
+    expected = comparison.run_on(REFERENCE, "")
+    comparison.compare(comparison.run_on(REFERENCE, "gpu"), expected)
+    for runtime in installed:
+        for tuning in TUNINGS:
+            comparison.compare(comparison.run_on(runtime, tuning), expected)
+    if shutil.which("oclgrind"):
+        comparison.simulate()
+    return 1 if comparison.failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
