@@ -325,8 +325,6 @@ TEST(Kernels, AllAreLaunched) {
   EXPECT_EQ(kernels, testing::tests_native() ? 43u : 68u);
 }
 
-/// Launchers are named after their kernels, all in one namespace.
-
 }  // namespace
 
 }  // namespace flaunay::blocks

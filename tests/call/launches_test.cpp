@@ -177,7 +177,9 @@ TEST(Launches, StepsOfMergesOfBlocks) {
     ++merges;
     EXPECT_GE(launch.longest_chain * launch.work_items, launch.steps);
     EXPECT_GT(launch.longest_chain, 0u);
-    if (launch.work_items == 1) EXPECT_EQ(launch.longest_chain, launch.steps);
+    if (launch.work_items == 1) {
+      EXPECT_EQ(launch.longest_chain, launch.steps);
+    }
   }
   EXPECT_GT(merges, 0u);
 }
