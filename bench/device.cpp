@@ -140,13 +140,16 @@ class Probes {
     const auto rate = [this](std::size_t moved, const std::function<void()>& copy) {
       return static_cast<double>(moved) / seconds_of(runtime_, copy);
     };
-    all_.push_back({"bytes read and written by a copy", "1/s",
-                    [this, rate, from, to, bytes] { return rate(2 * bytes, [&] { runtime_.copy(from, 0, to, 0, bytes); }); }});
+    all_.push_back({"bytes read and written by a copy", "1/s", [this, rate, from, to, bytes] {
+                      return rate(2 * bytes, [&] { runtime_.copy(from, 0, to, 0, bytes); });
+                    }});
     const auto on_host = std::make_shared<std::vector<cl_uchar>>(bytes);
-    all_.push_back({"bytes to the device", "1/s",
-                    [this, rate, to, bytes, on_host] { return rate(bytes, [&] { runtime_.write(to, 0, bytes, on_host->data()); }); }});
-    all_.push_back({"bytes to the host", "1/s",
-                    [this, rate, from, bytes, on_host] { return rate(bytes, [&] { runtime_.read(from, 0, bytes, on_host->data()); }); }});
+    all_.push_back({"bytes to the device", "1/s", [this, rate, to, bytes, on_host] {
+                      return rate(bytes, [&] { runtime_.write(to, 0, bytes, on_host->data()); });
+                    }});
+    all_.push_back({"bytes to the host", "1/s", [this, rate, from, bytes, on_host] {
+                      return rate(bytes, [&] { runtime_.read(from, 0, bytes, on_host->data()); });
+                    }});
   }
 
   Runtime& runtime_;
