@@ -6,11 +6,9 @@
 // triangles that cover what was emitted in rounds before; they are told from those still missing by the open sectors at
 // one of their vertices (shared/open_sectors.h). The outside is emitted likewise, hull edge by hull edge.
 //
-// Before the rounds:
-// 1. frame_blocks, per block, finds the rectangle between the cuts. box_blocks, per block, and join_boxes, in one
-// launch
-//    per factor of 16 blocks, find the box around each set's points.
 // Each round, when the blocks are solved:
+// 1. box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box around each set's
+//    points. frame_blocks, per block, finds the rectangle between the cuts. name_round_vertices numbers each vertex.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
 //    vertex, and notes the state of each edge's left side. emit_unsure decides exactly what the filters could not.
 // 3. link_triangles, per pair of edges, joins emitted triangles, also with those of rounds before.
@@ -18,8 +16,7 @@
 // After the rounds:
 // 5. count_rows, per place, and after a scan write_rows, per place, close the gaps between triangles.
 // 6. count_hull and list_hull, per vertex, list the hulls' vertices; rank_hull, in one launch per doubling, finds how
-// many
-//    follow each; write_hull writes them in order.
+//    many follow each; write_hull writes them in order.
 // measure_open and measure_sets tell the host how large the sets' parts are.
 
 #include "shared/certify.h"

@@ -6,8 +6,7 @@
 // 2. The solver triangulates the blocks. name_vertices names the rings' vertices by ids, and tells where they are;
 //    corner_vertices finds the vertex of each corner. (strips.cl has the two passes that follow: border_edges finds the
 //    edges of the borders, and restore_border flips in those that ties have kept out.)
-// 3. What lies left of an edge at a border's vertex is inside if and only if the edge is in the wedge of a corner
-// there.
+// 3. What lies left of an edge at a border's vertex is inside if and only if it is in the wedge of a corner there.
 //    close_vertices marks all edges out of such vertices as having the outside on their left, by the complement of the
 //    next edge; open_wedges takes the marks from the edges in wedges and counts the rows of these vertices as
 //    blocks/mesh.cl does, of each triangle at its middle vertex.

@@ -3,8 +3,7 @@
 // A chunk of samples of one tree is a tile, which one work-group takes.
 //
 // 1. draw_each_sample fetches one point from each of equal parts of a set.
-// 2. sort_tiles sorts each tile along x and along y in local memory. merge_tiles merges MERGED_RUNS sorted runs into
-// one:
+// 2. sort_tiles sorts each tile along x and along y in local memory. merge_tiles merges MERGED_RUNS runs into one:
 //    a sample's place is the number of samples before it, which it finds by a binary search in each run. The places in
 //    both orders are the samples' ranks. All later comparisons are those of ranks.
 // 3. Nodes larger than a tile are cut level by level: count_tiles counts how many samples of each tile go low, and

@@ -4,9 +4,8 @@
 // The points are sorted stably by the numbers of their blocks, a digit of `bits` bits at a time, the lowest first; a
 // million points have a single digit. A tile of points is what one work-group takes.
 //
-// 1. count_tile_blocks finds each point's block, and counts the lowest digits of each tile into table[digit][tile]. For
-// each
-//    further digit, count_digits counts. Each table is scanned.
+// 1. count_tile_blocks finds each point's block, and counts the lowest digits of each tile into table[digit][tile].
+//    For each further digit, count_digits counts. Each table is scanned.
 // 2. move_keys brings blocks and indices of points to their places by a digit; for the last one, move_tiles brings the
 //    points themselves, scaled. Both sort their tile in local memory first, so that neighbours write to neighbouring
 //    places.
