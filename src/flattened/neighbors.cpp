@@ -42,7 +42,8 @@ bool match_loose_edges(Workspace& work, const PointTable& table, const Buffer<cl
   const auto flags = scratch.allocate<cl_uchar>(3 * count);
   runtime.map(3 * count, kernels::loose_edges{.twins = twins, .flags = flags});
   const auto [list, loose] = host::pack_positions(runtime, flags, 3 * count, 1);
-  const EdgeTable edges = make_table(work, loose);
+  // Most of them may be on the hull, each an edge of its own.
+  const EdgeTable edges = make_table(work, 2 * loose);
   runtime.map(loose, kernels::insert_loose{
                          .mask = edges.mask, .list = list, .triangles = triangles, .table = edges.slots});
   runtime.map(

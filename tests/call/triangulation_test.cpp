@@ -544,6 +544,17 @@ TEST(Triangulation, CollinearHasNoTriangles) {
   EXPECT_EQ(result.statistics.duplicates, 19999U);
 }
 
+/// All points on the hull, whose edges but one go from smaller to larger numbers: no other input has as many
+/// edges without a neighbour.
+TEST(Triangulation, ParabolasOfManySizes) {
+  for (std::size_t n = 350; n < 6000; n += n / 2) {
+    const Coordinates points = make_fixture("parabola", n, 1);
+    const Triangulation result = triangulate(points);
+    EXPECT_EQ(result.triangles.size() / 3, n - 2) << n;
+    EXPECT_EQ(result.hull.size(), n) << n;
+  }
+}
+
 TEST(Triangulation, NegativeZeroIsZero) {
   const Coordinates points = {0.0, 0.0, 1, 0, 0, 1, -0.0, 0.0, -0.0, -0.0, 1, -0.0};
   const Triangulation result = triangulate(points);
