@@ -407,8 +407,11 @@ TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
 // ---- Launches and predictions
 
 TEST_F(BenchTest, LaunchesAreThoseOfTheCall) {
-  const auto record = run_well("launches --sizes 20000 --distributions uniform,line --tuning gpu");
-  EXPECT_EQ(record.value("tuning", ""), "gpu");
+  // Without rounds, so that blocks are merged, too.
+  const auto record =
+      run_well("launches --sizes 20000 --distributions uniform,line --tuning gpu,round_points=0");
+  EXPECT_EQ(record.value("tuning", ""), "gpu,round_points=0");
+  const std::set<std::string> merging{"merge_parts", "finish_parts", "merge_trees", "finish_trees"};
   ASSERT_EQ(record["results"].size(), 2u);
   for (const auto& row : record["results"]) {
     expect_keys(row, {"mode", "distribution", "n", "host_waits", "bytes_to_device", "bytes_to_host"});
@@ -419,7 +422,7 @@ TEST_F(BenchTest, LaunchesAreThoseOfTheCall) {
       if (launch["distribution"] != row["distribution"]) continue;
       EXPECT_EQ(launch.value("launch", -1), launches++);
       const std::string kernel = launch.value("kernel", "");
-      if (kernel == "solve_blocks" || kernel == "merge_blocks") chain += launch.value("longest_chain", 0u);
+      if (merging.count(kernel) > 0) chain += launch.value("longest_chain", 0u);
       longest = std::max({longest, launch.value("longest_chain", std::uint64_t{0}),
                           launch.value("elements", std::uint64_t{0})});
     }
@@ -526,7 +529,7 @@ TEST_F(PredictionTest, OfEveryMachine) {
     EXPECT_GE(result["results"][0].value("call_seconds", 0.0), sum);
     const std::string text = contents(path("out"));
     EXPECT_NE(text.find("PREDICTED, not measured"), std::string::npos);
-    EXPECT_NE(text.find("solve_blocks"), std::string::npos);
+    EXPECT_NE(text.find("merge_parts"), std::string::npos);
     ++machines;
   }
   EXPECT_EQ(machines, 6u);
