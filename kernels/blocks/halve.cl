@@ -14,9 +14,7 @@
 #include "shared/order.h"
 #include "shared/rings.h"
 #include "shared/search.h"
-
-// Of a function with barriers: PoCL 3.1 loses those of a function that is called twice and not inlined.
-#define WITH_BARRIERS static inline __attribute__((always_inline))
+#include "shared/work_group.h"
 
 // A block's own arrays, which begin at its place in those of all points.
 typedef struct {
@@ -34,11 +32,10 @@ typedef struct {
   int size, low, high;
 } lane_share;
 
-static inline lane_share share_of(int count) {
-  const int lanes = get_local_size(0), me = get_local_id(0);
+static inline lane_share own_share_of(int count) {
   lane_share share;
-  share.size = max(1, (count + lanes - 1) / lanes);
-  share.low = min(count, me * share.size);
+  share.size = max(1, share_of(count));
+  share.low = min(count, (int)get_local_id(0) * share.size);
   share.high = min(count, share.low + share.size);
   return share;
 }
@@ -114,7 +111,7 @@ WITH_BARRIERS int distinct_by_x(int count, global const double2* points, global 
                                 const block_arrays* s, global int* representatives, local uint* sums) {
   global int* const space = (global int*)s->spare;
   global const int* const elements = sort_group(space, space + count, count, points, 0);
-  const lane_share share = share_of(count);
+  const lane_share share = own_share_of(count);
   uint own = 0;
   for (int i = share.low; i < share.high; ++i) own += is_distinct(i, elements, points);
   scan_group(own, sums);
@@ -183,7 +180,7 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_arrays* s, local 
         axis_of(part_begin(count, depth, j), part_begin(count, depth, j + 1), s->points, s->by_x, s->by_y);
   }
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
-  const lane_share share = share_of(count);
+  const lane_share share = own_share_of(count);
   // A work-item's first part begins in its share or in one before; without a share, any part will do.
   const int first_part = part_from(count, depth, min(share.low, count - 1) + 1) - 1;
   uint own = 0;

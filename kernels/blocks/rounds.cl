@@ -23,6 +23,7 @@
 #include "shared/coordinates.h"
 #include "shared/cut_tree.h"
 #include "shared/halfedges.h"
+#include "shared/limits.h"
 #include "shared/open_sectors.h"
 #include "shared/rings.h"
 #include "shared/rows.h"
@@ -54,9 +55,6 @@ kernel void box_blocks(int n, global const solved_block* restrict solved, global
     boxes[b] = box;
   }
 }
-
-// Blocks whose boxes are joined in one step.
-#define JOINED_BOXES 16
 
 // n blocks. step: the first of so many blocks of a set has the box of them all.
 kernel void join_boxes(int n, int sets, int step, global const int* restrict set_blocks, global vertex_box* boxes) {
@@ -92,7 +90,7 @@ static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int i
 // The edges of a triangle around a triangulation, from the outside; of other hulls none.
 static inline void find_outside(hull_ends ends, global const ring_edge* edges, global const int* vertex_edge,
                                 int* outside) {
-  outside[0] = outside[1] = outside[2] = outside[3] = NO_EDGE;
+  outside[0] = outside[1] = outside[2] = NO_EDGE;
   const int first = ends.first_x == NO_VERTEX ? NO_EDGE : vertex_edge[ends.first_x];
   if (first == NO_EDGE) return;
   const int second = edges[first ^ 1].next, third = edges[second ^ 1].next;
@@ -248,16 +246,6 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
   return precedes(v, points[edges[e].to], 0) != precedes(v, points[edges[edges[e].next].to], 0);
 }
 
-static inline emission emission_of(int is_first, double bound, global const double2* points,
-                                   global const ring_edge* edges, global const int* vertices, global const int* listed,
-                                   global const int* open_offsets, global const open_edge* open_edges,
-                                   global const double2* all_points, global const int* indices, global int* places,
-                                   global int* states, global int* hull_next, global int* hull_previous) {
-  const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
-                      open_edges, all_points, indices, places, states,   hull_next, hull_previous};
-  return m;
-}
-
 #define PAIRS_A_VERTEX (EDGES_PER_VERTEX / 2)
 
 // n pairs of edges.
@@ -271,8 +259,8 @@ kernel void emit_triangles(int n, int is_first, double bound, int blocks, global
   const int k = get_global_id(0);
   if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
   if (k < n && edges[2 * k].to != NO_VERTEX) {
-    const emission m = emission_of(is_first, bound, points, edges, vertices, listed, open_offsets, open_edges,
-                                   all_points, indices, places, states, hull_next, hull_previous);
+    const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
+                        open_edges, all_points, indices, places, states,   hull_next, hull_previous};
     const block_frame frame = frames[segment_of(k / PAIRS_A_VERTEX, blocks, offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if (is_outside(e, edges, &frame)) {
@@ -295,8 +283,8 @@ kernel void emit_unsure(int n, int is_first, double bound, int blocks, global co
   const int k = get_global_id(0);
   for (int e = 2 * k; e < 2 * k + 2 && k < n; ++e) {
     if (states[e] != UNSURE && states[e] != UNSURE_GHOST) continue;
-    const emission m = emission_of(is_first, bound, points, edges, vertices, listed, open_offsets, open_edges,
-                                   all_points, indices, places, states, hull_next, hull_previous);
+    const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
+                        open_edges, all_points, indices, places, states,   hull_next, hull_previous};
     const block_frame frame = frames[segment_of(k / PAIRS_A_VERTEX, blocks, offsets)];
     if (states[e] == UNSURE_GHOST) {
       decide_ghost(&m, &frame, e, 1);

@@ -45,6 +45,9 @@ INTEGER_CONSTANT(ROUNDS_BEFORE_BALANCE, 4);
 // many rounds quickhull sorts out what is left.
 INTEGER_CONSTANT(CLEAN_UP_ROUNDS, 8);
 
+// Rounds join the boxes of so many blocks in one step.
+INTEGER_CONSTANT(JOINED_BOXES, 16);
+
 END_SHARED
 
 #endif

@@ -127,7 +127,7 @@ ASSERT_SIZE(vertex_box, 32);
 // three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
 typedef struct {
   vertex_box rectangle, all;
-  int outside[4];
+  int outside[3];
 } block_frame;
 ASSERT_SIZE(block_frame, 80);
 

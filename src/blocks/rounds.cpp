@@ -13,9 +13,6 @@
 namespace flaunay::blocks {
 namespace {
 
-// The factor of kernel join_boxes.
-constexpr std::size_t kJoinedBoxes = 16;
-
 // What all rounds emit to.
 struct Emitted {
   Buffer<cl_double2> points{};  // the vertices, as the first round numbers them
@@ -34,7 +31,7 @@ struct OpenPoints {
   Buffer<kernel::open_edge> edges{};
 
   std::size_t count() const { return offsets.back(); }
-  // Makes room, where there is not enough; persistent memory, for rounds use two of these in turn.
+  // Makes room where there is not enough. The memory is kept: rounds use two lists in turn.
   void reserve(Arena& persistent, std::size_t edge_count) {
     if (points.size() < count()) {
       points = persistent.allocate<cl_double2>(count());
@@ -67,7 +64,7 @@ Buffer<kernel::vertex_box> boxes_of_sets(Workspace& work, const Round& round) {
   for (std::size_t s = 0; s < blocks.sets; ++s) {
     most = std::max<std::size_t>(most, blocks.set_blocks[s + 1] - blocks.set_blocks[s]);
   }
-  for (std::size_t step = 1; step < most; step *= kJoinedBoxes) {
+  for (std::size_t step = 1; step < most; step *= kernel::JOINED_BOXES) {
     work.runtime.map(
         blocks.count,
         kernels::join_boxes{

@@ -4,6 +4,7 @@
 
 #include "host/vector_operations.hpp"
 #include "launchers/points/distribute_tiles.cl.hpp"
+#include "points/device_mesh.hpp"
 #include "points/move.hpp"
 #include "tuning/tuning.hpp"
 
@@ -58,8 +59,7 @@ void count_tile_blocks(Workspace& work, const Plan& plan, const std::vector<std:
                        const Buffer<cl_double>& input, const Buffer<kernel::cut_node>& nodes,
                        const Tiles& tiles, const Buffer<cl_int>& block_of_point,
                        const Buffer<cl_int>& representatives) {
-  const auto set_offsets =
-      work.runtime.upload(work.scratch(), std::vector<cl_int>(offsets.begin(), offsets.end()));
+  const auto set_offsets = work.runtime.upload(work.scratch(), integers(offsets));
   const auto sets = work.runtime.upload(work.scratch(), plan.sets);
   tiles.launch(work.runtime, kernels::count_tile_blocks{.size = tiles.size,
                                                         .set_count = plan.sets.size(),
