@@ -81,12 +81,11 @@ static inline void write_triangle(int e, int with_corners, global const double2*
 // What will be needed is fetched in the order of memory: edges lead anywhere within a block.
 #define PAIRS_A_CACHE_LINE 2
 #define POINTS_A_CACHE_LINE 4
-#define PAIRS_A_VERTEX (EDGES_PER_VERTEX / 2)
 static inline void fetch_ahead(int pair, int last, global const ring_edge* edges, global const double2* points) {
 #if FETCH_AHEAD
   const int begin = pair + FETCH_AHEAD, end = min(last, begin + PAIRS_AT_ONCE);
   for (int k = begin; k < end; k += PAIRS_A_CACHE_LINE) fetch(&edges[2 * k]);
-  for (int v = begin / PAIRS_A_VERTEX; v < end / PAIRS_A_VERTEX; v += POINTS_A_CACHE_LINE) fetch(&points[v]);
+  for (int v = begin / PAIRS_PER_VERTEX; v < end / PAIRS_PER_VERTEX; v += POINTS_A_CACHE_LINE) fetch(&points[v]);
 #endif
 }
 

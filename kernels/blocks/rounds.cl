@@ -246,8 +246,6 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
   return precedes(v, points[edges[e].to], 0) != precedes(v, points[edges[edges[e].next].to], 0);
 }
 
-#define PAIRS_A_VERTEX (EDGES_PER_VERTEX / 2)
-
 // n pairs of edges.
 kernel void emit_triangles(int n, int is_first, double bound, int blocks, global const int* restrict offsets,
                            global const block_frame* restrict frames, global const double2* restrict points,
@@ -261,7 +259,7 @@ kernel void emit_triangles(int n, int is_first, double bound, int blocks, global
   if (k < n && edges[2 * k].to != NO_VERTEX) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
                         open_edges, all_points, indices, places, states,   hull_next, hull_previous};
-    const block_frame frame = frames[segment_of(k / PAIRS_A_VERTEX, blocks, offsets)];
+    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if (is_outside(e, edges, &frame)) {
         decide_ghost(&m, &frame, e, 0);
@@ -285,7 +283,7 @@ kernel void emit_unsure(int n, int is_first, double bound, int blocks, global co
     if (states[e] != UNSURE && states[e] != UNSURE_GHOST) continue;
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
                         open_edges, all_points, indices, places, states,   hull_next, hull_previous};
-    const block_frame frame = frames[segment_of(k / PAIRS_A_VERTEX, blocks, offsets)];
+    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
     if (states[e] == UNSURE_GHOST) {
       decide_ghost(&m, &frame, e, 1);
     } else {

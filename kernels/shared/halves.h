@@ -115,21 +115,41 @@ static inline int merge_sides(rings* g, int state, solved_block low, solved_bloc
   return continue_merge(g, state, last_along(low.ends, axis), first_along(high.ends, axis));
 }
 
-// Merges the halves of the part of this height that begins in a cell, if there is one. Returns how far it is.
-static inline int merge_halves_of_cell(rings* g, const halved_blocks* blocks, int height, int cell, int state) {
+// The halves of a part, by the number of its first vertex: their places in `parts`, the first vertex of the high one,
+// and one vertex behind it. part.block is -1 if there is no part.
+typedef struct {
+  block_part part;
+  int axis, low_at, high_at, begin, middle, end;
+} part_halves;
+
+// The halves of the part of this height that begins in a cell.
+static inline part_halves halves_of_cell(const halved_blocks* blocks, int height, int cell) {
   const int begin = cell << (height + 1), end = min(blocks->places - begin, 2 << height) + begin;
+  part_halves halves;
   block_part part = part_behind(blocks, blocks->block_of_place[begin], height, begin);
   if (!begins_before(part, end)) part = part_behind(blocks, blocks->block_of_place[end - 1], height, begin);
-  if (!begins_before(part, end)) return MERGE_IS_DONE;
-  const int middle = part_begin(part.count, part.depth + 1, 2 * part.number + 1);
-  const int low_at = (part.first + part.begin) / 2, high_at = (part.first + middle) / 2;
-  const solved_block low = blocks->parts[low_at], high = blocks->parts[high_at];
-  const int axis = blocks->axes[part.first + (1 << part.depth) + part.number];
-  state = merge_sides(g, state, low, high, axis);
+  if (!begins_before(part, end)) part.block = -1;
+  halves.part = part;
+  if (part.block < 0) return halves;
+  halves.begin = part.first + part.begin;
+  halves.middle = part.first + part_begin(part.count, part.depth + 1, 2 * part.number + 1);
+  halves.end = part.first + part_begin(part.count, part.depth, part.number + 1);
+  halves.low_at = halves.begin / 2;
+  halves.high_at = halves.middle / 2;
+  halves.axis = blocks->axes[part.first + (1 << part.depth) + part.number];
+  return halves;
+}
+
+// Merges the halves of the part of this height that begins in a cell, if there is one. Returns how far it is.
+static inline int merge_halves_of_cell(rings* g, const halved_blocks* blocks, int height, int cell, int state) {
+  const part_halves halves = halves_of_cell(blocks, height, cell);
+  if (halves.part.block < 0) return MERGE_IS_DONE;
+  const solved_block low = blocks->parts[halves.low_at], high = blocks->parts[halves.high_at];
+  state = merge_sides(g, state, low, high, halves.axis);
   if (state == MERGE_IS_DONE) {
-    finish_part(g, blocks, part, joined_ends(g, low.ends, high.ends, axis));
+    finish_part(g, blocks, halves.part, joined_ends(g, low.ends, high.ends, halves.axis));
   } else {
-    blocks->parts[low_at].unused = free_list(g);
+    blocks->parts[halves.low_at].unused = free_list(g);
   }
   return state;
 }

@@ -8,6 +8,10 @@ BEGIN_SHARED
 
 // Directed edges that a vertex brings: a planar graph has less than 3 edges per vertex.
 INTEGER_CONSTANT(EDGES_PER_VERTEX, 6);
+INTEGER_CONSTANT(PAIRS_PER_VERTEX, EDGES_PER_VERTEX / 2);
+// Room for the edges that cross the seam of a merge: a planar graph each of whose edges joins vertices of two kinds has
+// less than twice as many edges as vertices.
+INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
 // Divide and conquer ends with leaves of at most so many vertices.
 INTEGER_CONSTANT(LEAF_VERTICES, 4);
 // Sorts begin with tiles of so many points, a power of two, in which each point is compared with all others.

@@ -47,6 +47,14 @@ typedef struct {
 } solved_block;
 ASSERT_SIZE(solved_block, 24);
 
+// A walk along the seam of a merge: the vertices of its first crossing edge, and the hull edges out of them that it saw
+// there; how many crossing edges it has, and how it ended.
+typedef struct {
+  int left, right, left_edge, right_edge;
+  int crossings, outcome;
+} seam_walk;
+ASSERT_SIZE(seam_walk, 24);
+
 // A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
 // has all bits set: a point goes high unless it comes before the pivot. Nodes are in the order of a heap, from 1 on.
 typedef struct {

@@ -3,7 +3,9 @@
 #include "blocks/stages.hpp"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/merge_exact.cl.hpp"
+#include "launchers/blocks/seams.cl.hpp"
 #include "shared/halving.h"
+#include "shared/limits.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -17,10 +19,75 @@ std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
 // Without undecided predicates, no merge stops.
 bool may_stop(const Workspace& work) { return work.bounds.orient != 0 || work.bounds.circle != 0; }
 
-// The places of a cell in which at most one part of this height begins.
+// Parts of this height have at least so many vertices.
+std::size_t least_vertices(int height) { return std::size_t{2} << height; }
+
+// The cells of that size, in which at most one part of this height begins.
 std::size_t cells_of(const PointBlocks& blocks, int height) {
-  const std::size_t size = std::size_t{2} << height;
-  return (blocks.points + size - 1) / size;
+  return (blocks.points + least_vertices(height) - 1) / least_vertices(height);
+}
+
+// What merges from both ends of their seam work on, but for what one height has.
+struct Seams {
+  Buffer<cl_int2> crossings{};
+  Buffer<kernel::seam_walk> walks{};
+  Buffer<cl_uchar> removed{};  // 0, all of them, between heights
+  Buffer<cl_int> slots{};
+};
+
+Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
+  Arena& scratch = work.scratch();
+  const std::size_t pairs = kernel::PAIRS_PER_VERTEX * blocks.points;
+  const Seams seams{scratch.allocate<cl_int2>(kernel::CROSSINGS_PER_VERTEX * blocks.points),
+                    scratch.allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height)),
+                    scratch.allocate<cl_uchar>(2 * pairs), scratch.allocate<cl_int>(pairs)};
+  work.runtime.fill<cl_uchar>(seams.removed, 2 * pairs, 0);
+  return seams;
+}
+
+void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
+                          const Rings& rings, const Seams& seams, int height,
+                          const Buffer<kernel::solved_block>& parts, const Buffer<cl_int>& states) {
+  host::Runtime& runtime = work.runtime;
+  const Tuning& tuning = tuning_of(runtime);
+  const std::size_t cells = cells_of(blocks, height);
+  const std::size_t spread = spread_of(tuning, 2 * cells);
+  runtime.launch(spread * 2 * cells, tuning.block_group, 2 * cells,
+                 kernels::walk_seams{.spread = spread,
+                                     .height = height,
+                                     .places = blocks.points,
+                                     .offsets = blocks.offsets,
+                                     .distinct = rings.device_distinct,
+                                     .block_of_place = halved.block_of_place,
+                                     .axes = halved.axes,
+                                     .bounds = work.bounds,
+                                     .points = blocks.vertices,
+                                     .edges = rings.edges,
+                                     .vertex_edge = rings.vertex_edge,
+                                     .parts = parts,
+                                     .solved = rings.solved,
+                                     .crossings = seams.crossings,
+                                     .removed = seams.removed,
+                                     .walks = seams.walks});
+  const std::size_t group = tuning.sewing_group;
+  runtime.note_elements(kernel::PAIRS_PER_VERTEX * (2 * least_vertices(height) + group - 1) / group);
+  runtime.launch(group * cells, group,
+                 kernels::sew_seams{.height = height,
+                                    .places = blocks.points,
+                                    .offsets = blocks.offsets,
+                                    .distinct = rings.device_distinct,
+                                    .block_of_place = halved.block_of_place,
+                                    .axes = halved.axes,
+                                    .points = blocks.vertices,
+                                    .crossings = seams.crossings,
+                                    .walks = seams.walks,
+                                    .edges = rings.edges,
+                                    .vertex_edge = rings.vertex_edge,
+                                    .parts = parts,
+                                    .solved = rings.solved,
+                                    .removed = seams.removed,
+                                    .slots = seams.slots,
+                                    .states = states});
 }
 
 }  // namespace
@@ -33,25 +100,32 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   const auto parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
   const auto states = work.scratch().allocate<cl_int>(cells_of(blocks, 0));
   const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
+  int first_seams = 1;
+  while (first_seams <= heights && least_vertices(first_seams) < tuning.seam_points) ++first_seams;
+  const Seams seams = first_seams <= heights ? seams_of(work, blocks, first_seams) : Seams{};
   for (int height = 0; height <= heights; ++height) {
     const std::size_t cells = cells_of(blocks, height);
     const std::size_t spread = spread_of(tuning, cells);
-    runtime.launch(spread * cells, tuning.block_group, cells,
-                   kernels::merge_parts{.spread = spread,
-                                        .height = height,
-                                        .places = blocks.points,
-                                        .offsets = blocks.offsets,
-                                        .distinct = rings.device_distinct,
-                                        .block_of_place = halved.block_of_place,
-                                        .axes = halved.axes,
-                                        .bounds = work.bounds,
-                                        .points = blocks.vertices,
-                                        .edges = rings.edges,
-                                        .vertex_edge = rings.vertex_edge,
-                                        .parts = parts,
-                                        .solved = rings.solved,
-                                        .states = states});
-    if (!may_stop(work)) continue;
+    if (height >= first_seams) {
+      merge_from_both_ends(work, blocks, halved, rings, seams, height, parts, states);
+    } else {
+      runtime.launch(spread * cells, tuning.block_group, cells,
+                     kernels::merge_parts{.spread = spread,
+                                          .height = height,
+                                          .places = blocks.points,
+                                          .offsets = blocks.offsets,
+                                          .distinct = rings.device_distinct,
+                                          .block_of_place = halved.block_of_place,
+                                          .axes = halved.axes,
+                                          .bounds = work.bounds,
+                                          .points = blocks.vertices,
+                                          .edges = rings.edges,
+                                          .vertex_edge = rings.vertex_edge,
+                                          .parts = parts,
+                                          .solved = rings.solved,
+                                          .states = states});
+      if (!may_stop(work)) continue;
+    }
     runtime.launch(cells, tuning.block_group, cells,
                    kernels::finish_parts{.height = height,
                                          .places = blocks.points,

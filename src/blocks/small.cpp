@@ -123,7 +123,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                          sized(s.ranks, 3 * largest), sized(s.axes, largest));
   });
 
-  const int pairs = kernel::EDGES_PER_VERTEX / 2 * point_count;
+  const int pairs = kernel::PAIRS_PER_VERTEX * point_count;
   if (account[kernel::RINGS_TIES] > 0) {
     kernel::uchar* const inside = sized(s.inside, static_cast<std::size_t>(pairs));
     kernel::uchar* const found = sized(s.found, static_cast<std::size_t>(pairs));

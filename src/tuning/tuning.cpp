@@ -165,6 +165,18 @@ constexpr Row kTable[] = {
      {30},
      "As many as a GPU has room for; where merges are fewer, each has a warp of its own and waits for no "
      "other."},
+    {"seam_points",
+     &Tuning::seam_points,
+     {64},
+     {64},
+     {8},
+     "Two walks and the sewing cost a launch more; merges of less are short."},
+    {"sewing_group",
+     &Tuning::sewing_group,
+     {1},
+     {64},
+     {4},
+     "A lane for every few pairs of edges of a merge, and for every few that cross its seam."},
     {"large_blocks",
      &Tuning::large_blocks,
      {4},
@@ -346,7 +358,7 @@ std::optional<Tuning> kind_named(const std::string& name, const Target& target) 
   if (!group || *group == 0) return {};
   Tuning tuning = column(&Row::gpu, target);
   tuning.map_group = tuning.private_group = tuning.chunk_group = tuning.sort_group = tuning.block_group =
-      tuning.halve_group = *group;
+      tuning.halve_group = tuning.sewing_group = *group;
   tuning.tile_group = std::min<std::size_t>(*group, kernel::LARGEST_TILE_GROUP);
   return tuning;
 }
@@ -413,6 +425,7 @@ void fit_tiles(Tuning& tuning) {
   fit(tuning.sample_tile, kernel::LARGEST_SAMPLE_TILE);
   fit(tuning.samples_per_gap_block, kernel::LARGEST_SAMPLE_TILE);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
+  fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
 }
 
 }  // namespace
@@ -434,7 +447,7 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
-  for (std::size_t* group : {&tuning->block_group, &tuning->halve_group}) {
+  for (std::size_t* group : {&tuning->block_group, &tuning->halve_group, &tuning->sewing_group}) {
     *group = std::clamp<std::size_t>(*group, 1, std::clamp<std::size_t>(limits.work_group, 1, kLargestGroup));
   }
   return tuning;

@@ -292,7 +292,7 @@ TEST(Kernels, AllAreLaunched) {
                                  "blocks/rounds"};
   std::vector<std::string> tunings{"odd"};
   if (!testing::tests_native()) {
-    files.insert(files.end(), {"blocks/halve", "blocks/merge", "blocks/merge_exact",
+    files.insert(files.end(), {"blocks/halve", "blocks/merge", "blocks/merge_exact", "blocks/seams",
                                "points/distribute_tiles", "points/gaps"});
     tunings.insert(tunings.end(), {"small lanes", "tiles"});
   }

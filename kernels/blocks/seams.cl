@@ -1,0 +1,173 @@
+// Merges of large halves on devices with many lanes, from both ends of their seam at once: see shared/seams.h. A launch
+// of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
+// cross the seam and mark those that go. A launch of sew_seams then has a work-group per merge: it gives each crossing
+// edge a free pair of edges and its place in the rings. Both are one pass over what begins in the cells of that height
+// (shared/halves.h). A merge whose walks stopped, at a predicate that floating point cannot decide, or did not meet, is
+// left to finish_parts of blocks/merge_exact.cl, as it was.
+
+#define RINGS_STOP
+#include "shared/halves.h"
+#include "shared/seams.h"
+#include "shared/work_group.h"
+
+kernel void walk_seams(int n, int spread, int height, int places, global const int* restrict offsets,
+                       global const int* restrict distinct, global const int* restrict block_of_place,
+                       global const uchar* restrict axes, filter_bounds bounds, global const double2* restrict points,
+                       global ring_edge* restrict edges, global int* restrict vertex_edge,
+                       global solved_block* restrict parts, global solved_block* restrict solved,
+                       global int2* restrict crossings, global uchar* restrict removed,
+                       global seam_walk* walks COUNTERS) {
+  const int w = (int)get_global_id(0) / spread;
+  if (w < n && w * spread == (int)get_global_id(0)) {
+    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    const part_halves halves = halves_of_cell(&blocks, height, w / 2);
+    if (halves.part.block >= 0) {
+      rings g = rings_on(edges, points, vertex_edge, bounds);
+      const hull_ends low = parts[halves.low_at].ends, high = parts[halves.high_at].ends;
+      const int is_downward = w & 1;
+      const seam s = {seam_line_of(&g, low, high, halves.axis),
+                      is_downward,
+                      is_downward ? -1 : 1,
+                      halves.end - halves.begin,
+                      removed + is_downward * PAIRS_PER_VERTEX * places,
+                      crossings + CROSSINGS_PER_VERTEX * (is_downward ? halves.end : halves.begin)};
+      const int left = last_along(low, halves.axis), right = first_along(high, halves.axis);
+      walks[w] = is_downward ? walk_along(&g, &s, right, left) : walk_along(&g, &s, left, right);
+      COUNT_STEPS(g.counted.steps);
+    }
+  }
+}
+
+SCAN_IN_GROUP(sum_before, uint)
+
+// What a work-group knows of its merge. removed_up and removed_down: by pair of edges, of either walk. slots: the pairs
+// that crossing edges may have, from the merge's first pair on.
+typedef struct {
+  whole_seam seam;
+  global ring_edge* edges;
+  global int* vertex_edge;
+  global uchar* removed_up;
+  global uchar* removed_down;
+  global int* slots;
+} sewing;
+
+static inline int is_removed(const sewing* s, int pair) { return s->removed_up[pair] || s->removed_down[pair]; }
+
+static inline int may_be_sewn(const sewing* s, int pair) {
+  return s->edges[2 * pair].to == NO_VERTEX || is_removed(s, pair);
+}
+
+// Gives a vertex whose edge goes another one, which stays: each has one along the seam.
+static inline void replace_vertex_edge(const sewing* s, int e) {
+  const int v = s->edges[e ^ 1].to;
+  if (s->vertex_edge[v] != e) return;
+  int kept = e;
+  do {
+    kept = s->edges[kept].next;
+  } while (is_removed(s, kept / 2));
+  s->vertex_edge[v] = kept;
+}
+
+// The half of crossing edge i with this end as its origin.
+static inline int crossing_from(const sewing* s, int i, int is_high_end) {
+  return 2 * s->slots[i] + (is_high_end ? 0 : 1);
+}
+
+// Writes the half of crossing edge i out of v, which leads to another vertex. At the low end, edges above come next; at
+// the high end, edges below. Edges of the sides are beside the first and the last crossing edge of each visit to v:
+// `lowest` and `highest` at the ends of the seam. But where a seam goes around one side, and so begins and ends at the
+// same vertex of it, the first and the last crossing edge are neighbours.
+static inline void sew_half(const sewing* s, int i, int v, int to, int is_high_end, int lowest, int highest,
+                            int around) {
+  const int own = crossing_from(s, i, is_high_end), last = s->seam.count - 1;
+  const int from = i > 0 ? edge_into(&s->seam, i) : NO_EDGE, onward = i < last ? edge_into(&s->seam, i + 1) : NO_EDGE;
+  int below = i > 0 ? crossing_from(s, i - 1, is_high_end) : around ? crossing_from(s, last, is_high_end) : lowest;
+  int above = i < last ? crossing_from(s, i + 1, is_high_end) : around ? crossing_from(s, 0, is_high_end) : highest;
+  int comes = i == 0 && !around, goes = i == last && !around;
+  if (from != NO_EDGE && s->edges[from].to == v) {
+    comes = 1;
+    below = from ^ 1;
+  }
+  if (onward != NO_EDGE && s->edges[onward ^ 1].to == v) {
+    goes = 1;
+    above = onward;
+  }
+  s->edges[own].to = to;
+  s->edges[own].next = is_high_end ? below : above;
+  s->edges[own].previous = is_high_end ? above : below;
+  if (comes) *(is_high_end ? &s->edges[below].previous : &s->edges[below].next) = own;
+  if (goes) *(is_high_end ? &s->edges[above].next : &s->edges[above].previous) = own;
+}
+
+static inline void sew_crossing(const sewing* s, int i) {
+  const int2 ends = crossing_at(&s->seam, i, s->edges), lowest = crossing_at(&s->seam, 0, s->edges);
+  const int2 highest = crossing_at(&s->seam, s->seam.count - 1, s->edges);
+  const int is_long = s->seam.count > 1;
+  sew_half(s, i, ends.x, ends.y, 0, s->seam.up.left_edge, s->seam.down.right_edge, is_long && lowest.x == highest.x);
+  sew_half(s, i, ends.y, ends.x, 1, s->seam.up.right_edge, s->seam.down.left_edge, is_long && lowest.y == highest.y);
+}
+
+kernel void sew_seams(int height, int places, global const int* restrict offsets, global const int* restrict distinct,
+                      global const int* restrict block_of_place, global const uchar* restrict axes,
+                      global const double2* restrict points, global const int2* restrict crossings,
+                      global const seam_walk* restrict walks, global ring_edge* edges, global int* vertex_edge,
+                      global solved_block* parts, global solved_block* solved, global uchar* removed, global int* slots,
+                      global int* restrict states) {
+  local uint sums[LARGEST_TILE_GROUP];
+  const int cell = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
+  const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+  const part_halves halves = halves_of_cell(&blocks, height, cell);
+  const int is_merge = halves.part.block >= 0;
+  sewing s;
+  s.edges = edges;
+  s.vertex_edge = vertex_edge;
+  s.removed_up = removed;
+  s.removed_down = removed + PAIRS_PER_VERTEX * places;
+  s.seam.count = 0;
+  int first = 0, end = 0;
+  if (is_merge) {
+    first = PAIRS_PER_VERTEX * halves.begin;
+    end = PAIRS_PER_VERTEX * halves.end;
+    s.seam = joined_walks(walks[2 * cell], walks[2 * cell + 1], crossings + CROSSINGS_PER_VERTEX * halves.begin,
+                          crossings + CROSSINGS_PER_VERTEX * halves.end, halves.middle, edges);
+  }
+  s.slots = slots + first;
+  const int share = share_of(end - first);
+  const int own_first = min(end, first + me * share), own_end = min(end, own_first + share);
+  uint own = 0, all;
+  for (int pair = own_first; pair < own_end; ++pair) own += may_be_sewn(&s, pair);
+  int slot = sum_before(own, sums, &all);
+  const int count = s.seam.count, is_sewn = count > 0 && count <= (int)all;
+  for (int pair = own_first; pair < own_end && is_sewn; ++pair) {
+    if (may_be_sewn(&s, pair)) s.slots[slot++] = pair;
+    if (is_removed(&s, pair)) {
+      replace_vertex_edge(&s, 2 * pair);
+      replace_vertex_edge(&s, 2 * pair + 1);
+    }
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (int i = me; i < count && is_sewn; i += lanes) sew_crossing(&s, i);
+  // The others are free, in the order of their places.
+  for (int k = count + me; k < (int)all && is_sewn; k += lanes) {
+    const int e = 2 * s.slots[k];
+    const ring_edge pair[2] = {{NO_VERTEX, k + 1 < (int)all ? 2 * s.slots[k + 1] : NO_EDGE, e}, {NO_VERTEX, e, e}};
+    edges[e] = pair[0];
+    edges[e + 1] = pair[1];
+  }
+  for (int pair = own_first; pair < own_end; ++pair) s.removed_up[pair] = s.removed_down[pair] = 0;
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  if (me == 0) states[cell] = is_merge && !is_sewn ? MERGE_IS_NEW : MERGE_IS_DONE;
+  if (me == 0 && is_merge && is_sewn) {
+    const filter_bounds none = {0, 0, 0};
+    rings g = rings_on(edges, points, vertex_edge, none);
+    const int lowest = crossing_from(&s, 0, 0), highest = crossing_from(&s, count - 1, 1);
+    vertex_edge[edges[lowest ^ 1].to] = lowest;
+    vertex_edge[edges[highest ^ 1].to] = highest;
+    if (count < (int)all) {
+      g.free_first = 2 * s.slots[count];
+      g.free_last = 2 * s.slots[all - 1];
+    }
+    finish_part(&g, &blocks, halves.part,
+                joined_ends(&g, parts[halves.low_at].ends, parts[halves.high_at].ends, halves.axis));
+  }
+}

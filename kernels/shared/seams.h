@@ -1,0 +1,199 @@
+// Merges of two triangulations from both ends of their seam at once. One walk goes up from the lower tangent and one
+// down from the upper one, until they meet where edges pass the cut at half its height. Each is Guibas and Stolfi's
+// merge (shared/rings.h), but only reads the rings: it lists the edges that cross the seam, and marks the edges that it
+// would remove. The downward walk is the upward one of the plane turned by half a turn.
+//
+// They meet, since the crossing edges are the same from both ends, ties included: where candidates of both sides and
+// the base are on one circle, the upward walk takes the left one first and the downward walk the right one, which is
+// one and the same edge.
+#ifndef FLAUNAY_SEAMS_H
+#define FLAUNAY_SEAMS_H
+
+#include "shared/halves.h"
+#include "shared/language.h"
+#include "shared/rings.h"
+
+BEGIN_SHARED
+
+// How a walk has ended: at an edge beyond the middle of the seam, at the other end, or without a result.
+INTEGER_CONSTANT(WALK_HAS_CROSSED, 0);
+INTEGER_CONSTANT(WALK_IS_WHOLE, 1);
+INTEGER_CONSTANT(WALK_HAS_STOPPED, 2);
+// Where the cut is and its middle, for an axis: a crossing edge is high if it passes the cut there or above.
+typedef struct {
+  int axis;
+  double cut, middle;
+} seam_line;
+
+// What a walk works on. crossings: it writes its k-th one to [k * direction]; by the edge along which it came there,
+// and the vertex on the other side. removed: by pair of edges.
+typedef struct {
+  seam_line line;
+  int is_downward, direction, most;
+  GLOBAL uchar* removed;
+  GLOBAL int2* crossings;
+} seam;
+
+// A side of a walk: its vertex on the base, the edge along which the walk came there, and the candidate's edge.
+typedef struct {
+  int vertex, from, edge, to;
+  double_pair at, apex;
+  angle seen;
+  int rises;
+} seam_side;
+
+// Along the cut upwards, and across it to the right.
+static inline double height_of(double2 p, int axis) { return axis ? -p.x : p.y; }
+static inline double across(double2 p, int axis) { return axis ? p.y : p.x; }
+
+static inline seam_line seam_line_of(const rings* g, hull_ends low, hull_ends high, int axis) {
+  const double2 least_low = g->points[first_along(low, !axis)], least_high = g->points[first_along(high, !axis)];
+  const double2 most_low = g->points[last_along(low, !axis)], most_high = g->points[last_along(high, !axis)];
+  // Of axis 1, the ends along x are those of heights the other way round.
+  const double one = axis ? fmax(height_of(least_low, axis), height_of(least_high, axis))
+                          : fmin(height_of(least_low, axis), height_of(least_high, axis));
+  const double other = axis ? fmin(height_of(most_low, axis), height_of(most_high, axis))
+                            : fmax(height_of(most_low, axis), height_of(most_high, axis));
+  const seam_line line = {axis, across(g->points[last_along(low, axis)], axis), 0.5 * one + 0.5 * other};
+  return line;
+}
+
+// Rounded, but for the same edge the same in both walks.
+static inline int is_high(const seam_line* line, double2 low, double2 high) {
+  const double run = across(high, line->axis) - across(low, line->axis);
+  const double share = run > 0 ? (line->cut - across(low, line->axis)) / run : 0.5;
+  const double from = height_of(low, line->axis);
+  return from + share * (height_of(high, line->axis) - from) >= line->middle;
+}
+
+// The edge beyond e in its ring that is not removed.
+static inline int kept_beyond(const rings* g, const seam* s, int e, int is_right) {
+  do {
+    e = is_right ? g->edges[e].previous : g->edges[e].next;
+  } while (s->removed[e / 2]);
+  return e;
+}
+
+static inline void set_candidate(const rings* g, seam_side* side, int edge) {
+  side->edge = edge;
+  side->to = g->edges[edge].to;
+  side->apex = point_at(g, side->to);
+}
+
+static inline seam_side side_from(const rings* g, const seam* s, int vertex, int from, int is_right) {
+  seam_side side;
+  side.vertex = vertex;
+  side.from = from;
+  side.at = point_at(g, vertex);
+  set_candidate(g, &side, kept_beyond(g, s, from, is_right));
+  return side;
+}
+
+static inline void look_at_apex(rings* g, seam_side* side, double_pair left, double_pair right) {
+  side->seen = angle_of(side->apex, left, right);
+  side->rises = is_above(g, left, right, side->apex, side->seen);
+}
+
+// Marks the candidates that the circle through the base and the next one rules out.
+static inline void drop_ruled_out(rings* g, const seam* s, seam_side* side, double_pair left, double_pair right,
+                                  double bound, int is_right) {
+  while (side->rises && side->edge != side->from) {
+    const int then = kept_beyond(g, s, side->edge, is_right), beyond_to = g->edges[then].to;
+    const double_pair beyond = point_at(g, beyond_to);
+    const angle seen = angle_of(beyond, left, right);
+    if (!rules_out(g, left, right, side->apex, side->seen, beyond, seen, bound)) break;
+    TALLY(*g, steps, 1);
+    s->removed[side->edge / 2] = 1;
+    side->edge = then;
+    side->to = beyond_to;
+    side->apex = beyond;
+    side->seen = seen;
+  }
+}
+
+static inline seam_side moved_side(const rings* g, const seam* s, const seam_side* side, int is_right) {
+  return side_from(g, s, side->to, side->edge ^ 1, is_right);
+}
+
+// Walks from the tangent below two vertices, as the plane is turned for this walk.
+static inline seam_walk walk_along(rings* g, const seam* s, int left, int right) {
+  seam_walk walk = {left, right, NO_EDGE, NO_EDGE, 1, WALK_HAS_STOPPED};
+  if (!find_lower_tangent(g, &walk.left, &walk.right, &walk.left_edge, &walk.right_edge)) return walk;
+  const double bound = angle_bound(g->bounds.circle);
+  seam_side l = side_from(g, s, walk.left, walk.left_edge, 0), r = side_from(g, s, walk.right, walk.right_edge, 1);
+  for (;;) {
+    const double2 low = as_point(s->is_downward ? r.at : l.at), high = as_point(s->is_downward ? l.at : r.at);
+    walk.outcome = WALK_HAS_CROSSED;
+    if (is_high(&s->line, low, high) != s->is_downward) return walk;
+    TALLY(*g, steps, 1);
+    look_at_apex(g, &l, l.at, r.at);
+    look_at_apex(g, &r, l.at, r.at);
+    walk.outcome = WALK_IS_WHOLE;
+    if (!HAS_STOPPED(g) && !l.rises && !r.rises) return walk;
+    drop_ruled_out(g, s, &l, l.at, r.at, bound, 0);
+    drop_ruled_out(g, s, &r, l.at, r.at, bound, 1);
+    const int takes_right = !l.rises || (r.rises && rules_out(g, l.at, r.at, l.apex, l.seen, r.apex, r.seen, bound));
+    walk.outcome = WALK_HAS_STOPPED;
+    if (HAS_STOPPED(g) || walk.crossings == s->most) return walk;
+    s->crossings[walk.crossings * s->direction] =
+        takes_right ? VECTOR(int2, r.edge, l.vertex) : VECTOR(int2, l.edge, r.vertex);
+    ++walk.crossings;
+    if (takes_right) {
+      r = moved_side(g, s, &r, 1);
+    } else {
+      l = moved_side(g, s, &l, 0);
+    }
+  }
+}
+
+// The crossing edges of two walks that met, from below: the first `upward` of one walk, and of the other those before
+// the edge at which they met, from its last to its first one.
+typedef struct {
+  int count, upward, middle;  // middle: the first vertex of the high side
+  seam_walk up, down;
+  GLOBAL const int2* crossings;  // of the upward walk, and
+  GLOBAL const int2* crossings_down;
+} whole_seam;
+
+static inline int2 ordered_crossing(int v, int other, int middle) {
+  return v < middle ? VECTOR(int2, v, other) : VECTOR(int2, other, v);
+}
+
+// The vertices of a walk's k-th crossing edge, on the low side and on the high side.
+static inline int2 crossing_of(const seam_walk* walk, GLOBAL const int2* crossings, int direction, int k,
+                               GLOBAL const ring_edge* edges, int middle) {
+  if (k == 0) return ordered_crossing(walk->left, walk->right, middle);
+  const int2 crossing = crossings[k * direction];
+  return ordered_crossing(edges[crossing.x].to, crossing.y, middle);
+}
+
+static inline int2 crossing_at(const whole_seam* s, int i, GLOBAL const ring_edge* edges) {
+  return i < s->upward ? crossing_of(&s->up, s->crossings, 1, i, edges, s->middle)
+                       : crossing_of(&s->down, s->crossings_down, -1, s->count - 1 - i, edges, s->middle);
+}
+
+// The edge from a vertex of crossing edge i - 1 to one of i, which has the other vertex in common.
+static inline int edge_into(const whole_seam* s, int i) {
+  return i < s->upward ? s->crossings[i].x : s->crossings_down[-(s->count - i)].x ^ 1;
+}
+
+// Joins two walks. Its count is 0 if they did not meet.
+static inline whole_seam joined_walks(seam_walk up, seam_walk down, GLOBAL const int2* crossings,
+                                      GLOBAL const int2* crossings_down, int middle, GLOBAL const ring_edge* edges) {
+  whole_seam s = {0, up.crossings, middle, up, down, crossings, crossings_down};
+  if (up.outcome == WALK_HAS_STOPPED || down.outcome == WALK_HAS_STOPPED) return s;
+  if (up.outcome == WALK_IS_WHOLE) {
+    if (down.crossings == 1) s.count = up.crossings;
+    return s;
+  }
+  const int meets = down.crossings - (down.outcome == WALK_IS_WHOLE ? 1 : 2);
+  if (meets < 0) return s;
+  const int2 last = crossing_of(&up, crossings, 1, up.crossings - 1, edges, middle);
+  const int2 met = crossing_of(&down, crossings_down, -1, meets, edges, middle);
+  if (last.x == met.x && last.y == met.y) s.count = up.crossings + meets;
+  return s;
+}
+
+END_SHARED
+
+#endif
