@@ -32,7 +32,8 @@ bool walks_hulls(const std::string& kernel) { return kernel == "mark_outside" ||
 
 // Kernels that merge the parts of blocks, not the blocks.
 bool solves_blocks(const std::string& kernel) {
-  return kernel == "solve_blocks" || kernel == "merge_parts" || kernel == "finish_parts";
+  return kernel == "solve_blocks" || kernel == "merge_parts" || kernel == "finish_parts" ||
+         kernel == "walk_seams" || kernel == "sew_seams";
 }
 
 /// One call whose kernels counted their steps, and others that were timed.

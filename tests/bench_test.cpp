@@ -411,17 +411,20 @@ TEST_F(BenchTest, LaunchesAreThoseOfTheCall) {
   const auto record =
       run_well("launches --sizes 20000 --distributions uniform,line --tuning gpu,round_points=0");
   EXPECT_EQ(record.value("tuning", ""), "gpu,round_points=0");
-  const std::set<std::string> merging{"merge_parts", "finish_parts", "merge_trees", "finish_trees"};
+  const std::set<std::string> merging{"merge_parts", "finish_parts", "walk_seams", "merge_trees",
+                                      "finish_trees"};
   ASSERT_EQ(record["results"].size(), 2u);
   for (const auto& row : record["results"]) {
     expect_keys(row, {"mode", "distribution", "n", "host_waits", "bytes_to_device", "bytes_to_host"});
     expect_times(row);
     int launches = 0, of_kernels = 0;
     std::uint64_t chain = 0, longest = 0;
+    std::map<std::string, std::uint64_t> steps;
     for (const auto& launch : record["launches"]) {
       if (launch["distribution"] != row["distribution"]) continue;
       EXPECT_EQ(launch.value("launch", -1), launches++);
       const std::string kernel = launch.value("kernel", "");
+      steps[kernel] += launch.value("steps", std::uint64_t{0});
       if (merging.count(kernel) > 0) chain += launch.value("longest_chain", 0u);
       longest = std::max({longest, launch.value("longest_chain", std::uint64_t{0}),
                           launch.value("elements", std::uint64_t{0})});
@@ -432,6 +435,9 @@ TEST_F(BenchTest, LaunchesAreThoseOfTheCall) {
     EXPECT_EQ(launches, row.value("kernel_launches", 0));
     EXPECT_EQ(of_kernels, launches);
     EXPECT_EQ(chain, row.value("merge_chain", 0u));
+    // Walks along seams stop or miss each other only where predicates are undecided.
+    EXPECT_GT(steps["walk_seams"], 0u);
+    EXPECT_EQ(steps["finish_parts"], 0u);
     EXPECT_GT(row.value("merge_chain_above_blocks", 0u), 0u);
     EXPECT_LT(row.value("merge_chain_above_blocks", 0u), chain);
     EXPECT_EQ(longest, row.value("longest_chain", std::uint64_t{0}));

@@ -25,14 +25,17 @@ kernel void walk_seams(int n, int spread, int height, int places, global const i
       rings g = rings_on(edges, points, vertex_edge, bounds);
       const hull_ends low = parts[halves.low_at].ends, high = parts[halves.high_at].ends;
       const int is_downward = w & 1;
-      const seam s = {seam_line_of(&g, low, high, halves.axis),
+      const seam s = {seam_line_of(&g, &blocks, &halves, low, high),
                       is_downward,
                       is_downward ? -1 : 1,
                       halves.end - halves.begin,
                       removed + is_downward * PAIRS_PER_VERTEX * places,
                       crossings + CROSSINGS_PER_VERTEX * (is_downward ? halves.end : halves.begin)};
-      const int left = last_along(low, halves.axis), right = first_along(high, halves.axis);
-      walks[w] = is_downward ? walk_along(&g, &s, right, left) : walk_along(&g, &s, left, right);
+      // Upwards is along y, or against x.
+      const int at_last = (halves.axis == 1) != is_downward;
+      const int from_low = at_last ? last_along(low, !halves.axis) : first_along(low, !halves.axis);
+      const int from_high = at_last ? last_along(high, !halves.axis) : first_along(high, !halves.axis);
+      walks[w] = is_downward ? walk_along(&g, &s, from_high, from_low) : walk_along(&g, &s, from_low, from_high);
       COUNT_STEPS(g.counted.steps);
     }
   }

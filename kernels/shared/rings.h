@@ -255,35 +255,26 @@ static inline void make_star(rings* g, int4 q) {
   g->vertex_edge[q.w] = e + 7;
 }
 
-// Moves two vertices along the hulls to the tangent that has both triangulations above it, and finds the hull edges out
-// of them: of the left one the clockwise one, of the right one the counter-clockwise one. Returns whether it has them.
-static inline int find_lower_tangent(rings* g, int* left, int* right, int* left_edge, int* right_edge) {
+// An edge from the right triangulation to the left one that has both above it. Changes nothing before it is found.
+static inline int lower_tangent(rings* g, int left, int right) {
   GLOBAL const ring_edge* edges = g->edges;
-  *left_edge = g->vertex_edge[*left];
-  *right_edge = g->vertex_edge[*right];
-  // A vertex alone has no edge.
-  if (*left_edge != NO_EDGE) *left_edge = edges[*left_edge].previous;
+  int left_edge = g->vertex_edge[left], right_edge = g->vertex_edge[right];
+  // The clockwise hull edge out of the left vertex; a vertex alone has none.
+  if (left_edge != NO_EDGE) left_edge = edges[left_edge].previous;
   for (int moves = 1; moves;) {
     TALLY(*g, steps, 1);
-    const double2 l = g->points[*left], r = g->points[*right];
-    if (*left_edge != NO_EDGE && turns_left(g, r, l, g->points[edges[*left_edge].to])) {
-      *left = edges[*left_edge].to;
-      *left_edge = edges[*left_edge ^ 1].previous;
-    } else if (*right_edge != NO_EDGE && turns_left(g, l, g->points[edges[*right_edge].to], r)) {
-      *right = edges[*right_edge].to;
-      *right_edge = edges[*right_edge ^ 1].next;
+    const double2 l = g->points[left], r = g->points[right];
+    if (left_edge != NO_EDGE && turns_left(g, r, l, g->points[edges[left_edge].to])) {
+      left = edges[left_edge].to;
+      left_edge = edges[left_edge ^ 1].previous;
+    } else if (right_edge != NO_EDGE && turns_left(g, l, g->points[edges[right_edge].to], r)) {
+      right = edges[right_edge].to;
+      right_edge = edges[right_edge ^ 1].next;
     } else {
       moves = 0;
     }
-    if (HAS_STOPPED(g)) return 0;
+    if (HAS_STOPPED(g)) return MERGE_HAS_NO_BASE;
   }
-  return 1;
-}
-
-// An edge from the right triangulation to the left one that has both above it. Changes nothing before it is found.
-static inline int lower_tangent(rings* g, int left, int right) {
-  int left_edge, right_edge;
-  if (!find_lower_tangent(g, &left, &right, &left_edge, &right_edge)) return MERGE_HAS_NO_BASE;
   const int base = make_edge(g, right, left);
   if (right_edge != NO_EDGE) insert_before(g, base, right_edge);
   if (left_edge != NO_EDGE) insert_after(g, base ^ 1, left_edge);

@@ -46,15 +46,25 @@ typedef struct {
 static inline double height_of(double2 p, int axis) { return axis ? -p.x : p.y; }
 static inline double across(double2 p, int axis) { return axis ? p.y : p.x; }
 
-static inline seam_line seam_line_of(const rings* g, hull_ends low, hull_ends high, int axis) {
-  const double2 least_low = g->points[first_along(low, !axis)], least_high = g->points[first_along(high, !axis)];
-  const double2 most_low = g->points[last_along(low, !axis)], most_high = g->points[last_along(high, !axis)];
-  // Of axis 1, the ends along x are those of heights the other way round.
-  const double one = axis ? fmax(height_of(least_low, axis), height_of(least_high, axis))
-                          : fmin(height_of(least_low, axis), height_of(least_high, axis));
-  const double other = axis ? fmin(height_of(most_low, axis), height_of(most_high, axis))
-                            : fmax(height_of(most_low, axis), height_of(most_high, axis));
-  const seam_line line = {axis, across(g->points[last_along(low, axis)], axis), 0.5 * one + 0.5 * other};
+// About how high half of the vertices of a half are: where it was cut itself, if that was along the seam; or else in
+// the middle of its extent.
+static inline double median_height(const rings* g, const halved_blocks* blocks, const part_halves* halves, int is_high,
+                                   hull_ends ends) {
+  const block_part part = halves->part;
+  const int depth = part.depth + 1, number = 2 * part.number + is_high, axis = halves->axis;
+  int from = first_along(ends, !axis), to = last_along(ends, !axis);
+  if (depth < halving_depth(part.count) && blocks->axes[part.first + (1 << depth) + number] != axis) {
+    const int above = part.first + part_begin(part.count, depth + 1, 2 * number + 1);
+    from = to = first_along(blocks->parts[above / 2].ends, !axis);
+  }
+  return 0.5 * height_of(g->points[from], axis) + 0.5 * height_of(g->points[to], axis);
+}
+
+static inline seam_line seam_line_of(const rings* g, const halved_blocks* blocks, const part_halves* halves,
+                                     hull_ends low, hull_ends high) {
+  const double of_low = median_height(g, blocks, halves, 0, low), of_high = median_height(g, blocks, halves, 1, high);
+  const seam_line line = {halves->axis, across(g->points[last_along(low, halves->axis)], halves->axis),
+                          0.5 * of_low + 0.5 * of_high};
   return line;
 }
 
@@ -115,10 +125,47 @@ static inline seam_side moved_side(const rings* g, const seam* s, const seam_sid
   return side_from(g, s, side->to, side->edge ^ 1, is_right);
 }
 
-// Walks from the tangent below two vertices, as the plane is turned for this walk.
+// Moves along the hulls to the tangent that has both sides above it, and of points on it to those next to the cut. They
+// begin at the sides' lowest points, mostly a few moves away, and each move lowers where the line passes the cut, or
+// keeps it. Returns whether it found the tangent.
+static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
+  GLOBAL const ring_edge* edges = g->edges;
+  const int axis = s->line.axis;
+  walk->left_edge = edges[g->vertex_edge[walk->left]].previous;
+  walk->right_edge = g->vertex_edge[walk->right];
+  for (int moves = 1; moves;) {
+    TALLY(*g, steps, 1);
+    const double2 l = g->points[walk->left], r = g->points[walk->right];
+    const int left_inner = edges[walk->left_edge].next, right_inner = edges[walk->right_edge].previous;
+    const double2 l_outer = g->points[edges[walk->left_edge].to], r_outer = g->points[edges[walk->right_edge].to];
+    const double2 l_inner = g->points[edges[left_inner].to], r_inner = g->points[edges[right_inner].to];
+    const int left_side = side_of(g, r, l, l_inner), right_side = side_of(g, l, r_inner, r);
+    const int left_is_nearer = s->is_downward ? precedes(l_inner, l, axis) : precedes(l, l_inner, axis);
+    const int right_is_nearer = s->is_downward ? precedes(r, r_inner, axis) : precedes(r_inner, r, axis);
+    if (turns_left(g, r, l, l_outer)) {
+      walk->left = edges[walk->left_edge].to;
+      walk->left_edge = edges[walk->left_edge ^ 1].previous;
+    } else if (turns_left(g, l, r_outer, r)) {
+      walk->right = edges[walk->right_edge].to;
+      walk->right_edge = edges[walk->right_edge ^ 1].next;
+    } else if (left_side > 0 || (left_side == 0 && left_is_nearer)) {
+      walk->left = edges[left_inner].to;
+      walk->left_edge = left_inner ^ 1;
+    } else if (right_side > 0 || (right_side == 0 && right_is_nearer)) {
+      walk->right = edges[right_inner].to;
+      walk->right_edge = right_inner ^ 1;
+    } else {
+      moves = 0;
+    }
+    if (HAS_STOPPED(g)) return 0;
+  }
+  return 1;
+}
+
+// Walks from the tangent below the lowest vertices of both sides, as the plane is turned for this walk.
 static inline seam_walk walk_along(rings* g, const seam* s, int left, int right) {
   seam_walk walk = {left, right, NO_EDGE, NO_EDGE, 1, WALK_HAS_STOPPED};
-  if (!find_lower_tangent(g, &walk.left, &walk.right, &walk.left_edge, &walk.right_edge)) return walk;
+  if (!find_seam_tangent(g, s, &walk)) return walk;
   const double bound = angle_bound(g->bounds.circle);
   seam_side l = side_from(g, s, walk.left, walk.left_edge, 0), r = side_from(g, s, walk.right, walk.right_edge, 1);
   for (;;) {

@@ -27,6 +27,11 @@ std::size_t cells_of(const PointBlocks& blocks, int height) {
   return (blocks.points + least_vertices(height) - 1) / least_vertices(height);
 }
 
+// A work-item sews some four vertices, but a warp is there in any case.
+std::size_t sewing_group_of(const Tuning& tuning, int height) {
+  return std::min(tuning.sewing_group, std::max(tuning.block_group, least_vertices(height) / 4));
+}
+
 // What merges from both ends of their seam work on, but for what one height has.
 struct Seams {
   Buffer<cl_int2> crossings{};
@@ -69,8 +74,10 @@ void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const Halv
                                      .crossings = seams.crossings,
                                      .removed = seams.removed,
                                      .walks = seams.walks});
-  const std::size_t group = tuning.sewing_group;
-  runtime.note_elements(kernel::PAIRS_PER_VERTEX * (2 * least_vertices(height) + group - 1) / group);
+  const std::size_t group = sewing_group_of(tuning, height);
+  const std::size_t most_pairs =
+      kernel::PAIRS_PER_VERTEX * std::min(blocks.largest, 2 * least_vertices(height));
+  runtime.note_elements((most_pairs + group - 1) / group);
   runtime.launch(group * cells, group,
                  kernels::sew_seams{.height = height,
                                     .places = blocks.points,

@@ -63,11 +63,11 @@ struct PointBlocks {
 /// Triangulates blocks of any points, as divide does before it merges them, on devices with many lanes: the
 /// halves of all blocks at once. rings: with all its arrays, of the sizes that divide gives them; the account
 /// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
-/// wait. Scratch memory: kParallelBytesPerPoint. Makes 4 launches and 2 per halving of the largest block,
-/// and some more if blocks may have more than large_blocks times block_points points.
+/// wait. Scratch memory: kParallelBytesPerPoint. Makes 4 launches and 2 or 3 per halving of the largest
+/// block, and some more if blocks may have more than large_blocks times block_points points.
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings);
-constexpr std::size_t kParallelBytesPerPoint = 58;
+constexpr std::size_t kParallelBytesPerPoint = 60;
 
 /// What the stage `halve` leaves for `merge`, from the scratch arena.
 struct HalvedBlocks {

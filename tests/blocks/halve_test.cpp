@@ -96,8 +96,9 @@ void with_groups(std::size_t capacity, const std::function<void(Runtime&)>& chec
     SCOPED_TRACE("groups of " + std::to_string(group));
     Tuning tuning = tuning_of(runtime);
     tuning.blocks_in_parallel = 1;
-    tuning.map_group = tuning.block_group = tuning.halve_group = group;
+    tuning.map_group = tuning.block_group = tuning.halve_group = tuning.sewing_group = group;
     tuning.merge_items = 500;
+    tuning.seam_points = 8;
     tuning.block_points = capacity;
     tuning.large_blocks = 1;
     runtime.set_sizes(std::make_shared<Tuning>(tuning));

@@ -126,7 +126,8 @@ void compare(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& me
   ASSERT_TRUE(same(found.g.distinct, expected.g.distinct));
   ASSERT_TRUE(same(found.g.source, expected.g.source));
   ASSERT_TRUE(same(found.representatives, expected.representatives));
-  ASSERT_TRUE(same(found.account, expected.account));
+  // Which predicates are undecided depends on the order of merges. But no tie may be missed.
+  ASSERT_EQ(found.account[kernel::RINGS_TIES] > 0, expected.account[kernel::RINGS_TIES] > 0);
   met.ties += found.account[kernel::RINGS_TIES];
   for (std::size_t b = 0; b < points.count(); ++b) {
     ASSERT_EQ(testing::numbers_of(found.solved[b].ends), testing::numbers_of(expected.solved[b].ends)) << b;
@@ -217,6 +218,33 @@ TEST(Merge, AllSizesOfSmallBlocks) {
   });
 }
 
+/// Points between the arms of a parabola that opens along an axis, or against it: more than a half is as wide
+/// as all of it.
+Coordinates trumpet(std::size_t n, int direction, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double along = (direction & 1 ? -1 : 1) * random.unit();
+    const double across = (2 * random.unit() - 1) * along * along;
+    points.push_back(direction & 2 ? across : along);
+    points.push_back(direction & 2 ? along : across);
+  }
+  return points;
+}
+
+/// Seams that begin and end at the same vertex of one side, all of whose others are between the tangents.
+TEST(Merge, SeamsAroundASide) {
+  with_groups(1 << 20, [](Runtime& runtime) {
+    BlockPoints points;
+    for (std::size_t n = 8; n < 200; n += 3) {
+      for (int direction = 0; direction < 4; ++direction) points.add(trumpet(n, direction, n));
+    }
+    Met met;
+    compare(runtime, points, kUsualBounds, met);
+    EXPECT_GT(met.triangles, 10000u);
+  });
+}
+
 /// What a GPU is asked to do: see solve_in_parallel.
 TEST(Merge, LaunchesAreFew) {
   with_groups(1 << 20, [](Runtime& runtime) {
@@ -227,7 +255,8 @@ TEST(Merge, LaunchesAreFew) {
     const DeviceBlocks on_device(call, points);
     const std::size_t launches = runtime.launches(), waits = runtime.waits();
     solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
-    EXPECT_EQ(runtime.launches() - launches, 2u + 2 * (1 + 9));
+    // Parts of eight points have height 2; there are no marks before.
+    EXPECT_EQ(runtime.launches() - launches, 2u + 2 * 2 + 1 + 3 * 8);
     EXPECT_EQ(runtime.waits(), waits);
   });
 }
