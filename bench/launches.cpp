@@ -33,7 +33,7 @@ bool walks_hulls(const std::string& kernel) { return kernel == "mark_outside" ||
 // Kernels that merge the parts of blocks, not the blocks.
 bool solves_blocks(const std::string& kernel) {
   return kernel == "solve_blocks" || kernel == "merge_parts" || kernel == "finish_parts" ||
-         kernel == "walk_seams" || kernel == "sew_seams";
+         kernel == "walk_seams" || kernel == "finish_walks" || kernel == "sew_seams";
 }
 
 /// One call whose kernels counted their steps, and others that were timed.

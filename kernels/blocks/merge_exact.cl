@@ -1,12 +1,13 @@
 // Leaves and merges at which floating point could not decide, with exact predicates: what blocks/merge.cl has stopped
-// at is continued to its end. Each kernel is one pass over the states of a launch, most of which are done, with one
-// work-item per cell or merge.
+// at is continued to its end, and walks along seams at which blocks/seams.cl has stopped are done again. Each kernel is
+// one pass over the states of a launch, most of which are done, with one work-item per cell or merge.
 
 // Compiled in half the time, and these are called rarely.
 #define OUT_OF_LINE __attribute__((noinline))
 #include "shared/cut_tree.h"
 #include "shared/halves.h"
 #include "shared/rings_account.h"
+#include "shared/seams.h"
 
 kernel void finish_parts(int n, int height, int places, global const int* restrict offsets,
                          global const int* restrict distinct, global const int* restrict block_of_place,
@@ -19,6 +20,22 @@ kernel void finish_parts(int n, int height, int places, global const int* restri
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[cell] = do_cell(&g, &blocks, height, cell, states[cell]);
+    COUNT_STEPS(g.counted.steps);
+    add_to_account(&g, account);
+  }
+}
+
+kernel void finish_walks(int n, int height, int places, global const int* restrict offsets,
+                         global const int* restrict distinct, global const int* restrict block_of_place,
+                         global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
+                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
+                         global solved_block* solved, global int2* restrict crossings, global uchar* restrict removed,
+                         global seam_walk* restrict walks, global volatile uint* account COUNTERS) {
+  const int w = get_global_id(0);
+  if (w < n && walks[w].outcome == WALK_HAS_STOPPED) {
+    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    rings g = rings_on(edges, points, vertex_edge, bounds);
+    walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);
     COUNT_STEPS(g.counted.steps);
     add_to_account(&g, account);
   }

@@ -1,9 +1,8 @@
 // Merges of large halves on devices with many lanes, from both ends of their seam at once: see shared/seams.h. A launch
 // of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
-// cross the seam and mark those that go. A launch of sew_seams then has a work-group per merge: it gives each crossing
-// edge a free pair of edges and its place in the rings. Both are one pass over what begins in the cells of that height
-// (shared/halves.h). A merge whose walks stopped, at a predicate that floating point cannot decide, or did not meet, is
-// left to finish_parts of blocks/merge_exact.cl, as it was.
+// cross the seam and mark those that go. Walks that stopped are done again by finish_walks of blocks/merge_exact.cl. A
+// launch of sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
+// in the rings. Each is one pass over what begins in the cells of that height (shared/halves.h).
 
 #define RINGS_STOP
 #include "shared/halves.h"
@@ -20,24 +19,9 @@ kernel void walk_seams(int n, int spread, int height, int places, global const i
   const int w = (int)get_global_id(0) / spread;
   if (w < n && w * spread == (int)get_global_id(0)) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
-    const part_halves halves = halves_of_cell(&blocks, height, w / 2);
-    if (halves.part.block >= 0) {
-      rings g = rings_on(edges, points, vertex_edge, bounds);
-      const hull_ends low = parts[halves.low_at].ends, high = parts[halves.high_at].ends;
-      const int is_downward = w & 1;
-      const seam s = {seam_line_of(&g, &blocks, &halves, low, high),
-                      is_downward,
-                      is_downward ? -1 : 1,
-                      halves.end - halves.begin,
-                      removed + is_downward * PAIRS_PER_VERTEX * places,
-                      crossings + CROSSINGS_PER_VERTEX * (is_downward ? halves.end : halves.begin)};
-      // Upwards is along y, or against x.
-      const int at_last = (halves.axis == 1) != is_downward;
-      const int from_low = at_last ? last_along(low, !halves.axis) : first_along(low, !halves.axis);
-      const int from_high = at_last ? last_along(high, !halves.axis) : first_along(high, !halves.axis);
-      walks[w] = is_downward ? walk_along(&g, &s, from_high, from_low) : walk_along(&g, &s, from_low, from_high);
-      COUNT_STEPS(g.counted.steps);
-    }
+    rings g = rings_on(edges, points, vertex_edge, bounds);
+    walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);
+    COUNT_STEPS(g.counted.steps);
   }
 }
 
@@ -114,44 +98,45 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
                       global const int* restrict block_of_place, global const uchar* restrict axes,
                       global const double2* restrict points, global const int2* restrict crossings,
                       global const seam_walk* restrict walks, global ring_edge* edges, global int* vertex_edge,
-                      global solved_block* parts, global solved_block* solved, global uchar* removed, global int* slots,
-                      global int* restrict states) {
+                      global solved_block* parts, global solved_block* solved, global uchar* removed,
+                      global int* slots) {
   local uint sums[LARGEST_TILE_GROUP];
+  local int meets;
   const int cell = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
   const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
   const part_halves halves = halves_of_cell(&blocks, height, cell);
-  const int is_merge = halves.part.block >= 0;
-  sewing s;
-  s.edges = edges;
-  s.vertex_edge = vertex_edge;
-  s.removed_up = removed;
-  s.removed_down = removed + PAIRS_PER_VERTEX * places;
-  s.seam.count = 0;
-  int first = 0, end = 0;
-  if (is_merge) {
-    first = PAIRS_PER_VERTEX * halves.begin;
-    end = PAIRS_PER_VERTEX * halves.end;
-    s.seam = joined_walks(walks[2 * cell], walks[2 * cell + 1], crossings + CROSSINGS_PER_VERTEX * halves.begin,
-                          crossings + CROSSINGS_PER_VERTEX * halves.end, halves.middle, edges);
+  const int is_merge = halves.part.block >= 0, begin = is_merge ? halves.begin : 0, end = is_merge ? halves.end : 0;
+  const sewing s = {{0, halves.middle, walks[2 * cell], walks[2 * cell + 1], crossings + CROSSINGS_PER_VERTEX * begin,
+                     crossings + CROSSINGS_PER_VERTEX * (places + begin)},
+                    edges,
+                    vertex_edge,
+                    removed,
+                    removed + PAIRS_PER_VERTEX * places,
+                    slots + PAIRS_PER_VERTEX * begin};
+  if (me == 0) meets = 0;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int k = me; k < s.seam.down.crossings; k += lanes) {
+    if (walks_meet(&s.seam, k, edges)) meets = k;
   }
-  s.slots = slots + first;
-  const int share = share_of(end - first);
-  const int own_first = min(end, first + me * share), own_end = min(end, own_first + share);
+  const int share = share_of(PAIRS_PER_VERTEX * (end - begin)), last = PAIRS_PER_VERTEX * end;
+  const int own_first = min(last, PAIRS_PER_VERTEX * begin + me * share), own_end = min(last, own_first + share);
   uint own = 0, all;
   for (int pair = own_first; pair < own_end; ++pair) own += may_be_sewn(&s, pair);
-  int slot = sum_before(own, sums, &all);
-  const int count = s.seam.count, is_sewn = count > 0 && count <= (int)all;
-  for (int pair = own_first; pair < own_end && is_sewn; ++pair) {
+  uint slot = sum_before(own, sums, &all);
+  for (int pair = own_first; pair < own_end; ++pair) {
     if (may_be_sewn(&s, pair)) s.slots[slot++] = pair;
     if (is_removed(&s, pair)) {
       replace_vertex_edge(&s, 2 * pair);
       replace_vertex_edge(&s, 2 * pair + 1);
     }
   }
-  barrier(CLK_GLOBAL_MEM_FENCE);
-  for (int i = me; i < count && is_sewn; i += lanes) sew_crossing(&s, i);
+  barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
+  const int count = is_merge ? s.seam.up.crossings + meets : 0;
+  sewing sewn = s;
+  sewn.seam.count = count;
+  for (int i = me; i < count; i += lanes) sew_crossing(&sewn, i);
   // The others are free, in the order of their places.
-  for (int k = count + me; k < (int)all && is_sewn; k += lanes) {
+  for (int k = count + me; k < (int)all; k += lanes) {
     const int e = 2 * s.slots[k];
     const ring_edge pair[2] = {{NO_VERTEX, k + 1 < (int)all ? 2 * s.slots[k + 1] : NO_EDGE, e}, {NO_VERTEX, e, e}};
     edges[e] = pair[0];
@@ -159,8 +144,7 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
   }
   for (int pair = own_first; pair < own_end; ++pair) s.removed_up[pair] = s.removed_down[pair] = 0;
   barrier(CLK_GLOBAL_MEM_FENCE);
-  if (me == 0) states[cell] = is_merge && !is_sewn ? MERGE_IS_NEW : MERGE_IS_DONE;
-  if (me == 0 && is_merge && is_sewn) {
+  if (me == 0 && is_merge) {
     const filter_bounds none = {0, 0, 0};
     rings g = rings_on(edges, points, vertex_edge, none);
     const int lowest = crossing_from(&s, 0, 0), highest = crossing_from(&s, count - 1, 1);

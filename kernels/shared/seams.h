@@ -1,11 +1,12 @@
 // Merges of two triangulations from both ends of their seam at once. One walk goes up from the lower tangent and one
-// down from the upper one, until they meet where edges pass the cut at half its height. Each is Guibas and Stolfi's
-// merge (shared/rings.h), but only reads the rings: it lists the edges that cross the seam, and marks the edges that it
-// would remove. The downward walk is the upward one of the plane turned by half a turn.
+// down from the upper one, each until it is beyond the middle of the seam. Each is Guibas and Stolfi's merge
+// (shared/rings.h), but only reads the rings: it lists the edges that cross the seam, and marks the edges that it would
+// remove. The downward walk is the upward one of the plane turned by half a turn.
 //
 // They meet, since the crossing edges are the same from both ends, ties included: where candidates of both sides and
 // the base are on one circle, the upward walk takes the left one first and the downward walk the right one, which is
-// one and the same edge.
+// one and the same edge. With RINGS_STOP a walk stops at a predicate that floating point cannot decide, and a program
+// without it walks again from the beginning; marks are right in any case.
 #ifndef FLAUNAY_SEAMS_H
 #define FLAUNAY_SEAMS_H
 
@@ -19,17 +20,17 @@ BEGIN_SHARED
 INTEGER_CONSTANT(WALK_HAS_CROSSED, 0);
 INTEGER_CONSTANT(WALK_IS_WHOLE, 1);
 INTEGER_CONSTANT(WALK_HAS_STOPPED, 2);
-// Where the cut is and its middle, for an axis: a crossing edge is high if it passes the cut there or above.
+// For an axis, where the cut is, its middle, and more than the rounding errors of heights on it.
 typedef struct {
   int axis;
-  double cut, middle;
+  double cut, middle, error;
 } seam_line;
 
-// What a walk works on. crossings: it writes its k-th one to [k * direction]; by the edge along which it came there,
-// and the vertex on the other side. removed: by pair of edges.
+// What a walk works on. crossings: by the edge along which it came there, and the vertex on the other side; of the
+// first one the walk itself has the vertices. removed: by pair of edges.
 typedef struct {
   seam_line line;
-  int is_downward, direction, most;
+  int is_downward, most;
   GLOBAL uchar* removed;
   GLOBAL int2* crossings;
 } seam;
@@ -46,6 +47,12 @@ typedef struct {
 static inline double height_of(double2 p, int axis) { return axis ? -p.x : p.y; }
 static inline double across(double2 p, int axis) { return axis ? p.y : p.x; }
 
+// The larger of the magnitudes of a half's heights.
+static inline double largest_height(const rings* g, hull_ends ends, int axis) {
+  return fmax(fabs(height_of(g->points[first_along(ends, !axis)], axis)),
+              fabs(height_of(g->points[last_along(ends, !axis)], axis)));
+}
+
 // About how high half of the vertices of a half are: where it was cut itself, if that was along the seam; or else in
 // the middle of its extent.
 static inline double median_height(const rings* g, const halved_blocks* blocks, const part_halves* halves, int is_high,
@@ -60,20 +67,31 @@ static inline double median_height(const rings* g, const halved_blocks* blocks, 
   return 0.5 * height_of(g->points[from], axis) + 0.5 * height_of(g->points[to], axis);
 }
 
+// Heights have some ten roundings, of numbers that are at most twice as large.
+#define HEIGHT_ERROR 1e-14
+
 static inline seam_line seam_line_of(const rings* g, const halved_blocks* blocks, const part_halves* halves,
                                      hull_ends low, hull_ends high) {
+  const int axis = halves->axis;
   const double of_low = median_height(g, blocks, halves, 0, low), of_high = median_height(g, blocks, halves, 1, high);
-  const seam_line line = {halves->axis, across(g->points[last_along(low, halves->axis)], halves->axis),
-                          0.5 * of_low + 0.5 * of_high};
+  const double largest = fmax(largest_height(g, low, axis), largest_height(g, high, axis));
+  const seam_line line = {axis, across(g->points[last_along(low, axis)], axis), 0.5 * of_low + 0.5 * of_high,
+                          HEIGHT_ERROR * largest};
   return line;
 }
 
-// Rounded, but for the same edge the same in both walks.
-static inline int is_high(const seam_line* line, double2 low, double2 high) {
+// About how high the line through a point of the low side and one of the high side passes the cut.
+static inline double height_at_cut(const seam_line* line, double2 low, double2 high) {
   const double run = across(high, line->axis) - across(low, line->axis);
   const double share = run > 0 ? (line->cut - across(low, line->axis)) / run : 0.5;
   const double from = height_of(low, line->axis);
-  return from + share * (height_of(high, line->axis) - from) >= line->middle;
+  return from + share * (height_of(high, line->axis) - from);
+}
+
+// Whether a walk is beyond the middle for sure. So the last edge of either walk is one of the other's.
+static inline int is_beyond(const seam* s, double2 low, double2 high) {
+  const double height = height_at_cut(&s->line, low, high);
+  return s->is_downward ? height < s->line.middle - s->line.error : height > s->line.middle + s->line.error;
 }
 
 // The edge beyond e in its ring that is not removed.
@@ -125,9 +143,25 @@ static inline seam_side moved_side(const rings* g, const seam* s, const seam_sid
   return side_from(g, s, side->to, side->edge ^ 1, is_right);
 }
 
+// Of a side's ends, the one from which a line to a point of the other side passes the cut lowest, as the plane is
+// turned.
+static inline int lowest_end(const rings* g, const seam* s, hull_ends ends, double2 other, int is_of_high) {
+  int lowest = ends.first_x;
+  double least = INFINITY;
+  for (int k = 0; k < 4; ++k) {
+    const int end = k == 0 ? ends.first_x : k == 1 ? ends.last_x : k == 2 ? ends.first_y : ends.last_y;
+    const double2 p = g->points[end];
+    const double height = is_of_high ? height_at_cut(&s->line, other, p) : height_at_cut(&s->line, p, other);
+    const double turned = s->is_downward ? -height : height;
+    lowest = turned < least ? end : lowest;
+    least = turned < least ? turned : least;
+  }
+  return lowest;
+}
+
 // Moves along the hulls to the tangent that has both sides above it, and of points on it to those next to the cut. They
-// begin at the sides' lowest points, mostly a few moves away, and each move lowers where the line passes the cut, or
-// keeps it. Returns whether it found the tangent.
+// may begin anywhere: each move lowers where the line passes the cut, or keeps it. Returns whether it found the
+// tangent.
 static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
   GLOBAL const ring_edge* edges = g->edges;
   const int axis = s->line.axis;
@@ -162,7 +196,7 @@ static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
   return 1;
 }
 
-// Walks from the tangent below the lowest vertices of both sides, as the plane is turned for this walk.
+// Walks from the tangent, which it finds from two vertices on, as the plane is turned for this walk.
 static inline seam_walk walk_along(rings* g, const seam* s, int left, int right) {
   seam_walk walk = {left, right, NO_EDGE, NO_EDGE, 1, WALK_HAS_STOPPED};
   if (!find_seam_tangent(g, s, &walk)) return walk;
@@ -171,7 +205,7 @@ static inline seam_walk walk_along(rings* g, const seam* s, int left, int right)
   for (;;) {
     const double2 low = as_point(s->is_downward ? r.at : l.at), high = as_point(s->is_downward ? l.at : r.at);
     walk.outcome = WALK_HAS_CROSSED;
-    if (is_high(&s->line, low, high) != s->is_downward) return walk;
+    if (is_beyond(s, low, high)) return walk;
     TALLY(*g, steps, 1);
     look_at_apex(g, &l, l.at, r.at);
     look_at_apex(g, &r, l.at, r.at);
@@ -182,8 +216,7 @@ static inline seam_walk walk_along(rings* g, const seam* s, int left, int right)
     const int takes_right = !l.rises || (r.rises && rules_out(g, l.at, r.at, l.apex, l.seen, r.apex, r.seen, bound));
     walk.outcome = WALK_HAS_STOPPED;
     if (HAS_STOPPED(g) || walk.crossings == s->most) return walk;
-    s->crossings[walk.crossings * s->direction] =
-        takes_right ? VECTOR(int2, r.edge, l.vertex) : VECTOR(int2, l.edge, r.vertex);
+    s->crossings[walk.crossings] = takes_right ? VECTOR(int2, r.edge, l.vertex) : VECTOR(int2, l.edge, r.vertex);
     ++walk.crossings;
     if (takes_right) {
       r = moved_side(g, s, &r, 1);
@@ -193,12 +226,30 @@ static inline seam_walk walk_along(rings* g, const seam* s, int left, int right)
   }
 }
 
-// The crossing edges of two walks that met, from below: the first `upward` of one walk, and of the other those before
-// the edge at which they met, from its last to its first one.
+// Walk w of those of a height: cell w / 2, upwards or downwards. crossings and removed: of all upward walks, and behind
+// them of all downward ones.
+static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, GLOBAL int2* crossings,
+                                     GLOBAL uchar* removed) {
+  const part_halves halves = halves_of_cell(blocks, height, w / 2);
+  const seam_walk nothing = {NO_VERTEX, NO_VERTEX, NO_EDGE, NO_EDGE, 0, WALK_IS_WHOLE};
+  if (halves.part.block < 0) return nothing;
+  const hull_ends low = blocks->parts[halves.low_at].ends, high = blocks->parts[halves.high_at].ends;
+  const int is_downward = w & 1;
+  const seam s = {seam_line_of(g, blocks, &halves, low, high), is_downward,
+                  CROSSINGS_PER_VERTEX * (halves.end - halves.begin),
+                  removed + is_downward * PAIRS_PER_VERTEX * blocks->places,
+                  crossings + CROSSINGS_PER_VERTEX * (is_downward * blocks->places + halves.begin)};
+  const int from_low = lowest_end(g, &s, low, g->points[first_along(high, halves.axis)], 0);
+  const int from_high = lowest_end(g, &s, high, g->points[from_low], 1);
+  return is_downward ? walk_along(g, &s, from_high, from_low) : walk_along(g, &s, from_low, from_high);
+}
+
+// The crossing edges of two walks, from below: all those of the upward walk, and of the other those before the edge at
+// which they met, from its last to its first one.
 typedef struct {
-  int count, upward, middle;  // middle: the first vertex of the high side
+  int count, middle;  // middle: the first vertex of the high side
   seam_walk up, down;
-  GLOBAL const int2* crossings;  // of the upward walk, and
+  GLOBAL const int2* crossings_up;
   GLOBAL const int2* crossings_down;
 } whole_seam;
 
@@ -207,38 +258,27 @@ static inline int2 ordered_crossing(int v, int other, int middle) {
 }
 
 // The vertices of a walk's k-th crossing edge, on the low side and on the high side.
-static inline int2 crossing_of(const seam_walk* walk, GLOBAL const int2* crossings, int direction, int k,
+static inline int2 crossing_of(const seam_walk* walk, GLOBAL const int2* crossings, int k,
                                GLOBAL const ring_edge* edges, int middle) {
   if (k == 0) return ordered_crossing(walk->left, walk->right, middle);
-  const int2 crossing = crossings[k * direction];
-  return ordered_crossing(edges[crossing.x].to, crossing.y, middle);
+  return ordered_crossing(edges[crossings[k].x].to, crossings[k].y, middle);
 }
 
 static inline int2 crossing_at(const whole_seam* s, int i, GLOBAL const ring_edge* edges) {
-  return i < s->upward ? crossing_of(&s->up, s->crossings, 1, i, edges, s->middle)
-                       : crossing_of(&s->down, s->crossings_down, -1, s->count - 1 - i, edges, s->middle);
+  return i < s->up.crossings ? crossing_of(&s->up, s->crossings_up, i, edges, s->middle)
+                             : crossing_of(&s->down, s->crossings_down, s->count - 1 - i, edges, s->middle);
 }
 
 // The edge from a vertex of crossing edge i - 1 to one of i, which has the other vertex in common.
 static inline int edge_into(const whole_seam* s, int i) {
-  return i < s->upward ? s->crossings[i].x : s->crossings_down[-(s->count - i)].x ^ 1;
+  return i < s->up.crossings ? s->crossings_up[i].x : s->crossings_down[s->count - i].x ^ 1;
 }
 
-// Joins two walks. Its count is 0 if they did not meet.
-static inline whole_seam joined_walks(seam_walk up, seam_walk down, GLOBAL const int2* crossings,
-                                      GLOBAL const int2* crossings_down, int middle, GLOBAL const ring_edge* edges) {
-  whole_seam s = {0, up.crossings, middle, up, down, crossings, crossings_down};
-  if (up.outcome == WALK_HAS_STOPPED || down.outcome == WALK_HAS_STOPPED) return s;
-  if (up.outcome == WALK_IS_WHOLE) {
-    if (down.crossings == 1) s.count = up.crossings;
-    return s;
-  }
-  const int meets = down.crossings - (down.outcome == WALK_IS_WHOLE ? 1 : 2);
-  if (meets < 0) return s;
-  const int2 last = crossing_of(&up, crossings, 1, up.crossings - 1, edges, middle);
-  const int2 met = crossing_of(&down, crossings_down, -1, meets, edges, middle);
-  if (last.x == met.x && last.y == met.y) s.count = up.crossings + meets;
-  return s;
+// Whether the downward walk's k-th crossing edge is the last one of the upward walk.
+static inline int walks_meet(const whole_seam* s, int k, GLOBAL const ring_edge* edges) {
+  const int2 last = crossing_of(&s->up, s->crossings_up, s->up.crossings - 1, edges, s->middle);
+  const int2 other = crossing_of(&s->down, s->crossings_down, k, edges, s->middle);
+  return last.x == other.x && last.y == other.y;
 }
 
 END_SHARED

@@ -43,7 +43,7 @@ struct Seams {
 Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
   Arena& scratch = work.scratch();
   const std::size_t pairs = kernel::PAIRS_PER_VERTEX * blocks.points;
-  const Seams seams{scratch.allocate<cl_int2>(kernel::CROSSINGS_PER_VERTEX * blocks.points),
+  const Seams seams{scratch.allocate<cl_int2>(2 * kernel::CROSSINGS_PER_VERTEX * blocks.points),
                     scratch.allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height)),
                     scratch.allocate<cl_uchar>(2 * pairs), scratch.allocate<cl_int>(pairs)};
   work.runtime.fill<cl_uchar>(seams.removed, 2 * pairs, 0);
@@ -52,7 +52,7 @@ Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
 
 void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
                           const Rings& rings, const Seams& seams, int height,
-                          const Buffer<kernel::solved_block>& parts, const Buffer<cl_int>& states) {
+                          const Buffer<kernel::solved_block>& parts) {
   host::Runtime& runtime = work.runtime;
   const Tuning& tuning = tuning_of(runtime);
   const std::size_t cells = cells_of(blocks, height);
@@ -74,6 +74,25 @@ void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const Halv
                                      .crossings = seams.crossings,
                                      .removed = seams.removed,
                                      .walks = seams.walks});
+  if (may_stop(work)) {
+    runtime.launch(2 * cells, tuning.block_group, 2 * cells,
+                   kernels::finish_walks{.height = height,
+                                         .places = blocks.points,
+                                         .offsets = blocks.offsets,
+                                         .distinct = rings.device_distinct,
+                                         .block_of_place = halved.block_of_place,
+                                         .axes = halved.axes,
+                                         .bounds = work.bounds,
+                                         .points = blocks.vertices,
+                                         .edges = rings.edges,
+                                         .vertex_edge = rings.vertex_edge,
+                                         .parts = parts,
+                                         .solved = rings.solved,
+                                         .crossings = seams.crossings,
+                                         .removed = seams.removed,
+                                         .walks = seams.walks,
+                                         .account = rings.device_account});
+  }
   const std::size_t group = sewing_group_of(tuning, height);
   const std::size_t most_pairs =
       kernel::PAIRS_PER_VERTEX * std::min(blocks.largest, 2 * least_vertices(height));
@@ -93,8 +112,7 @@ void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const Halv
                                     .parts = parts,
                                     .solved = rings.solved,
                                     .removed = seams.removed,
-                                    .slots = seams.slots,
-                                    .states = states});
+                                    .slots = seams.slots});
 }
 
 }  // namespace
@@ -114,25 +132,25 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
     const std::size_t cells = cells_of(blocks, height);
     const std::size_t spread = spread_of(tuning, cells);
     if (height >= first_seams) {
-      merge_from_both_ends(work, blocks, halved, rings, seams, height, parts, states);
-    } else {
-      runtime.launch(spread * cells, tuning.block_group, cells,
-                     kernels::merge_parts{.spread = spread,
-                                          .height = height,
-                                          .places = blocks.points,
-                                          .offsets = blocks.offsets,
-                                          .distinct = rings.device_distinct,
-                                          .block_of_place = halved.block_of_place,
-                                          .axes = halved.axes,
-                                          .bounds = work.bounds,
-                                          .points = blocks.vertices,
-                                          .edges = rings.edges,
-                                          .vertex_edge = rings.vertex_edge,
-                                          .parts = parts,
-                                          .solved = rings.solved,
-                                          .states = states});
-      if (!may_stop(work)) continue;
+      merge_from_both_ends(work, blocks, halved, rings, seams, height, parts);
+      continue;
     }
+    runtime.launch(spread * cells, tuning.block_group, cells,
+                   kernels::merge_parts{.spread = spread,
+                                        .height = height,
+                                        .places = blocks.points,
+                                        .offsets = blocks.offsets,
+                                        .distinct = rings.device_distinct,
+                                        .block_of_place = halved.block_of_place,
+                                        .axes = halved.axes,
+                                        .bounds = work.bounds,
+                                        .points = blocks.vertices,
+                                        .edges = rings.edges,
+                                        .vertex_edge = rings.vertex_edge,
+                                        .parts = parts,
+                                        .solved = rings.solved,
+                                        .states = states});
+    if (!may_stop(work)) continue;
     runtime.launch(cells, tuning.block_group, cells,
                    kernels::finish_parts{.height = height,
                                          .places = blocks.points,

@@ -67,7 +67,7 @@ struct PointBlocks {
 /// block, and some more if blocks may have more than large_blocks times block_points points.
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings);
-constexpr std::size_t kParallelBytesPerPoint = 60;
+constexpr std::size_t kParallelBytesPerPoint = 76;
 
 /// What the stage `halve` leaves for `merge`, from the scratch arena.
 struct HalvedBlocks {
