@@ -297,15 +297,16 @@ kernel void name_duplicates(int n, int capacity, global const int* restrict offs
 // Writes the vertices of each block in the order of the leaves, their sources, the axis of each cut, and the number of
 // vertices. scratch_ranks has 3 elements per point, the other scratch arrays 1. Groups beyond the last block are idle.
 // Large blocks have their distinct points in scratch_points and scratch_source; their number is a difference in
-// scanned.
-kernel void halve_blocks(int blocks, int capacity, global const int* restrict offsets,
+// scanned. Blocks of more than `largest` points get no vertices.
+kernel void halve_blocks(int blocks, int capacity, int largest, global const int* restrict offsets,
                          global const uint* restrict scanned, global double2* points, global int* source,
                          global int* representatives, global solved_block* solved, global int* distinct_counts,
                          global uchar* axes, global double2* scratch_points, global int* scratch_source,
                          global int2* scratch_ranks, global int* scratch_lows) {
   local uint sums[LARGEST_GROUP];
   const int b = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
-  const int first = b < blocks ? offsets[b] : 0, count = b < blocks ? offsets[b + 1] - first : 0;
+  const int first = b < blocks ? offsets[b] : 0, points_of_block = b < blocks ? offsets[b + 1] - first : 0;
+  const int count = points_of_block <= largest ? points_of_block : 0;
   block_arrays s;
   s.points = scratch_points + first;
   s.source = scratch_source + first;

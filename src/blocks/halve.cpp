@@ -100,6 +100,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   runtime.launch(group * blocks.count, group,
                  kernels::halve_blocks{.blocks = blocks.count,
                                        .capacity = capacity,
+                                       .largest = blocks.largest,
                                        .offsets = blocks.offsets,
                                        .scanned = sorted.scanned,
                                        .points = blocks.vertices,

@@ -49,8 +49,7 @@ constexpr std::size_t kRound =
     sizeof(cl_double2) + 2 * sizeof(cl_int) + kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge);
 constexpr std::size_t kEmitting = (kernel::EDGES_PER_VERTEX + 1) * sizeof(cl_int) + 2 * sizeof(cl_uint2);
 // Per block of a round.
-constexpr std::size_t kRoundByBlock =
-    sizeof(kernel::block_frame) + sizeof(kernel::vertex_box) + sizeof(cl_int);
+constexpr std::size_t kRoundByBlock = sizeof(kernel::block_frame) + sizeof(cl_int);
 // Per point, at the end: the row of each place, the place of each hull vertex, the sums of their scans, and
 // for hulls a vertex and how far ahead it looks, twice.
 constexpr std::size_t kRows =
@@ -67,7 +66,8 @@ WorkspaceBytes rounds_bytes(const Tuning& tuning, std::size_t n, std::size_t set
   const std::size_t most_blocks = blocks + gap_leaves;
   const std::size_t round = n * kRound + most_blocks * (kPersistentByBlock + kRoundByBlock) +
                             std::max({solve_bytes(tuning, n), n * kEmitting, cutting + n * sizeof(cl_int)});
-  return {n * kRoundsPersistent + open + (blocks + 1) * kPersistentByBlock + rounding,
+  return {n * kRoundsPersistent + open + (blocks + 1) * (kPersistentByBlock + sizeof(kernel::vertex_box)) +
+              rounding,
           std::max({input, round, n * kRows + 4 * (sets + 1) * sizeof(cl_uint2)}) + rounding};
 }
 
