@@ -66,7 +66,7 @@ struct PointBlocks {
 /// halves of all blocks at once. rings: with all its arrays, of the sizes that divide gives them; the account
 /// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
 /// wait. Scratch memory: kParallelBytesPerPoint. Makes 4 launches and 2 per halving of the largest block,
-/// and some more if blocks may have more than large_blocks times block_points points.
+/// and some more if blocks may have more than large_blocks times block_points points, or if most are tiny.
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings);
 constexpr std::size_t kParallelBytesPerPoint = 58;
