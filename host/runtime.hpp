@@ -193,12 +193,12 @@ class Runtime {
   /// done.
   template <typename T>
   Buffer<T> view(const T* values, std::size_t count) {
-    if (sizes_->in_host_memory && count > 0) {
-      return {wrap(const_cast<T*>(values), count * sizeof(T), CL_MEM_READ_ONLY), count};
-    }
-    const auto copy = arena_.allocate<T>(count);
-    write(copy, 0, count, values);
-    return copy;
+    return view_by(values, count, &Runtime::write<T>);
+  }
+  /// The same without waiting for the copy.
+  template <typename T>
+  Buffer<T> view_later(const T* values, std::size_t count) {
+    return view_by(values, count, &Runtime::write_later<T>);
   }
   /// Makes a vector this long, for output(). New memory is in huge pages; if kernels run natively, their
   /// threads share the work that the system has with it.
@@ -246,8 +246,9 @@ class Runtime {
   /// Submits the enqueued commands to the device, which may then begin.
   void flush();
 
-  /// If an exception ends its scope, waits for the copies of read_later, write_later and fetch_later, so that
-  /// none uses host memory that is gone. Must be declared after the vectors that they use.
+  /// If an exception ends its scope, waits for the copies of read_later, write_later, view_later and
+  /// fetch_later, so that none uses host memory that is gone. Must be declared after the vectors that they
+  /// use.
   class Settled {
    public:
     explicit Settled(const Runtime& runtime) : runtime_(runtime), exceptions_(std::uncaught_exceptions()) {}
@@ -300,6 +301,16 @@ class Runtime {
   void reset_accounts();
 
  private:
+  template <typename T>
+  Buffer<T> view_by(const T* values, std::size_t count,
+                    void (Runtime::*write_to)(const Buffer<T>&, std::size_t, std::size_t, const T*)) {
+    if (sizes_->in_host_memory && count > 0) {
+      return {wrap(const_cast<T*>(values), count * sizeof(T), CL_MEM_READ_ONLY), count};
+    }
+    const auto copy = arena_.allocate<T>(count);
+    (this->*write_to)(copy, 0, count, values);
+    return copy;
+  }
   /// The value of an argument of a native kernel.
   struct Argument {
     alignas(8) unsigned char bytes[32];

@@ -8,6 +8,9 @@
 // as a rule, launches over all places do the same before: sort_large_tiles, merge_large_runs for each width of runs,
 // flag_distinct, a scan of its flags, move_distinct and name_duplicates. Each cut splits the order that is not cut by
 // position, stably, by a scan over the group, for all parts of a depth at once.
+//
+// If most blocks are tiny, halve_tiny_blocks, per block, does those of at most TINY_BLOCK points; flag_larger_blocks
+// and a scan list the others for the groups of halve_blocks.
 
 #include "shared/halving.h"
 #include "shared/limits.h"
@@ -294,18 +297,110 @@ kernel void name_duplicates(int n, int capacity, global const int* restrict offs
   }
 }
 
+static inline void end_block(int b, int distinct, global solved_block* solved, global int* distinct_counts) {
+  const solved_block none = {no_ends(), {NO_EDGE, NO_EDGE}};
+  if (distinct == 0) solved[b] = none;
+  distinct_counts[b] = distinct;
+}
+
+// The block that is number k of those that were flagged; `blocks` if there are fewer.
+static inline int listed_block(int k, int blocks, global const uint* scanned) {
+  return (uint)k < scanned[blocks] ? segment_of(k, blocks, (global const int*)scanned) : blocks;
+}
+
+// n blocks.
+kernel void flag_larger_blocks(int n, global const int* restrict offsets, global uint* restrict flags) {
+  const int b = get_global_id(0);
+  if (b < n) flags[b] = offsets[b + 1] - offsets[b] > TINY_BLOCK;
+}
+
+// Where point i comes in the order along an axis, in which equal points stay in their order.
+static inline int rank_along(int i, int count, global const double2* points, int axis) {
+  return place_in_tile(i, count, points, axis);
+}
+
+// The point that has a rank along an axis.
+static inline double2 point_of_rank(int rank, int count, global const double2* points, int axis) {
+  int i = 0;
+  while (rank_along(i, count, points, axis) != rank) ++i;
+  return points[i];
+}
+
+// Sorts a few points along x, drops duplicates, and returns the number of those that are left, in the block's arrays.
+static inline int sort_tiny_block(int count, global const double2* points, global const int* source,
+                                  const block_arrays* s, global int* representatives) {
+  for (int i = 0; i < count; ++i) {
+    const int to = rank_along(i, count, points, 0);
+    s->points[to] = points[i];
+    s->source[to] = source[i];
+  }
+  int distinct = 0;
+  for (int i = 0; i < count; ++i) {
+    const double2 p = s->points[i];
+    const int own = s->source[i];
+    if (distinct > 0 && p.x == s->points[distinct - 1].x && p.y == s->points[distinct - 1].y) {
+      representatives[own] = s->source[distinct - 1];
+    } else {
+      s->points[distinct] = p;
+      s->source[distinct] = own;
+      ++distinct;
+    }
+  }
+  return distinct;
+}
+
+// axis_of for all of a few points, which are in the order along x.
+static inline int axis_of_tiny(int count, global const double2* points) {
+  const int low = count / 4, high = count - 1 - count / 4;
+  return point_of_rank(high, count, points, 1).y - point_of_rank(low, count, points, 1).y >
+         points[high].x - points[low].x;
+}
+
+// n blocks, of which those of at most TINY_BLOCK points become what halve_blocks would make of them.
+kernel void halve_tiny_blocks(int n, global const int* restrict offsets, global double2* points, global int* source,
+                              global int* representatives, global solved_block* solved, global int* distinct_counts,
+                              global uchar* axes, global double2* scratch_points, global int* scratch_source) {
+  const int b = get_global_id(0);
+  const int first = b < n ? offsets[b] : 0, count = b < n ? offsets[b + 1] - first : 0;
+  if (b < n && count <= TINY_BLOCK) {
+    block_arrays s;
+    s.points = scratch_points + first;
+    s.source = scratch_source + first;
+    const int distinct = sort_tiny_block(count, points + first, source + first, &s, representatives);
+    int axis = 0;
+    if (halving_depth(distinct) > 0) {
+      axis = axis_of_tiny(distinct, s.points);
+      axes[first + 1] = axis;
+    }
+    const int middle = part_begin(distinct, 1, 1);
+    for (int part = 0, to = first; part < (axis == 0 ? 1 : 2); ++part) {
+      for (int k = 0; k < distinct; ++k) {
+        if (axis != 0 && (rank_along(k, distinct, s.points, 1) >= middle) != part) continue;
+        points[to] = s.points[k];
+        source[to] = s.source[k];
+        ++to;
+      }
+    }
+    end_block(b, distinct, solved, distinct_counts);
+  }
+}
+
 // Writes the vertices of each block in the order of the leaves, their sources, the axis of each cut, and the number of
 // vertices. scratch_ranks has 3 elements per point, the other scratch arrays 1. Groups beyond the last block are idle.
 // Large blocks have their distinct points in scratch_points and scratch_source; their number is a difference in
-// scanned.
-kernel void halve_blocks(int blocks, int capacity, global const int* restrict offsets,
-                         global const uint* restrict scanned, global double2* points, global int* source,
-                         global int* representatives, global solved_block* solved, global int* distinct_counts,
-                         global uchar* axes, global double2* scratch_points, global int* scratch_source,
-                         global int2* scratch_ranks, global int* scratch_lows) {
+// scanned. Blocks of more than `largest` points get no vertices.
+// are_listed: the groups take the blocks that flag_larger_blocks has flagged; larger_blocks: the flags' prefix sums.
+kernel void halve_blocks(int blocks, int are_listed, global const uint* restrict larger_blocks, int capacity,
+                         int largest, global const int* restrict offsets, global const uint* restrict scanned,
+                         global double2* points, global int* source, global int* representatives,
+                         global solved_block* solved, global int* distinct_counts, global uchar* axes,
+                         global double2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
+                         global int* scratch_lows) {
   local uint sums[LARGEST_GROUP];
-  const int b = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
-  const int first = b < blocks ? offsets[b] : 0, count = b < blocks ? offsets[b + 1] - first : 0;
+  const int me = get_local_id(0), lanes = get_local_size(0);
+  const int b = are_listed ? listed_block(get_group_id(0), blocks, larger_blocks) : (int)get_group_id(0);
+  const int first = b < blocks ? offsets[b] : 0, points_of_block = b < blocks ? offsets[b + 1] - first : 0;
+  const int count = points_of_block <= largest ? points_of_block : 0;
   block_arrays s;
   s.points = scratch_points + first;
   s.source = scratch_source + first;
@@ -325,9 +420,5 @@ kernel void halve_blocks(int blocks, int capacity, global const int* restrict of
     points[first + k] = s.points[r];
     source[first + k] = s.source[r];
   }
-  if (me == 0 && b < blocks) {
-    const solved_block none = {no_ends(), {NO_EDGE, NO_EDGE}};
-    if (distinct == 0) solved[b] = none;
-    distinct_counts[b] = distinct;
-  }
+  if (me == 0 && b < blocks) end_block(b, distinct, solved, distinct_counts);
 }

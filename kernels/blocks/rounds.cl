@@ -7,12 +7,14 @@
 // one of their vertices (shared/open_sectors.h). The outside is emitted likewise, hull edge by hull edge.
 //
 // Each round, when the blocks are solved:
-// 1. box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box around each set's
-//    points. frame_blocks, per block, finds the rectangle between the cuts. name_round_vertices numbers each vertex.
+// 1. In the first round, box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box
+//    around each set's points. frame_blocks, per block, finds the rectangle between the cuts. name_round_vertices
+//    numbers each vertex.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
 //    vertex, and notes the state of each edge's left side. emit_unsure decides exactly what the filters could not.
 // 3. link_triangles, per pair of edges, joins emitted triangles, also with those of rounds before.
-// 4. count_open, per vertex, counts what goes on; after a scan write_open writes the points and their open edges.
+// 4. Unless each set has one triangulation: count_open, per vertex, counts what goes on; after a scan write_open writes
+//    the points and their open edges.
 // After the rounds:
 // 5. count_rows, per place, and after a scan write_rows, per place, close the gaps between triangles.
 // 6. count_hull and list_hull, per vertex, list the hulls' vertices; rank_hull, in one launch per doubling, finds how
@@ -101,25 +103,30 @@ static inline void find_outside(hull_ends ends, global const ring_edge* edges, g
 }
 
 // n blocks: the leaves of each set's tree, whose nodes begin at set_nodes. is_merged: the first block of each set has
-// the set's triangulation.
+// the set's triangulation. set_boxes: where each set has its box. The hull of a single vertex, which has no edges, is
+// written here.
 kernel void frame_blocks(int n, int sets, int is_merged, global const int* restrict set_blocks,
                          global const int* restrict set_nodes, global const cut_node* restrict nodes, scaling scale,
-                         global const solved_block* restrict solved, global const vertex_box* restrict boxes,
-                         global const ring_edge* restrict edges, global const int* restrict vertex_edge,
-                         global block_frame* restrict frames) {
+                         global const solved_block* restrict solved, global const int* restrict set_boxes,
+                         global const vertex_box* restrict boxes, global const ring_edge* restrict edges,
+                         global const int* restrict vertex_edge, global const int* restrict vertices,
+                         global int* restrict hull_next, global block_frame* restrict frames) {
   const int b = get_global_id(0);
   if (b < n) {
     const int s = segment_of(b, sets, set_blocks);
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
     block_frame frame;
-    frame.all = boxes[first];
+    frame.all = boxes[set_boxes[s]];
     frame.rectangle.low = VECTOR(double2, -INFINITY, -INFINITY);
     frame.rectangle.high = VECTOR(double2, INFINITY, INFINITY);
     for (int node = leaves + b - first; node > 1 && !is_merged; node >>= 1) {
       frame.rectangle = cut_rectangle(frame.rectangle, nodes[set_nodes[s] + (node >> 1)], node & 1, scale);
     }
-    find_outside(solved[is_merged ? first : b].ends, edges, vertex_edge, frame.outside);
+    const hull_ends ends = solved[is_merged ? first : b].ends;
+    find_outside(ends, edges, vertex_edge, frame.outside);
     frames[b] = frame;
+    const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
+    if (is_single && (is_merged || leaves == 1)) hull_next[vertices[ends.first_x]] = vertices[ends.first_x];
   }
 }
 
@@ -388,25 +395,21 @@ static inline open_list open_list_of(int k, int is_first, global const int* list
   return list;
 }
 
-// Counts each vertex that goes on, and its open edges. n places; of each block, the first `distinct` are vertices.
-// is_merged: nothing goes on.
-kernel void count_open(int n, int is_first, int is_merged, int sets, int blocks, global const int* restrict set_blocks,
+// Counts each vertex that goes on, and its open edges. n places; in the first round, the first `distinct` of each block
+// are vertices, later all, also those of blocks that were left unsolved. Nothing goes on of sets of one block.
+kernel void count_open(int n, int is_first, int sets, int blocks, global const int* restrict set_blocks,
                        global const int* restrict offsets, global const int* restrict distinct,
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
                        global const int* restrict vertices, global const int* restrict listed,
                        global const int* restrict open_offsets, global const open_edge* restrict open_edges,
-                       global const int* restrict states, global int* restrict hull_next,
-                       global uint2* restrict counts) {
+                       global const int* restrict states, global uint2* restrict counts) {
   const int k = get_global_id(0);
   if (k < n) {
     const int b = segment_of(k, blocks, offsets);
     const int s = segment_of(b, sets, set_blocks);
-    const int is_vertex = k - offsets[b] < distinct[b];
-    const int is_whole = is_merged || set_blocks[s + 1] - set_blocks[s] == 1;
+    const int is_vertex = !is_first || k - offsets[b] < distinct[b];
     uint2 count = VECTOR(uint2, 0, 0);
-    // The hull of a single vertex.
-    if (is_vertex && is_whole && vertex_edge[k] == NO_EDGE) hull_next[vertices[k]] = vertices[k];
-    if (is_vertex && !is_whole) {
+    if (is_vertex && set_blocks[s + 1] - set_blocks[s] > 1) {
       open_list list = open_list_of(k, is_first, listed, open_offsets, open_edges);
       gather_open(&list, vertex_edge[k], edges, states, vertices);
       if (list.count > 0 || !list.emitted) count = VECTOR(uint2, 1, (uint)list.count);

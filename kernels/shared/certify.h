@@ -29,10 +29,11 @@ static inline int has_other_blocks(const block_frame* frame) {
   return any;
 }
 
-// A circle through `origin`. Of its centre, the coordinates are wrong by at most `error`.
+// A circle through `origin`. Of its centre, as seen from there, the coordinates are wrong by at most `error`. Seen from
+// the input's origin, which may be far away, they would be wrong by more than points differ.
 typedef struct {
-  double2 centre;
-  double x, y, error;  // the centre as seen from the origin
+  double2 origin;
+  double x, y, error;
 } circle_found;
 
 // Of the triangle a, b, c. Returns 0 if the points are too close to a line. Differences are exact to within ROUNDOFF,
@@ -50,17 +51,18 @@ static inline int circle_through(double2 a, double2 b, double2 c, circle_found* 
   circle->y = (px * qq - qx * pp) * scale;
   const double terms = (fabs(qy) + fabs(qx)) * pp + (fabs(py) + fabs(px)) * qq;
   const double extent = fabs(circle->x) + fabs(circle->y);
-  circle->centre = VECTOR(double2, a.x + circle->x, a.y + circle->y);
-  circle->error = 32.0 * ROUNDOFF * terms * fabs(scale) + 4.0 * extent * (doubt * 2.0 * fabs(scale)) +
-                  4.0 * ROUNDOFF * (extent + fabs(a.x) + fabs(a.y));
+  circle->origin = a;
+  circle->error =
+      32.0 * ROUNDOFF * terms * fabs(scale) + 4.0 * extent * (doubt * 2.0 * fabs(scale)) + 4.0 * ROUNDOFF * extent;
   return 1;
 }
 
-// The least distance from x to the interval, less what errors can make of it.
-static inline double gap_to(double x, double low, double high, double error) {
-  const double below = low - x, above = x - high;
+// The least distance to the interval from x, as seen from the origin, less what errors can make of it.
+static inline double gap_to(double x, double origin, double low, double high, double error) {
+  const double to_low = low - origin, to_high = high - origin;
+  const double below = to_low - x, above = x - to_high;
   const double gap = below > above ? below : above;
-  const double sure = gap - error - 4.0 * ROUNDOFF * (fabs(x) + fabs(below > above ? low : high));
+  const double sure = gap - error - 4.0 * ROUNDOFF * (fabs(x) + fabs(below > above ? to_low : to_high));
   return sure > 0.0 ? sure : 0.0;
 }
 
@@ -75,8 +77,8 @@ static inline int is_circle_inside(const block_frame* frame, double2 a, double2 
   for (int k = 0; k < FRAME_SIDES; ++k) {
     vertex_box beyond;
     if (beyond_side(frame, k, &beyond)) {
-      const double x = gap_to(circle.centre.x, beyond.low.x, beyond.high.x, circle.error);
-      const double y = gap_to(circle.centre.y, beyond.low.y, beyond.high.y, circle.error);
+      const double x = gap_to(circle.x, circle.origin.x, beyond.low.x, beyond.high.x, circle.error);
+      const double y = gap_to(circle.y, circle.origin.y, beyond.low.y, beyond.high.y, circle.error);
       if (!(x * x + y * y > most)) return 0;
     }
   }

@@ -14,6 +14,8 @@ INTEGER_CONSTANT(PAIRS_PER_VERTEX, EDGES_PER_VERTEX / 2);
 INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
 // Divide and conquer ends with leaves of at most so many vertices.
 INTEGER_CONSTANT(LEAF_VERTICES, 4);
+// A block of at most so many points, which one cut divides into leaves, needs no work-group of its own.
+INTEGER_CONSTANT(TINY_BLOCK, 2 * LEAF_VERTICES);
 // Sorts begin with tiles of so many points, a power of two, in which each point is compared with all others.
 INTEGER_CONSTANT(SORTED_TILE, 16);
 

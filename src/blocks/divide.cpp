@@ -88,6 +88,15 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
                                             .account = rings.device_account});
 }
 
+std::size_t largest_of(const Blocks& blocks) {
+  if (blocks.offsets.empty()) return blocks.largest;
+  std::size_t largest = 1;
+  for (std::size_t b = 0; b < blocks.count; ++b) {
+    largest = std::max<std::size_t>(largest, blocks.offsets[b + 1] - blocks.offsets[b]);
+  }
+  return largest;
+}
+
 }  // namespace
 
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n) {
@@ -109,10 +118,7 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
   rings.device_account = work.persistent.allocate<cl_uint>(kernel::RINGS_NUMBERS);
   runtime.fill(rings.device_account, kernel::RINGS_NUMBERS, cl_uint{0});
 
-  std::size_t largest = 1;
-  for (std::size_t b = 0; b < blocks.count; ++b) {
-    largest = std::max<std::size_t>(largest, blocks.offsets[b + 1] - blocks.offsets[b]);
-  }
+  const std::size_t largest = largest_of(blocks);
   const bool in_parallel = tuning_of(runtime).blocks_in_parallel != 0;
   if (in_parallel) {
     solve_in_parallel(

@@ -13,10 +13,10 @@ namespace {
 // A work-item has about so many points of its block.
 constexpr std::size_t kPointsPerItem = 8;
 
-std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks) {
+std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks, std::size_t groups) {
   // Not less than a warp, which would be there for less, too.
   std::size_t group = std::min(tuning.block_group, tuning.halve_group);
-  while (group * kPointsPerItem * blocks.count < blocks.points) group *= 2;
+  while (group < tuning.halve_group && group * kPointsPerItem * groups < blocks.points) group *= 2;
   return std::min(group, tuning.halve_group);
 }
 
@@ -76,6 +76,31 @@ void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlo
                                                       .representatives = representatives});
 }
 
+// Whether so many blocks are tiny that a work-item each is better than a group each.
+bool are_tiny(const PointBlocks& blocks) {
+  return blocks.largest <= kernel::TINY_BLOCK || blocks.points < kernel::LEAF_VERTICES * blocks.count;
+}
+
+// Halves tiny blocks. Returns how many others there are at most, and which.
+std::size_t halve_tiny(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
+                       const Buffer<cl_int>& representatives, const Rings& rings, const SortedPoints& sorted,
+                       const Buffer<cl_uint>& larger_blocks) {
+  host::Runtime& runtime = work.runtime;
+  runtime.map(blocks.count, kernels::halve_tiny_blocks{.offsets = blocks.offsets,
+                                                       .points = blocks.vertices,
+                                                       .source = blocks.source,
+                                                       .representatives = representatives,
+                                                       .solved = rings.solved,
+                                                       .distinct_counts = rings.device_distinct,
+                                                       .axes = halved.axes,
+                                                       .scratch_points = sorted.points,
+                                                       .scratch_source = sorted.source});
+  if (blocks.largest <= kernel::TINY_BLOCK) return 0;
+  runtime.map(blocks.count, kernels::flag_larger_blocks{.offsets = blocks.offsets, .flags = larger_blocks});
+  host::exclusive_scan(runtime, larger_blocks, blocks.count, larger_blocks);
+  return blocks.points / (kernel::TINY_BLOCK + 1);
+}
+
 }  // namespace
 
 HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
@@ -95,11 +120,20 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                             scratch.allocate<cl_int>(blocks.points),
                             scratch.allocate<cl_uint>(has_large ? blocks.points + 1 : 1)};
   if (has_large) drop_duplicates(work, blocks, halved, capacity, representatives, sorted);
-  const std::size_t group = group_for(tuning, blocks);
+  const bool with_tiny = are_tiny(blocks);
+  const auto larger_blocks = scratch.allocate<cl_uint>(with_tiny ? blocks.count + 1 : 1);
+  const std::size_t groups =
+      with_tiny ? halve_tiny(work, blocks, halved, representatives, rings, sorted, larger_blocks)
+                : blocks.count;
+  if (groups == 0) return halved;
+  const std::size_t group = group_for(tuning, blocks, groups);
   runtime.note_elements((std::min(blocks.largest, capacity) + group - 1) / group);
-  runtime.launch(group * blocks.count, group,
+  runtime.launch(group * groups, group,
                  kernels::halve_blocks{.blocks = blocks.count,
+                                       .are_listed = with_tiny,
+                                       .larger_blocks = larger_blocks,
                                        .capacity = capacity,
+                                       .largest = blocks.largest,
                                        .offsets = blocks.offsets,
                                        .scanned = sorted.scanned,
                                        .points = blocks.vertices,

@@ -48,9 +48,10 @@ constexpr std::size_t kOpenPoint =
 constexpr std::size_t kRound =
     sizeof(cl_double2) + 2 * sizeof(cl_int) + kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge);
 constexpr std::size_t kEmitting = (kernel::EDGES_PER_VERTEX + 1) * sizeof(cl_int) + 2 * sizeof(cl_uint2);
+// Per block, if most are tiny and some are not: a count and the sum of its scan.
+constexpr std::size_t kHalvingByBlock = 2 * sizeof(cl_uint);
 // Per block of a round.
-constexpr std::size_t kRoundByBlock =
-    sizeof(kernel::block_frame) + sizeof(kernel::vertex_box) + sizeof(cl_int);
+constexpr std::size_t kRoundByBlock = sizeof(kernel::block_frame) + sizeof(cl_int);
 // Per point, at the end: the row of each place, the place of each hull vertex, the sums of their scans, and
 // for hulls a vertex and how far ahead it looks, twice.
 constexpr std::size_t kRows =
@@ -65,9 +66,11 @@ WorkspaceBytes rounds_bytes(const Tuning& tuning, std::size_t n, std::size_t set
   const std::size_t cutting =
       CutTrees::bytes(std::min(sets, gap_leaves), gap_leaves, tuning.samples_per_gap_block);
   const std::size_t most_blocks = blocks + gap_leaves;
-  const std::size_t round = n * kRound + most_blocks * (kPersistentByBlock + kRoundByBlock) +
+  const std::size_t round = n * kRound +
+                            most_blocks * (kPersistentByBlock + kRoundByBlock + kHalvingByBlock) +
                             std::max({solve_bytes(tuning, n), n * kEmitting, cutting + n * sizeof(cl_int)});
-  return {n * kRoundsPersistent + open + (blocks + 1) * kPersistentByBlock + rounding,
+  return {n * kRoundsPersistent + open + (blocks + 1) * (kPersistentByBlock + sizeof(kernel::vertex_box)) +
+              rounding,
           std::max({input, round, n * kRows + 4 * (sets + 1) * sizeof(cl_uint2)}) + rounding};
 }
 
@@ -85,7 +88,8 @@ WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std:
   const std::size_t digits = blocks >> (2 * tuning.block_bits) > 0 ? n * kMovingByDigits : 0;
   const std::size_t moving = n * kMoving + digits + blocks * kMovingByBlock + chunks * kMovingByChunk;
   // The blocks are merged in pairs, each of which has a state.
-  const std::size_t solving = std::max(solve_bytes(tuning, n), blocks / 2 * sizeof(cl_int));
+  const std::size_t halving = tuning.blocks_in_parallel != 0 ? blocks * kHalvingByBlock : 0;
+  const std::size_t solving = std::max(solve_bytes(tuning, n) + halving, blocks / 2 * sizeof(cl_int));
   const std::size_t writing = n * kWriting + 2 * (sets + 1) * sizeof(cl_int);
   const std::size_t input = n * kInput + scaling + std::max(cutting, moving);
   if (tuning.round_points > 0) return rounds_bytes(tuning, n, sets, blocks, input, rounding);

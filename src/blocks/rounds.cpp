@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 #include "host/vector_operations.hpp"
 #include "launchers/blocks/rounds.cl.hpp"
@@ -20,6 +22,27 @@ struct Emitted {
   Buffer<cl_int> places{};      // 3 per place of a triangle, 2 places per vertex
   Buffer<cl_int> links{};       // the same for their neighbours; null if these are not wanted
   Buffer<cl_int> hull_next{}, hull_previous{};
+};
+
+// The boxes around the sets' points, found in the first round: later rounds have fewer points.
+struct SetBoxes {
+  Buffer<kernel::vertex_box> boxes{};
+  Buffer<cl_int> places{};  // by set
+};
+
+// What the host reads of a round's triangulations, with the next wait.
+struct Numbers {
+  std::vector<cl_int> distinct{};  // by block, of the first round
+  std::vector<cl_uint> account = std::vector<cl_uint>(kernel::RINGS_NUMBERS);
+
+  void read_later(host::Runtime& runtime, const Blocks& blocks, const Rings& rings, bool is_first) {
+    if (is_first) {
+      distinct.resize(blocks.count);
+      runtime.read_later(rings.device_distinct, 0, blocks.count, distinct.data());
+    }
+    runtime.read_later(rings.device_account, 0, account.size(), account.data());
+  }
+  std::size_t undecided() const { return account[kernel::RINGS_UNDECIDED]; }
 };
 
 // The points that go on to a round, and their open edges.
@@ -45,21 +68,23 @@ struct OpenPoints {
 // One round: its blocks, their triangulations and what is emitted of them.
 struct Round {
   bool is_first;
-  bool is_merged;          // whether each set has one triangulation
+  bool is_merged;          // up the tree
   const OpenPoints& open;  // what its points are made from; of the first round, the offsets alone
   const Blocks& blocks;
   Rings rings;
   Buffer<cl_int> vertices{};  // by place in the blocks
   Buffer<cl_int> states{};    // by edge
   Buffer<kernel::block_frame> frames{};
+
+  // Whether each set has one triangulation.
+  bool is_last() const { return is_merged || blocks.count == blocks.sets; }
 };
 
-Buffer<kernel::vertex_box> boxes_of_sets(Workspace& work, const Round& round) {
-  const Blocks& blocks = round.blocks;
-  const auto boxes = work.scratch().allocate<kernel::vertex_box>(blocks.count);
+SetBoxes boxes_of_sets(Workspace& work, const Blocks& blocks, const Rings& rings) {
+  const SetBoxes found{work.persistent.allocate<kernel::vertex_box>(blocks.count), blocks.device_set_blocks};
   work.runtime.map(
       blocks.count,
-      kernels::box_blocks{.solved = round.rings.solved, .points = blocks.vertices, .boxes = boxes});
+      kernels::box_blocks{.solved = rings.solved, .points = blocks.vertices, .boxes = found.boxes});
   std::size_t most = 1;
   for (std::size_t s = 0; s < blocks.sets; ++s) {
     most = std::max<std::size_t>(most, blocks.set_blocks[s + 1] - blocks.set_blocks[s]);
@@ -68,9 +93,9 @@ Buffer<kernel::vertex_box> boxes_of_sets(Workspace& work, const Round& round) {
     work.runtime.map(
         blocks.count,
         kernels::join_boxes{
-            .sets = blocks.sets, .step = step, .set_blocks = blocks.device_set_blocks, .boxes = boxes});
+            .sets = blocks.sets, .step = step, .set_blocks = blocks.device_set_blocks, .boxes = found.boxes});
   }
-  return boxes;
+  return found;
 }
 
 // Where the nodes of each set's tree begin.
@@ -85,11 +110,10 @@ std::vector<cl_int> first_nodes(const Blocks& blocks) {
   return nodes;
 }
 
-void frame(Workspace& work, Round& round) {
+void frame(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   const Blocks& blocks = round.blocks;
   round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
   Arena::Scope scope(work.scratch());
-  const auto boxes = boxes_of_sets(work, round);
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
   work.runtime.map(blocks.count, kernels::frame_blocks{.sets = blocks.sets,
                                                        .is_merged = round.is_merged,
@@ -98,9 +122,12 @@ void frame(Workspace& work, Round& round) {
                                                        .nodes = blocks.device_nodes,
                                                        .scale = blocks.scale,
                                                        .solved = round.rings.solved,
-                                                       .boxes = boxes,
+                                                       .set_boxes = boxes.places,
+                                                       .boxes = boxes.boxes,
                                                        .edges = round.rings.edges,
                                                        .vertex_edge = round.rings.vertex_edge,
+                                                       .vertices = round.vertices,
+                                                       .hull_next = emitted.hull_next,
                                                        .frames = round.frames});
 }
 
@@ -128,7 +155,7 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
 }
 
 // Emits what is final of a round's triangulations.
-void emit(Workspace& work, Round& round, const Emitted& emitted) {
+void emit(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   host::Runtime& runtime = work.runtime;
   const Blocks& blocks = round.blocks;
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
@@ -137,7 +164,7 @@ void emit(Workspace& work, Round& round, const Emitted& emitted) {
                                                           .listed = blocks.source,
                                                           .listed_vertices = round.open.vertices,
                                                           .vertices = round.vertices});
-  frame(work, round);
+  frame(work, round, boxes, emitted);
   launch_emission<kernels::emit_triangles>(work, round, emitted);
   launch_emission<kernels::emit_unsure>(work, round, emitted);
   if (emitted.links.memory() == nullptr) return;
@@ -151,9 +178,8 @@ void emit(Workspace& work, Round& round, const Emitted& emitted) {
                                                                .links = emitted.links});
 }
 
-// Finds the points around which something is missing after a round. Waits once, also for the numbers in the
-// round's rings.
-void find_open(Workspace& work, Arena& persistent, Round& round, const Emitted& emitted, OpenPoints& next) {
+// Finds the points around which something is missing after a round. Waits once.
+void find_open(Workspace& work, Arena& persistent, const Round& round, OpenPoints& next) {
   host::Runtime& runtime = work.runtime;
   const Blocks& blocks = round.blocks;
   Arena::Scope scope(work.scratch());
@@ -161,7 +187,6 @@ void find_open(Workspace& work, Arena& persistent, Round& round, const Emitted& 
   const host::Runtime::Settled settled(runtime);
   const auto counts = work.scratch().allocate<cl_uint2>(blocks.points + 1);
   runtime.map(blocks.points, kernels::count_open{.is_first = round.is_first,
-                                                 .is_merged = round.is_merged,
                                                  .sets = blocks.sets,
                                                  .blocks = blocks.count,
                                                  .set_blocks = blocks.device_set_blocks,
@@ -174,15 +199,13 @@ void find_open(Workspace& work, Arena& persistent, Round& round, const Emitted& 
                                                  .open_offsets = round.open.offsets_of_edges,
                                                  .open_edges = round.open.edges,
                                                  .states = round.states,
-                                                 .hull_next = emitted.hull_next,
                                                  .counts = counts});
   host::exclusive_scan(runtime, counts, blocks.points, counts);
   const auto device_sizes = work.scratch().allocate<cl_uint2>(sizes.size());
   const auto set_points = runtime.upload(work.scratch(), integers(round.open.offsets));
   runtime.map(sizes.size(),
               kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
-  runtime.read_later(device_sizes, 0, sizes.size(), sizes.data());
-  await_rings(work, blocks, round.rings);
+  runtime.read(device_sizes, 0, sizes.size(), sizes.data());
   next.offsets.clear();
   for (const cl_uint2& size : sizes) next.offsets.push_back(size.s[0]);
   if (next.count() == 0) return;
@@ -213,8 +236,8 @@ class Results {
     hull_places_ = work.scratch().allocate<cl_uint>(n_ + 1);
   }
 
-  // Waits once.
-  MeshSizes sizes(const std::vector<std::size_t>& vertices) {
+  // Waits once, also for the numbers of the distinct points of the first round's blocks.
+  MeshSizes sizes(const std::vector<cl_int>& set_blocks, const std::vector<cl_int>& distinct) {
     host::Runtime& runtime = work_.runtime;
     std::vector<cl_uint2> found(sets_ + 1);
     const host::Runtime::Settled settled(runtime);
@@ -234,9 +257,14 @@ class Results {
     for (std::size_t s = 0; s <= sets_; ++s) {
       sizes.triangle_offsets.push_back(found[s].s[0]);
       sizes.hull_offsets.push_back(found[s].s[1]);
-      if (s > 0) check_euler(sizes, s - 1, vertices[s - 1]);
     }
-    for (const std::size_t count : vertices) sizes.vertices += count;
+    for (std::size_t s = 0; s < sets_; ++s) {
+      const auto first = distinct.begin();
+      const std::size_t vertices =
+          std::accumulate(first + set_blocks[s], first + set_blocks[s + 1], std::size_t{0});
+      check_euler(sizes, s, vertices);
+      sizes.vertices += vertices;
+    }
     return sizes;
   }
 
@@ -319,15 +347,15 @@ Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
   return emitted;
 }
 
-// The distinct points of each set.
-std::vector<std::size_t> vertices_of_sets(const Blocks& blocks, const Rings& rings) {
-  std::vector<std::size_t> counts;
-  for (std::size_t s = 0; s < blocks.sets; ++s) {
-    std::size_t count = 0;
-    for (cl_int b = blocks.set_blocks[s]; b < blocks.set_blocks[s + 1]; ++b) count += rings.distinct[b];
-    counts.push_back(count);
+// Blocks of the points that go on. Only merges and blocks that are solved one by one need to know sizes.
+Blocks blocks_of(Workspace& work, const OpenPoints& open, bool is_merged) {
+  const Tuning& tuning = tuning_of(work.runtime);
+  if (is_merged) {
+    return make_blocks_of(work, open.points, open.offsets, tuning.block_points, Cuts::at_medians,
+                          BlockSizes::read);
   }
-  return counts;
+  return make_blocks_of(work, open.points, open.offsets, tuning.round_points, Cuts::in_gaps,
+                        tuning.blocks_in_parallel != 0 ? BlockSizes::guessed : BlockSizes::read);
 }
 
 }  // namespace
@@ -335,12 +363,13 @@ std::vector<std::size_t> vertices_of_sets(const Blocks& blocks, const Rings& rin
 Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
                    Exchange& exchange, statistics::Phases& phases) {
   Workspace work{runtime, persistent};
+  Numbers numbers;
   const host::Runtime::Settled settled(runtime);
   const Tuning& tuning = tuning_of(runtime);
 
   phases.progress("blocks", 0);
   const auto representatives = exchange.representatives();
-  Blocks blocks = [&] {
+  const Blocks first_blocks = [&] {
     Arena::Scope points_scope(runtime.arena());
     return make_blocks(work, exchange.points(), offsets, representatives);
   }();
@@ -348,33 +377,35 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
 
   double done = kBlocksMade;
   phases.progress("triangulate", done);
-  const Emitted emitted = make_emitted(work, blocks, exchange.wants_links());
+  const Emitted emitted = make_emitted(work, first_blocks, exchange.wants_links());
   // What a round needs is given back when it ends.
   Workspace rounds_work{runtime, runtime.arena(), work.bounds};
+  SetBoxes boxes;
   OpenPoints lists[2];
   lists[0].offsets = offsets;
-  std::vector<std::size_t> vertices;
   Outcome outcome;
   bool is_merged = false;
   for (std::size_t r = 0; lists[r % 2].count() > 0; ++r) {
     const OpenPoints& open = lists[r % 2];
     OpenPoints& next = lists[(r + 1) % 2];
     Arena::Scope scope(work.scratch());
-    if (r > 0) {
-      blocks = make_blocks_of(rounds_work, open.points, open.offsets,
-                              is_merged ? tuning.block_points : tuning.round_points,
-                              is_merged ? Cuts::at_medians : Cuts::in_gaps);
-    }
+    std::optional<Blocks> later_blocks;
+    if (r > 0) later_blocks = blocks_of(rounds_work, open, is_merged);
+    const Blocks& blocks = r > 0 ? *later_blocks : first_blocks;
     Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives)};
     if (is_merged) merge(rounds_work, blocks, round.rings);
     // Coarse coordinates have no ties: merges break them.
     if (work.bounds.circle != 0.0) make_fans(rounds_work, blocks, round.rings);
-    if (r == 0) exchange.while_device_computes();
-    emit(rounds_work, round, emitted);
-    find_open(rounds_work, persistent, round, emitted, next);
-    if (r == 0) vertices = vertices_of_sets(blocks, round.rings);
+    if (r == 0) {
+      exchange.while_device_computes();
+      boxes = boxes_of_sets(work, blocks, round.rings);
+    }
+    emit(rounds_work, round, boxes, emitted);
+    outcome.undecided += numbers.undecided();  // of the round before
+    numbers.read_later(runtime, blocks, round.rings, r == 0);
+    next.offsets.assign(blocks.sets + 1, 0);
+    if (!round.is_last()) find_open(rounds_work, persistent, round, next);
     ++outcome.rounds;
-    outcome.undecided += round.rings.undecided;
     outcome.round_points += open.count();
     if (is_merged) outcome.merged_points = open.count();
     is_merged = 100 * next.count() > tuning.merge_from_percent * open.count() || next.count() == open.count();
@@ -386,7 +417,8 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
 
   phases.progress("output", kBlocksMerged);
   Results results(work, emitted, offsets);
-  outcome.sizes = results.sizes(vertices);
+  outcome.sizes = results.sizes(first_blocks.set_blocks, numbers.distinct);
+  outcome.undecided += numbers.undecided();
   phases.progress("output", kMeshCounted);
   results.write(outcome.sizes, exchange.mesh(outcome.sizes));
   return outcome;

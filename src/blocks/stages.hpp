@@ -40,7 +40,8 @@ constexpr double kTrianglesWritten = 0.95;
 /// level of merges, unless milestones are null.
 Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
              Milestones* milestones = nullptr);
-/// The first part of divide: triangulates each block.
+/// The first part of divide: triangulates each block. If the host has not read the blocks' sizes, those that
+/// are larger than expected are left as blocks without vertices; that takes `blocks_in_parallel`.
 Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
             Milestones* milestones = nullptr);
 /// The second part of divide: merges the triangulations of blocks.
@@ -51,9 +52,10 @@ void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
 
 /// Blocks of points, of which the host knows how many there are at most.
 struct PointBlocks {
-  std::size_t count = 0;     ///< number of blocks; they may be empty
-  std::size_t points = 0;    ///< number of places, of which the blocks have all or the first
-  std::size_t largest = 0;   ///< an upper bound of the number of points of a block
+  std::size_t count = 0;   ///< number of blocks; they may be empty
+  std::size_t points = 0;  ///< number of places, of which the blocks have all or the first
+  /// Blocks of more points are left as if all their places were those of duplicates: without vertices.
+  std::size_t largest = 0;
   Buffer<cl_int> offsets{};  ///< count + 1: the first point of each block
   /// As in Blocks.
   Buffer<cl_double2> vertices{};
@@ -64,7 +66,8 @@ struct PointBlocks {
 /// halves of all blocks at once. rings: with all its arrays, of the sizes that divide gives them; the account
 /// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
 /// wait. Scratch memory: kParallelBytesPerPoint. Makes 4 launches and 2 or 3 per halving of the largest
-/// block, and some more if blocks may have more than large_blocks times block_points points.
+/// block, and some more if blocks may have more than large_blocks times block_points points, or if most are
+/// tiny.
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings);
 constexpr std::size_t kParallelBytesPerPoint = 76;

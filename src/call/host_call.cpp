@@ -62,10 +62,10 @@ class HostExchange : public blocks::Exchange {
         wants_links_(options.neighbors || options.halfedges) {}
 
   Buffer<cl_double> points() override {
-    if (points_.wide != nullptr) return runtime_.view(points_.wide, 2 * n_);
+    if (points_.wide != nullptr) return runtime_.view_later(points_.wide, 2 * n_);
     const auto wide = runtime_.arena().allocate<cl_double>(2 * n_);
     Arena::Scope scope(runtime_.arena());
-    points::widen(runtime_, runtime_.view(points_.narrow, 2 * n_), 0, n_, wide);
+    points::widen(runtime_, runtime_.view_later(points_.narrow, 2 * n_), 0, n_, wide);
     return wide;
   }
 

@@ -88,11 +88,14 @@ Plan begin_blocks(Workspace& work, const std::vector<std::size_t>& offsets, std:
 
 // coordinates: x0 y0 x1 y1 ..., to be multiplied by blocks.scale.
 void fill_blocks(Workspace& work, const Plan& plan, const Buffer<cl_double>& coordinates,
-                 const std::vector<std::size_t>& offsets, Cuts cuts, const Buffer<cl_int>& representatives,
-                 Blocks& blocks) {
+                 const std::vector<std::size_t>& offsets, Cuts cuts, BlockSizes sizes,
+                 const Buffer<cl_int>& representatives, Blocks& blocks) {
   make_trees(work, plan, coordinates, cuts, blocks);
-  const bool by_tiles = work.runtime.sizes().tile_group != 0;
-  (by_tiles ? move_by_tiles : move_by_chunks)(work, plan, offsets, coordinates, representatives, blocks);
+  if (work.runtime.sizes().tile_group != 0) {
+    move_by_tiles(work, plan, offsets, coordinates, sizes, representatives, blocks);
+  } else {
+    move_by_chunks(work, plan, offsets, coordinates, representatives, blocks);
+  }
 }
 
 }  // namespace
@@ -107,20 +110,23 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
   const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
   work.bounds = uniform.scaling.bounds;
   blocks.scale = uniform.scaling.powers();
-  fill_blocks(work, plan, uniform.coordinates, offsets, Cuts::at_medians, representatives, blocks);
+  fill_blocks(work, plan, uniform.coordinates, offsets, Cuts::at_medians, BlockSizes::read, representatives,
+              blocks);
   return blocks;
 }
 
 Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
-                      const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts) {
+                      const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts,
+                      BlockSizes sizes) {
   Blocks blocks;
   const host::Runtime::Settled settled(work.runtime);
   // A set of two blocks would need one more round than a single block.
-  const Plan plan = begin_blocks(work, offsets, block_points, 2 * block_points, blocks);
+  blocks.largest = 2 * block_points;
+  const Plan plan = begin_blocks(work, offsets, block_points, blocks.largest, blocks);
   Arena::Scope scope(work.scratch());
   // Not needed: these points have no duplicates.
   const auto representatives = work.scratch().allocate<cl_int>(blocks.points);
-  fill_blocks(work, plan, points.as<cl_double>(), offsets, cuts, representatives, blocks);
+  fill_blocks(work, plan, points.as<cl_double>(), offsets, cuts, sizes, representatives, blocks);
   return blocks;
 }
 

@@ -30,8 +30,11 @@ struct Blocks {
   std::size_t sets = 0;
   std::size_t points = 0;
   std::size_t count = 0;
-  std::vector<cl_int> set_blocks;           ///< sets + 1: the first block of each set
-  std::vector<cl_int> offsets;              ///< count + 1: the first point of each block
+  std::vector<cl_int> set_blocks;  ///< sets + 1: the first block of each set
+  /// count + 1: the first point of each block. Empty if the host has not read them; then blocks of more than
+  /// `largest` points are left unsolved.
+  std::vector<cl_int> offsets;
+  std::size_t largest = 0;
   std::vector<kernel::block_merge> merges;  ///< from the leaves to the root
   /// Merges [level_ends[l - 1], level_ends[l]) are independent of each other.
   std::vector<std::size_t> level_ends;
@@ -54,10 +57,15 @@ Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::v
 /// Where trees cut: at medians, or in gaps, which suits points along the cuts of an earlier tree.
 enum class Cuts { at_medians, in_gaps };
 
+/// Whether the host waits for the sizes of blocks.
+enum class BlockSizes { read, guessed };
+
 /// Distributes points that are scaled and checked already to blocks of at most so many points, as a rule.
-/// Their sources are their places in `points`. Sets of up to twice as many are one block. On devices without
-/// groups for tiles, all cuts are at medians. O(n log n).
+/// Their sources are their places in `points`. Sets of up to twice as many are one block, and sizes are
+/// guessed to be at most as large. On devices without groups for tiles, all cuts are at medians and all sizes
+/// are read. O(n log n).
 Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
-                      const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts);
+                      const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts,
+                      BlockSizes sizes);
 
 }  // namespace flaunay::points

@@ -1,6 +1,7 @@
 #include "points/inspect.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "launchers/points/inspect.cl.hpp"
 #include "launchers/points/inspect_tiles.cl.hpp"
@@ -43,7 +44,7 @@ Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points
   host::Arena::Scope scope(runtime.arena());
   Magnitudes magnitudes;
   const auto account = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS);
-  runtime.write(account, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
+  runtime.write_kept(account, std::vector<cl_int>{magnitudes.largest, magnitudes.lowest, magnitudes.bad});
   const host::Sizes& sizes = runtime.sizes();
   if (sizes.tile_group != 0) {
     const std::size_t workers = std::min(n, sizes.tile_group * sizes.scan_groups);
@@ -64,7 +65,9 @@ std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<
   if (sets == 0) return magnitudes;
   static_assert(sizeof(Magnitudes) == kernel::INSPECT_NUMBERS * sizeof(cl_int));
   const auto accounts = runtime.arena().allocate<cl_int>(kernel::INSPECT_NUMBERS * sets);
-  runtime.write(accounts, 0, kernel::INSPECT_NUMBERS * sets, &magnitudes.data()->largest);
+  std::vector<cl_int> none;
+  for (const Magnitudes& each : magnitudes) none.insert(none.end(), {each.largest, each.lowest, each.bad});
+  runtime.write_kept(accounts, std::move(none));
   runtime.chunks(n, runtime.sizes().chunk(n),
                  kernels::inspect_sets{.sets = sets,
                                        .offsets = runtime.upload(runtime.arena(), integers(offsets)),

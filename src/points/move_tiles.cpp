@@ -126,17 +126,19 @@ void sort_into_blocks(Workspace& work, const Plan& plan, const std::vector<std::
   work.runtime.map(
       blocks.count + 1,
       kernels::block_starts{.points = blocks.points, .blocks = sorted, .offsets = blocks.device_offsets});
-  work.runtime.read(blocks.device_offsets, 0, blocks.count + 1, blocks.offsets.data());
 }
 
 }  // namespace
 
 void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
-                   const Buffer<cl_double>& input, const Buffer<cl_int>& representatives, Blocks& blocks) {
+                   const Buffer<cl_double>& input, BlockSizes sizes, const Buffer<cl_int>& representatives,
+                   Blocks& blocks) {
   Arena::Scope scope(work.scratch());
-  blocks.offsets.resize(blocks.count + 1);
   if (!plan.cut.empty()) {
     sort_into_blocks(work, plan, offsets, input, representatives, blocks);
+    if (sizes == BlockSizes::guessed) return;
+    blocks.offsets.resize(blocks.count + 1);
+    work.runtime.read(blocks.device_offsets, 0, blocks.count + 1, blocks.offsets.data());
     return;
   }
   work.runtime.map(blocks.points, kernels::copy_points{.input = input,
@@ -145,7 +147,7 @@ void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::siz
                                                        .source = blocks.source,
                                                        .representatives = representatives});
   // Each set is one block.
-  std::copy(offsets.begin(), offsets.end(), blocks.offsets.begin());
+  blocks.offsets.assign(offsets.begin(), offsets.end());
   work.runtime.write_kept(blocks.device_offsets, blocks.offsets);
 }
 

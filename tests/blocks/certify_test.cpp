@@ -209,6 +209,26 @@ TEST(SmallCertify, TrianglesWellInside) {
   }
 }
 
+/// Points a few units in the last place apart are told as well as others: what counts is how far they are
+/// from each other, not from the origin.
+TEST(SmallCertify, PointsFarFromTheOrigin) {
+  FixtureRandom random(5);
+  Sure circles, half_planes;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double far = trial % 2 == 0 ? 1 : -0x1p30, unit = trial % 2 == 0 ? 0x1p-52 : 0x1p-22;
+    std::vector<double2> points;
+    for (int k = 0; k < 3; ++k) {
+      const double x = far + unit * static_cast<double>(random.integer(0, 50));
+      points.push_back({x, far - unit * static_cast<double>(random.integer(0, 50))});
+    }
+    check(frame_around(points, 100 * unit, random), points[0], points[1], points[2], circles, half_planes);
+    if (::testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(circles.said, 2000u);
+  // Many a side touches a circle of such points.
+  EXPECT_GT(100 * circles.said, 90 * circles.free);
+}
+
 TEST(SmallCertify, WithoutOtherBlocksAllIsFinal) {
   block_frame frame{};
   frame.rectangle = {{-kInfinity, -kInfinity}, {kInfinity, kInfinity}};

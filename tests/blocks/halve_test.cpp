@@ -201,6 +201,27 @@ TEST(Halve, SizesAboutTilesAndGroups) {
   });
 }
 
+/// Blocks of which a work-item does one each, alone or among some that are larger, or large.
+TEST(SmallHalve, TinyBlocks) {
+  with_groups(30, [](Runtime& runtime) {
+    FixtureRandom random(35);
+    for (const std::size_t others : {0, 1, 3}) {
+      for (const std::int64_t width : {2, 4, 1000}) {
+        BlockPoints points;
+        for (std::size_t b = 0; b < 120; ++b) {
+          const auto size = static_cast<std::size_t>(random.integer(0, others == 0 ? 8 : 5));
+          points.add(coarse(size, width, width, random));
+          if (others > b / 40 && b % 40 == 17)
+            points.add(coarse(9 + 11 * (b / 40) * (b / 40), width, 30, random));
+        }
+        if (others == 3) points.add_places_behind(5);
+        check_halve(runtime, points);
+        if (HasFatalFailure()) return;
+      }
+    }
+  });
+}
+
 /// The sort of large blocks pass by pass, beside a block that is not large.
 TEST(Halve, RunsOfLargeBlocks) {
   with_groups(50, [](Runtime& runtime) {
