@@ -75,7 +75,9 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
   memory.odd.reserve(n * kStateBytesPerPoint);
   runtime.arena().reserve(n *
                           (ends_in_blocks(wanted) ? kScratchBytesPerPointOfBlocks : kScratchBytesPerPoint));
-  work.hull = options.hull;
+  // Operations are counted by the paper's quickhull.
+  const bool in_rounds = options.count || options.hull != Hull::prune;
+  work.hull = in_rounds ? options.hull : Hull::monotone_chain;
   work.broken = persistent.allocate<cl_int>(1);
   work.list_length = persistent.allocate<cl_uint>(1);
   work.undecided = persistent.allocate<cl_uint>(1);
