@@ -44,6 +44,7 @@ Level thinned(Workspace& work, const Level& level, Arena& arena) {
   thin.point_regions = arena.allocate<cl_int>(thin.points);
   thin.point_offsets = arena.allocate<cl_int>(level.regions + 1);
   thin.projections = arena.allocate<cl_double2>(thin.points);
+  work.runtime.note_elements(kernel::BUCKET);
   work.runtime.map(thin.points, kernels::thin_lists{.regions = level.regions,
                                                     .offsets = level.point_offsets,
                                                     .x_list = level.x_list,
@@ -145,6 +146,7 @@ KeptCorners sorted_corners(Workspace& work, const PointTable& table, const Level
 
 void join(Workspace& work, const Level& level, const Paths& paths, const Kept& kept,
           const KeptCorners& corners, const Sequences& joined) {
+  work.runtime.note_elements(1 + joined.room / tuning_of(work.runtime).list_workers);
   run_list(work, kernels::join_sequences{.regions_count = level.regions,
                                          .before = kept.before,
                                          .begins = joined.begins,
@@ -228,6 +230,8 @@ void chain_hulls(Workspace& work, const PointTable& table, const Level& level, c
 Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
                   LevelStatistics& statistics) {
   host::Runtime& runtime = work.runtime;
+  Arena& scratch = work.scratch();
+  // Until the next level is made, its arena holds what is needed no longer than this.
   Arena& waiting = *work.children;
   Arena::Scope waiting_scope(waiting);
   std::vector<Level> lists{level};
@@ -235,15 +239,20 @@ Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, 
     lists.push_back(thinned(work, lists.back(), waiting));
     statistics.candidates += lists.back().points;
   } while (lists.back().points > kernel::MANY_CANDIDATES * level.regions);
-  ChordPaths chords = hulls_of(work, table, level, sequences_of(work, table, lists.back(), waiting), waiting);
-
+  ChordPaths chords;
+  {
+    Arena::Scope scope(waiting);
+    const Sequences between_ends = sequences_of(work, table, lists.back(), waiting);
+    chords = hulls_of(work, table, level, between_ends, scratch);
+  }
   for (std::size_t t = lists.size() - 2; t > 0; --t) {
+    Arena::Scope scope(waiting);
     const Level& list = lists[t];
     const auto list_flags = waiting.allocate<cl_uchar>(list.points);
     const Sequences joined = allocate_sequences(waiting, level.regions, list.points + chords.paths.size);
     const Kept kept = keep(work, table, list, chords, list_flags, joined, waiting);
     join(work, list, chords.paths, kept, allocate_corners(waiting, 0), joined);
-    chords = hulls_of(work, table, level, joined, waiting);
+    chords = hulls_of(work, table, level, joined, scratch);
   }
 
   Sequences joined = allocate_sequences(waiting, level.regions, 0);
@@ -253,11 +262,14 @@ Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, 
   joined.room = facts[kernel::KEPT_ALL];
   joined.ids = waiting.allocate<cl_int>(joined.room);
   joined.projections = waiting.allocate<cl_double2>(joined.room);
-  const KeptCorners corners = sorted_corners(work, table, level, kept, facts[kernel::KEPT_CORNERS],
-                                             facts[kernel::KEPT_CORNERS_MOST], waiting);
-  join(work, level, chords.paths, kept, corners, joined);
   statistics.survivors = joined.room;
-  return hulls_of(work, table, level, joined, work.scratch()).paths;
+  {
+    Arena::Scope scope(scratch);
+    const KeptCorners corners = sorted_corners(work, table, level, kept, facts[kernel::KEPT_CORNERS],
+                                               facts[kernel::KEPT_CORNERS_MOST], scratch);
+    join(work, level, chords.paths, kept, corners, joined);
+  }
+  return hulls_of(work, table, level, joined, scratch).paths;
 }
 
 }  // namespace flaunay::flattened

@@ -21,6 +21,7 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
   work.add_depth(Component::cut, alternate_axis < 0 ? 3 : 0);
   work.add_depth(Component::hull, log2_ceiling(level.corners));
   const std::size_t group = region_group(work, level.corners / level.regions);
+  work.runtime.note_elements(1 + level.corners / level.regions / group);
   work.runtime.launch(level.regions * group, group,
                       kernels::find_ends{.regions = level.regions,
                                          .corner_offsets = level.corner_offsets,

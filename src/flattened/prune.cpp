@@ -82,6 +82,7 @@ void hold_against(Workspace& work, const PointTable& table, const Level& level, 
                   const Buffer<cl_double>& band, bool keep_on, bool rough, const Buffer<cl_int>& ids,
                   const Pruned& pruned) {
   host::Runtime& runtime = work.runtime;
+  runtime.note_elements(kernel::BUCKET);
   runtime.map((level.points + kernel::BUCKET - 1) / kernel::BUCKET,
               kernels::prune_points{.elements = level.points,
                                     .keep_on = keep_on,

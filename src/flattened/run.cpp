@@ -105,9 +105,11 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
 }
 
 void Call::end_levels(std::size_t done, std::size_t wanted) {
-  check_invariants(work);
   auto& levels = work.levels;
-  const std::vector<cl_int> largest = read_all(work, work.largest, levels.size());
+  std::vector<cl_int> largest(levels.size());
+  const host::Runtime::Settled settled(work.runtime);
+  work.runtime.read_later(work.largest, 0, levels.size(), largest.data());
+  check_invariants(work);
   for (std::size_t l = 0; l < levels.size(); ++l) {
     levels[l].largest_region = static_cast<std::size_t>(largest[l]);
   }
