@@ -14,8 +14,8 @@
 // 2. hull_chains makes the hull of each region's sequence. A work-group takes a region; each work-item makes the hull
 // of
 //    consecutive points by a monotone chain, and neighbouring hulls are joined along their common tangent, in steps of
-//    which each halves their number. A work-item finds the tangent by a binary search for its left end, in which each
-//    probe is a binary search for the right one.
+//    which each halves their number. The tangent is found by a search for its left end, in which each probe is a binary
+//    search for the right one; the work-items of both hulls take a probe each, and one of them goes on alone.
 // 3. A scan (scan.cl) of the hulls' sizes tells where paths begin, and write_paths writes them.
 //
 // The kernels but hull_chains and write_paths have one work-item per element, or share elements whose number only the
@@ -368,31 +368,46 @@ static inline int tangent_from(hull_frame* frame, sequence s, int id, double2 p,
   return low;
 }
 
-// What is left of two hulls when they are joined: [left, x) of the first one and [y, right_end) of the second.
-static inline int2 joined(hull_frame* frame, sequence s, int left, int left_end, int right, int right_end COUNTERS) {
-  if (left < left_end && right < right_end && s.projections[left_end - 1].y == s.projections[right].y) {
-    if (is_lower_of_column(frame, s.ids[right], s.ids[left_end - 1])) {
-      --left_end;
+// Two neighbouring hulls [left, left_end) and [right, right_end).
+typedef struct {
+  int left, left_end, right, right_end;
+} hull_pair;
+
+// The same without one of two vertices of one u that would stand side by side: the higher one.
+static inline hull_pair without_column(const hull_frame* frame, sequence s, hull_pair pair) {
+  if (pair.left < pair.left_end && pair.right < pair.right_end &&
+      s.projections[pair.left_end - 1].y == s.projections[pair.right].y) {
+    if (is_lower_of_column(frame, s.ids[pair.right], s.ids[pair.left_end - 1])) {
+      --pair.left_end;
     } else {
-      ++right;
+      ++pair.right;
     }
   }
-  if (left == left_end || right == right_end) return (int2)(left_end, right);
-  // The first of the left hull whose successor is not below the tangent from it.
-  int low = left, high = left_end - 1;
+  return pair;
+}
+
+// Whether vertex i of the left hull is the left end of the common tangent or behind it: the tangent from there to the
+// right hull is not above its successor.
+static inline int is_past(hull_frame* frame, sequence s, int i, hull_pair pair COUNTERS) {
+  if (i == pair.left_end - 1) return 1;
+  const int id = s.ids[i];
+  const double2 p = s.projections[i];
+  const int touched = tangent_from(frame, s, id, p, pair.right, pair.right_end WITH_COUNTERS);
+  return below_chord(frame, id, p, s.ids[touched], s.projections[touched], s.ids[i + 1],
+                     s.projections[i + 1] WITH_COUNTERS) <= 0;
+}
+
+// The first such vertex of [low, high]; high is one.
+static inline int first_past(hull_frame* frame, sequence s, int low, int high, hull_pair pair COUNTERS) {
   while (low < high) {
     const int middle = low + (high - low) / 2;
-    const int id = s.ids[middle];
-    const double2 p = s.projections[middle];
-    const int touched = tangent_from(frame, s, id, p, right, right_end WITH_COUNTERS);
-    if (below_chord(frame, id, p, s.ids[touched], s.projections[touched], s.ids[middle + 1],
-                    s.projections[middle + 1] WITH_COUNTERS) > 0) {
-      low = middle + 1;
-    } else {
+    if (is_past(frame, s, middle, pair WITH_COUNTERS)) {
       high = middle;
+    } else {
+      low = middle + 1;
     }
   }
-  return (int2)(low + 1, tangent_from(frame, s, s.ids[low], s.projections[low], right, right_end WITH_COUNTERS));
+  return low;
 }
 
 // A work-group takes a region. The sequences become the hulls; other_ids and other_projections are as large as they
@@ -402,6 +417,7 @@ kernel void hull_chains(int regions, double bound, global const int* restrict be
                         global double2* projections, global int* other_ids, global double2* other_projections,
                         global uint* restrict sizes, global volatile uint* restrict undecided COUNTERS) {
   local int hull_size[LARGEST_TILE_GROUP], kept_left[LARGEST_TILE_GROUP], first_right[LARGEST_TILE_GROUP];
+  local int past[LARGEST_TILE_GROUP];
   const int r = get_group_id(0), me = get_local_id(0), group = get_local_size(0);
   const int begin = r < regions ? begins[r] : 0;
   const int count = r < regions ? begins[r + 1] - begin : 0;
@@ -422,17 +438,40 @@ kernel void hull_chains(int regions, double bound, global const int* restrict be
     // The hulls of pieces [first, second) and [second, second + runs) are joined by the work-items of these pieces.
     const int first = me - me % (2 * runs);
     const int second = first + runs;
-    const int left = begin + min(count, first * piece);
-    if (me == first) {
-      const int right = begin + min(count, second * piece);
-      const int right_size = second < group ? hull_size[second] : 0;
-      const int2 kept = joined(&frame, now, left, left + hull_size[first], right, right + right_size WITH_COUNTERS);
-      kept_left[first] = kept.x - left;
-      first_right[first] = kept.y;
-      hull_size[first] = kept.x - left + right + right_size - kept.y;
+    const int items = min(2 * runs, group - first);
+    hull_pair pair;
+    pair.left = begin + min(count, first * piece);
+    pair.left_end = pair.left + hull_size[first];
+    pair.right = begin + min(count, second * piece);
+    pair.right_end = pair.right + (second < group ? hull_size[second] : 0);
+    pair = without_column(&frame, now, pair);
+    // Each work-item looks at one vertex of the left hull. The one that finds the first that is past searches before
+    // it.
+    const int left_size = pair.left_end - pair.left;
+    const int has_tangent = left_size > 0 && pair.right < pair.right_end;
+    const int share = (left_size + items - 1) / items;
+    const int low = pair.left + min((me - first) * share, left_size);
+    const int high = min(low + share, pair.left_end) - 1;
+    past[me] = !has_tangent || low > high || is_past(&frame, now, high, pair WITH_COUNTERS);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (past[me] && (me == first || !past[me - 1])) {
+      int kept_end = pair.left_end, kept_begin = pair.right;
+      if (has_tangent) {
+        const int end = first_past(&frame, now, low, high, pair WITH_COUNTERS);
+        kept_begin =
+            tangent_from(&frame, now, now.ids[end], now.projections[end], pair.right, pair.right_end WITH_COUNTERS);
+        kept_end = end + 1;
+      }
+      kept_left[first] = kept_end - pair.left;
+      first_right[first] = kept_begin;
+      hull_size[first] = kept_end - pair.left + pair.right_end - kept_begin;
+    } else {
+      // The others wait.
+      TALLY(frame, steps, (search_comparisons(share) + 1) * (search_comparisons(pair.right_end - pair.right) + 1));
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (int k = me - first; k < hull_size[first]; k += min(2 * runs, group - first)) {
+    const int left = pair.left;
+    for (int k = me - first; k < hull_size[first]; k += items) {
       const int from = k < kept_left[first] ? left + k : first_right[first] + k - kept_left[first];
       then.ids[left + k] = now.ids[from];
       then.projections[left + k] = now.projections[from];
