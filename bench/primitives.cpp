@@ -12,8 +12,7 @@
 #include "command.hpp"
 #include "host/device.hpp"
 #include "host/vector_operations.hpp"
-#include "launchers/flattened/cut.cl.hpp"
-#include "shared/frame.h"
+#include "launchers/flattened/quickhull.cl.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::bench {
@@ -179,7 +178,7 @@ void append_segments(std::vector<std::size_t>& lengths, std::size_t total, std::
   for (; total > 0; total -= std::min(total, length)) lengths.push_back(std::min(total, length));
 }
 
-/// Random points as the corners of regions, with cuts through the middle.
+/// Random points, of which quickhull's balanced rounds choose a pair of each segment.
 void add_segmented(Operations& all, Runtime& runtime, std::size_t n, std::mt19937_64& random) {
   std::vector<std::size_t> one, tens, mixture;
   append_segments(one, n, n);
@@ -189,36 +188,32 @@ void add_segmented(Operations& all, Runtime& runtime, std::size_t n, std::mt1993
   append_segments(mixture, n - n / 2 - n / 4, 10);
 
   std::vector<cl_double2> coordinates(n);
-  std::vector<cl_int> vertices(3 * n);
   std::uniform_real_distribution<double> between;
   for (std::size_t i = 0; i < n; ++i) {
     coordinates[i] = {{between(random), between(random)}};
-    vertices[3 * i + 1] = static_cast<cl_int>(i);
   }
   const auto points = upload(runtime, coordinates);
-  const auto corners = upload(runtime, vertices);
+  const auto flags = upload(runtime, std::vector<cl_uchar>(n, 1));
   for (const auto& [name, lengths] :
        {std::pair{"one segment", one}, {"segments of 10", tens}, {"mixture", mixture}}) {
     const std::size_t segments = lengths.size();
-    std::vector<cl_int> of_elements;
+    std::vector<cl_int> of_elements, begins;
     for (std::size_t s = 0; s < segments; ++s) {
+      begins.push_back(static_cast<cl_int>(of_elements.size()));
       of_elements.insert(of_elements.end(), lengths[s], static_cast<cl_int>(s));
     }
     const auto segment = upload(runtime, of_elements);
-    const auto axis = upload(runtime, std::vector<cl_int>(segments, kernel::AXIS_X));
-    const auto cut = upload(runtime, std::vector<cl_double>(segments, 0.5));
+    const auto first = upload(runtime, begins);
     const auto found = runtime.arena().allocate<cl_int>(segments);
     all.push_back({"segmented_arg_reduce", name, n, segments,
-                   32 * static_cast<double>(n) + 16 * static_cast<double>(segments),
+                   25 * static_cast<double>(n) + 8 * static_cast<double>(segments),
                    [=, &runtime] {
                      host::segmented_arg_reduce(runtime, n,
-                                                kernels::extreme_vertices{.segment = segment,
-                                                                          .result = found,
-                                                                          .direction = 1,
-                                                                          .corners = corners,
-                                                                          .axis = axis,
-                                                                          .cut = cut,
-                                                                          .points = points});
+                                                kernels::random_pairs{.segment = segment,
+                                                                      .result = found,
+                                                                      .first = first,
+                                                                      .flags = flags,
+                                                                      .projections = points});
                    },
                    [&runtime, found, segments] { runtime.fill(found, segments, cl_int{-1}); }});
   }

@@ -3,16 +3,15 @@
 // cut_regions is one pass, with one work-item per region. x_list and y_list hold the region's internal points in the
 // two sorted orders, so the median and the quartiles are looked up there. The line goes through the median of the
 // chosen axis. By default that is the axis of the longer interquartile range, which keeps regions round and borders
-// short. extreme_vertices finds one end of the hull by passes of a segmented arg-reduce over the border's corners.
+// short. find_ends finds the ends of the hulls among the border's corners, with one work-group per region.
 
 #include "shared/counting.h"
 #include "shared/hull_height.h"
-#include "shared/segmented_arg_reduce.h"
+#include "shared/limits.h"
 
 kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets,
                         global const int* restrict x_list, global const int* restrict y_list,
                         global const double2* restrict points, global int* restrict axis, global double* restrict cut,
-                        global int* restrict first_end, global int* restrict last_end,
                         global volatile int* restrict largest COUNTERS) {
   const int r = get_global_id(0);
   if (r < n) {
@@ -32,26 +31,50 @@ kernel void cut_regions(int n, int alternate_axis, int level, global const int* 
     const int median = low + count / 2;
     axis[r] = chosen;
     cut[r] = chosen == AXIS_X ? points[x_list[median]].x : points[y_list[median]].y;
-    // For the arg-reductions that find the ends of the hull.
-    first_end[r] = -1;
-    last_end[r] = -1;
   }
 }
 
-// Corner i stands for its vertex.
-#define VERTEX_OF_CORNER(i) corners[3 * (i) + 1]
-
-static inline int before_along(int region, int i, int j, int direction, global const int* restrict axis,
-                               global const double* restrict cut, global const double2* restrict points) {
-  const int a = axis[region];
-  const double2 p = to_frame(points[i], a);
-  const double2 v = to_frame(points[j], a);
+// Whether vertex i comes before vertex j: of smaller u (direction 1) or larger u (-1), the lower one of one u.
+static inline int before_along(int i, int j, int direction, int axis, double cut, global const double2* points) {
+  const double2 p = to_frame(points[i], axis);
+  const double2 v = to_frame(points[j], axis);
   if (p.y != v.y) return direction > 0 ? p.y < v.y : p.y > v.y;
-  return i != j && is_lower(p, v, cut[region], is_planar(a));
+  return i != j && is_lower(p, v, cut, is_planar(axis));
 }
-#define BEFORE_ALONG(region, i, j) before_along(region, i, j, direction, axis, cut, points)
 
-// The vertex of the smallest u (direction 1) or largest u (-1), the lowest of these if there are several.
-SEGMENTED_ARG_REDUCE(extreme_vertices, VERTEX_OF_CORNER, BEFORE_ALONG, int direction,
-                     global const int* restrict corners, global const int* restrict axis,
-                     global const double* restrict cut, global const double2* restrict points)
+// A work-group takes a region. Each work-item walks corners that are a group apart, and the best of them are compared
+// in pairs.
+kernel void find_ends(int regions, global const int* restrict corner_offsets, global const int* restrict corners,
+                      global const int* restrict axis, global const double* restrict cut,
+                      global const double2* restrict points, global int* restrict first_end,
+                      global int* restrict last_end COUNTERS) {
+  local int best[2][LARGEST_TILE_GROUP];
+  const int r = get_group_id(0), me = get_local_id(0), group = get_local_size(0);
+  const int low = r < regions ? corner_offsets[r] : 0;
+  const int high = r < regions ? corner_offsets[r + 1] : 0;
+  const int a = axis[min(r, regions - 1)];
+  const double q = cut[min(r, regions - 1)];
+  for (int end = 0; end < 2; ++end) {
+    int own = -1;
+    for (int c = low + me; c < high; c += group) {
+      const int vertex = corners[3 * c + 1];
+      if (own < 0 || before_along(vertex, own, 1 - 2 * end, a, q, points)) own = vertex;
+    }
+    best[end][me] = own;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int distance = 1; distance < group; distance *= 2) {
+    for (int end = 0; end < 2; ++end) {
+      const int other = me % (2 * distance) == 0 && me + distance < group ? best[end][me + distance] : -1;
+      if (other >= 0 && (best[end][me] < 0 || before_along(other, best[end][me], 1 - 2 * end, a, q, points)))
+        best[end][me] = other;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  if (me == 0 && r < regions) {
+    first_end[r] = best[0][0];
+    last_end[r] = best[1][0];
+    // Each comparison leaves one of two.
+    COUNT(HULL, ARITHMETIC, 2 * (high - low - 1));
+  }
+}

@@ -213,13 +213,14 @@ kernel void corner_counts(int n, global const uchar* restrict codes, global uint
   }
 }
 
-// internal[k] = 1 for a path vertex that was an internal point; it becomes a border vertex.
-kernel void path_internal(int n, global const int* restrict path, global uchar* restrict side,
-                          global uint* restrict internal) {
+// internal[k] = 1 for a path vertex that was an internal point; it becomes a border vertex. n: at least the number of
+// path vertices.
+kernel void path_internal(int n, int regions, global const int* restrict path_offsets, global const int* restrict path,
+                          global uchar* restrict side, global uint* restrict internal) {
   const int k = get_global_id(0);
   if (k < n) {
-    const int id = path[k];
-    const int is_internal = side[id] != SIDE_BORDER;
+    const int id = k < path_offsets[regions] ? path[k] : -1;
+    const int is_internal = id >= 0 && side[id] != SIDE_BORDER;
     internal[k] = is_internal;
     if (is_internal) side[id] = SIDE_BORDER;
   }

@@ -66,24 +66,19 @@ static inline int held_against(int id, double2 p, int* low, int last, int axis, 
   return d.x > error ? 1 : d.x < -error ? 0 : bound == 0.0 ? (keep_on && d.x == 0.0) : FLAG_UNDECIDED;
 }
 
-// band[v]: a height above which nothing can be below the chord from path vertex v to the next; a chord of length l
-// between heights h and k stays below max(h, k) + l^2 / 4. Rounded up, and by more than depth's error. Behind a path's
-// last vertex there is no chord, and nothing is above it.
-#define BAND_SLACK (1.0 + 0x1p-20)
-
-kernel void chord_bands(int n, global const int* restrict path_region, global const double2* restrict path_projections,
+// band[v]: a height above which nothing can be below the chord from path vertex v to the next. Behind a path's last
+// vertex there is no chord, and nothing is above it.
+kernel void chord_bands(int n, int regions, global const int* restrict path_offsets,
+                        global const int* restrict path_region, global const double2* restrict path_projections,
                         global const int* restrict axis, global double* restrict band COUNTERS) {
   const int v = get_global_id(0);
-  if (v < n) {
+  const int vertices = path_offsets[regions];
+  if (v < vertices) {
     const int r = path_region[v];
     double height = INFINITY;
-    if (v + 1 < n && path_region[v + 1] == r) {
+    if (v + 1 < vertices && path_region[v + 1] == r) {
       COUNT(HULL, ARITHMETIC, BAND_OPERATIONS);
-      const double2 a = path_projections[v];
-      const double2 b = path_projections[v + 1];
-      const double along = b.y - a.y;
-      height = fmax(a.x, b.x);
-      if (!is_planar(axis[r])) height = BAND_SLACK * (height + 0.25 * along * along);
+      height = chord_band(path_projections[v], path_projections[v + 1], is_planar(axis[r]));
     }
     band[v] = height;
   }
@@ -92,8 +87,8 @@ kernel void chord_bands(int n, global const int* restrict path_region, global co
 // Internal points, by buckets. The points of one region in a bucket are neighbours along the line, often under one
 // chord: so the chord of the first of them in u is searched, and the last is tested for the same chord. For each point
 // that is not dropped, chord is the path vertex whose chord it is held against, and depth is its depth below that
-// chord. ids is written for undecided points only.
-kernel void prune_points(int n, int elements, int keep_on, double bound, global const int* restrict regions,
+// chord. ids is written for undecided points only. rough: keeps undecided points, and writes nothing but flags.
+kernel void prune_points(int n, int elements, int keep_on, int rough, double bound, global const int* restrict regions,
                          global const int* restrict x_list, global const int* restrict y_list,
                          global const double2* restrict projections, global const int* restrict axis,
                          global const double* restrict cut, global const double2* restrict points,
@@ -131,9 +126,11 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
         }
         const int id = a == AXIS_Y ? x_list[i] : y_list[i];
         double below = 0.0;
-        const int keep = held_against(id, p, &above, last, a, cut[r], keep_on, bound, points, path, path_projections,
-                                      &below WITH_COUNTERS);
+        int keep = held_against(id, p, &above, last, a, cut[r], keep_on, bound, points, path, path_projections,
+                                &below WITH_COUNTERS);
+        if (rough && keep == FLAG_UNDECIDED) keep = 1;
         flags[i] = keep;
+        if (rough) continue;
         if (keep == 1 || keep == FLAG_UNDECIDED) {
           chord[i] = above;
           depth[i] = below;
@@ -145,8 +142,8 @@ kernel void prune_points(int n, int elements, int keep_on, double bound, global 
   }
 }
 
-// Corners' vertices: element points_count + i is corner i.
-kernel void prune_corners(int n, int points_count, double bound, global const int* restrict corner_regions,
+// Corners' vertices: element points_count + i is corner i. rough: as in prune_points.
+kernel void prune_corners(int n, int points_count, int rough, double bound, global const int* restrict corner_regions,
                           global const int* restrict corners, global const int* restrict axis,
                           global const double* restrict cut, global const double2* restrict points,
                           global const double* restrict band, global const int* restrict path_offsets,
@@ -164,10 +161,12 @@ kernel void prune_corners(int n, int points_count, double bound, global const in
     int low = search_path(p.y, first, last, path_projections);
     double below = 0.0;
     COUNT(HULL, ARITHMETIC, search_comparisons(last - first + 1) + 1);
-    const int keep = p.x > band[low] ? 0
-                                     : held_against(id, p, &low, last, a, cut[r], 0, bound, points, path,
-                                                    path_projections, &below WITH_COUNTERS);
+    int keep = p.x > band[low] ? 0
+                               : held_against(id, p, &low, last, a, cut[r], 0, bound, points, path, path_projections,
+                                              &below WITH_COUNTERS);
+    if (rough && keep == FLAG_UNDECIDED) keep = 1;
     flags[points_count + i] = keep;
+    if (rough) return;
     if (keep == 1 || keep == FLAG_UNDECIDED) {
       chord[points_count + i] = low;
       depth[points_count + i] = below;

@@ -16,6 +16,13 @@ INTEGER_CONSTANT(SIDE_LEFT, 0);
 INTEGER_CONSTANT(SIDE_RIGHT, 1);
 INTEGER_CONSTANT(SIDE_BORDER, 2);
 
+// What keep_bounds tells the host: how many elements are to be joined, how many of them are corners, and the most
+// corners of a region.
+INTEGER_CONSTANT(KEPT_ALL, 0);
+INTEGER_CONSTANT(KEPT_CORNERS, 1);
+INTEGER_CONSTANT(KEPT_CORNERS_MOST, 2);
+INTEGER_CONSTANT(KEPT_FACTS, 3);
+
 // Bits that kernels set when they find an invariant broken, which is an error of the program.
 INTEGER_CONSTANT(BROKEN_PATH, 1);    // a point on a cut line is not on its path
 INTEGER_CONSTANT(BROKEN_BORDER, 2);  // a region's border does not enclose it

@@ -132,6 +132,15 @@ static inline int is_lower(double2 p, double2 v, double q, int planar) {
   return ps < 0 ? side >= 0 : side < 0;
 }
 
+// A height above which nothing can be below the chord from a to b: a chord of length l between heights h and k stays
+// below max(h, k) + l^2 / 4. Rounded up, and by more than depth's error. a, b projected.
+#define BAND_SLACK (1.0 + 0x1p-20)
+static inline double chord_band(double2 a, double2 b, int planar) {
+  const double height = a.x > b.x ? a.x : b.x;
+  const double along = b.y - a.y;
+  return planar ? height : BAND_SLACK * (height + 0.25 * along * along);
+}
+
 #ifdef FLAUNAY_COUNT
 // From here on each call counts. Callers have COUNTERS.
 #define project(...) (COUNT(HULL, ARITHMETIC, PROJECT_OPERATIONS), project(__VA_ARGS__))

@@ -42,6 +42,9 @@ INTEGER_CONSTANT(BUCKET, 16);
 // Regions with more candidates than this prune them in two steps.
 INTEGER_CONSTANT(MANY_CANDIDATES, 256);
 
+// Of so many kept corners in a region, each finds its place by comparing itself with all.
+INTEGER_CONSTANT(COUNTED_CORNERS, 256);
+
 // Quickhull splits at deepest points for so many rounds, then it balances its splits. No input has been seen to take
 // more that was not made to.
 INTEGER_CONSTANT(MOST_QUICKHULL_ROUNDS, 64);

@@ -65,8 +65,9 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   Borders borders;
   std::vector<cl_uint> offsets(sets + 1);
   std::vector<cl_int> flat(sets), ids(sets + 1);
-  runtime.read(hull_sizes, 0, sets + 1, offsets.data());
-  runtime.read(collinear, 0, sets, flat.data());
+  const host::Runtime::Settled settled(runtime);
+  runtime.read_later(hull_sizes, 0, sets + 1, offsets.data());
+  runtime.read_later(collinear, 0, sets, flat.data());
   runtime.read(table.set_offsets, 0, sets + 1, ids.data());
   borders.hull_offsets.assign(offsets.begin(), offsets.end());
   borders.size = offsets.back();

@@ -17,22 +17,20 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
                                                        .points = table.points,
                                                        .axis = level.axis,
                                                        .cut = level.cut,
-                                                       .first_end = level.first_end,
-                                                       .last_end = level.last_end,
                                                        .largest = work.largest});
   work.add_depth(Component::cut, alternate_axis < 0 ? 3 : 0);
   work.add_depth(Component::hull, log2_ceiling(level.corners));
-  for (const cl_int direction : {1, -1}) {
-    host::segmented_arg_reduce(
-        work.runtime, level.corners,
-        kernels::extreme_vertices{.segment = level.corner_regions,
-                                  .result = direction > 0 ? level.first_end : level.last_end,
-                                  .direction = direction,
-                                  .corners = level.corner_ids,
-                                  .axis = level.axis,
-                                  .cut = level.cut,
-                                  .points = table.points});
-  }
+  const std::size_t group = region_group(work, level.corners / level.regions);
+  work.runtime.note_elements(1 + level.corners / level.regions / group);
+  work.runtime.launch(level.regions * group, group,
+                      kernels::find_ends{.regions = level.regions,
+                                         .corner_offsets = level.corner_offsets,
+                                         .corners = level.corner_ids,
+                                         .axis = level.axis,
+                                         .cut = level.cut,
+                                         .points = table.points,
+                                         .first_end = level.first_end,
+                                         .last_end = level.last_end});
 }
 
 }  // namespace flaunay::flattened

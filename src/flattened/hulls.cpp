@@ -63,7 +63,8 @@ Paths plain_hull(Workspace& work, const PointTable& table, const Level& level, c
 
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
   const auto flags = work.scratch().allocate<cl_uchar>(level.points + level.corners);
-  Paths paths = work.hull == Hull::prune
+  Paths paths = work.hull == Hull::monotone_chain ? chain_paths(work, table, level, flags, statistics)
+                : work.hull == Hull::prune
                     ? pruned_hull(work, table, level, flags, statistics, statistics.hull_rounds)
                     : plain_hull(work, table, level, flags, statistics);
   paths.flags = flags;

@@ -17,9 +17,7 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
 
   const auto given = scratch.allocate<cl_double>(2 * n);
   runtime.write(given, 0, 2 * n, coordinates);
-  std::vector<cl_int> input_offsets(offsets.begin(), offsets.end());
-  const auto device_offsets = scratch.allocate<cl_int>(sets + 1);
-  runtime.write(device_offsets, 0, sets + 1, input_offsets.data());
+  const auto device_offsets = runtime.upload(scratch, std::vector<cl_int>(offsets.begin(), offsets.end()));
 
   const points::UniformPoints input = points::make_uniform(runtime, given, offsets);
   const auto pairs = input.coordinates.as<cl_double2>();

@@ -50,10 +50,13 @@ Level Recursion::step(const Level& level, int depth) {
   cut(work_, table_, cut_level, depth, options_.cut == Cut::alternate ? depth % 2 : -1);
   project(work_, table_, cut_level);
   const Paths paths = hulls(work_, table_, cut_level, statistics);
-  statistics.path_vertices = paths.size;
+  cl_int path_vertices = 0;
+  const host::Runtime::Settled settled(work_.runtime);
+  work_.runtime.read_later(paths.offsets, level.regions, 1, &path_vertices);
   Level children;
   RetiredRegions retired;
   merge(work_, table_, cut_level, paths, children, retired);
+  statistics.path_vertices = static_cast<std::size_t>(path_vertices);
   done_ += endgame(work_, table_, retired, triangles_, done_);
   if (work_.counting != nullptr) work_.counting->end_step(depth);
   statistics.seconds = work_.runtime.working_clock() - begin;

@@ -49,8 +49,11 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   host::exclusive_scan(runtime, corner_sides, level.corners, corner_sides);
 
   const auto internal = scratch.allocate<cl_uint>(paths.size + 1);
-  runtime.map(paths.size,
-              kernels::path_internal{.path = paths.vertices, .side = table.side, .internal = internal});
+  runtime.map(paths.size, kernels::path_internal{.regions = level.regions,
+                                                 .path_offsets = paths.offsets,
+                                                 .path = paths.vertices,
+                                                 .side = table.side,
+                                                 .internal = internal});
   host::exclusive_scan(runtime, internal, paths.size, internal);
   const ListSplit split = begin_split(work, table, level);
 

@@ -75,20 +75,18 @@ Pruned allocate_pruned(Workspace& work, const Level& level) {
           scratch.allocate<cl_double>(elements)};
 }
 
-void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
-           const Pruned& pruned) {
+namespace {
+
+// rough: see prune_points; then `pruned` has flags alone.
+void hold_against(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
+                  const Buffer<cl_double>& band, bool keep_on, bool rough, const Buffer<cl_int>& ids,
+                  const Pruned& pruned) {
   host::Runtime& runtime = work.runtime;
-  Arena& scratch = work.scratch();
-  Arena::Scope scope(scratch);
-  const auto ids = scratch.allocate<cl_int>(pruned.elements);
-  const auto band = scratch.allocate<cl_double>(paths.size);
-  runtime.map(paths.size, kernels::chord_bands{.path_region = paths.regions,
-                                               .path_projections = paths.projections,
-                                               .axis = level.axis,
-                                               .band = band});
+  runtime.note_elements(kernel::BUCKET);
   runtime.map((level.points + kernel::BUCKET - 1) / kernel::BUCKET,
               kernels::prune_points{.elements = level.points,
                                     .keep_on = keep_on,
+                                    .rough = rough,
                                     .bound = work.bounds.hull,
                                     .regions = level.point_regions,
                                     .x_list = level.x_list,
@@ -106,6 +104,7 @@ void prune(Workspace& work, const PointTable& table, const Level& level, const P
                                     .depth = pruned.depth,
                                     .flags = pruned.flags});
   runtime.map(level.corners, kernels::prune_corners{.points_count = level.points,
+                                                    .rough = rough,
                                                     .bound = work.bounds.hull,
                                                     .corner_regions = level.corner_regions,
                                                     .corners = level.corner_ids,
@@ -120,12 +119,36 @@ void prune(Workspace& work, const PointTable& table, const Level& level, const P
                                                     .chord = pruned.chord,
                                                     .depth = pruned.depth,
                                                     .flags = pruned.flags});
+}
+
+}  // namespace
+
+void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
+           const Pruned& pruned) {
+  Arena& scratch = work.scratch();
+  Arena::Scope scope(scratch);
+  const auto ids = scratch.allocate<cl_int>(pruned.elements);
+  const auto band = scratch.allocate<cl_double>(paths.size);
+  work.runtime.map(paths.size, kernels::chord_bands{.regions = level.regions,
+                                                    .path_offsets = paths.offsets,
+                                                    .path_region = paths.regions,
+                                                    .path_projections = paths.projections,
+                                                    .axis = level.axis,
+                                                    .band = band});
+  hold_against(work, table, level, paths, band, keep_on, false, ids, pruned);
   // Operations one after the other: the bands, the projection of a corner, the searches of a run and of a
   // point in it, and three comparisons: with the band, of u, and which point is lower.
   work.add_depth(Component::hull, kernel::BAND_OPERATIONS + kernel::PROJECT_OPERATIONS + 2 +
                                       2 * log2_ceiling(paths.size) + 1 + 1 + kernel::LOWER_OPERATIONS +
                                       kernel::DEPTH_OPERATIONS + scan_depth(pruned.elements));
   decide_depths(work, table, level, paths, ids, pruned.chord, pruned.elements, keep_on, pruned.flags);
+}
+
+void prune_roughly(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
+                   const Buffer<cl_double>& band, const Buffer<cl_uchar>& flags) {
+  const auto none = work.scratch().allocate<cl_int>(0);
+  hold_against(work, table, level, paths, band, false, true, none,
+               {level.points + level.corners, flags, none, work.scratch().allocate<cl_double>(0)});
 }
 
 HullPoints gather_below(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,

@@ -75,7 +75,9 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
   memory.odd.reserve(n * kStateBytesPerPoint);
   runtime.arena().reserve(n *
                           (ends_in_blocks(wanted) ? kScratchBytesPerPointOfBlocks : kScratchBytesPerPoint));
-  work.hull = options.hull;
+  // Operations are counted by the paper's quickhull.
+  const bool in_rounds = options.count || options.hull != Hull::prune;
+  work.hull = in_rounds ? options.hull : Hull::monotone_chain;
   work.broken = persistent.allocate<cl_int>(1);
   work.list_length = persistent.allocate<cl_uint>(1);
   work.undecided = persistent.allocate<cl_uint>(1);
@@ -103,9 +105,11 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
 }
 
 void Call::end_levels(std::size_t done, std::size_t wanted) {
-  check_invariants(work);
   auto& levels = work.levels;
-  const std::vector<cl_int> largest = read_all(work, work.largest, levels.size());
+  std::vector<cl_int> largest(levels.size());
+  const host::Runtime::Settled settled(work.runtime);
+  work.runtime.read_later(work.largest, 0, levels.size(), largest.data());
+  check_invariants(work);
   for (std::size_t l = 0; l < levels.size(); ++l) {
     levels[l].largest_region = static_cast<std::size_t>(largest[l]);
   }

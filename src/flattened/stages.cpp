@@ -2,9 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "shared/codes.h"
 
 namespace flaunay::flattened {
+
+std::size_t region_group(const Workspace& work, std::size_t elements) {
+  const Tuning& tuning = tuning_of(work.runtime);
+  if (tuning.tile_group == 0) return 1;
+  std::size_t group = std::min(tuning.chain_group_least, tuning.tile_group);
+  while (2 * group <= tuning.tile_group && 2 * group * tuning.chain_points <= elements) group *= 2;
+  return group;
+}
 
 Buffer<cl_int> pack_undecided(Workspace& work, const Buffer<cl_uchar>& flags, std::size_t n) {
   const auto list = work.scratch().allocate<cl_int>(n);

@@ -26,7 +26,8 @@ struct Workspace {
   std::vector<LevelStatistics>& levels;  ///< the statistics of this call's levels
   /// The arena for the regions that a step makes. Before they are made, it holds the points for quickhull.
   Arena* children = nullptr;
-  Hull hull = Hull::prune;
+  /// Hull::monotone_chain: prunes and makes chains, without rounds.
+  Hull hull = Hull::monotone_chain;
   Bounds bounds{};
   /// Bits set by kernels on a broken invariant; see check_invariants.
   Buffer<cl_int> broken{};
@@ -87,7 +88,7 @@ struct RetiredRegions {
 
 /// The dividing path of every region: the vertices of its hull in the order of u.
 struct Paths {
-  std::size_t size = 0;
+  std::size_t size = 0;  ///< there are no more vertices; their number is the last of `offsets`
   Buffer<cl_int> vertices{};
   Buffer<cl_double2> projections{};  ///< (h, u); see kernels/shared/hull_height.h
   Buffer<cl_int> regions{};
@@ -152,6 +153,28 @@ Pruned allocate_pruned(Workspace& work, const Level& level);
 /// Compares all elements with the paths, and flags those below them. keep_on: also flags those on the paths.
 void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
            const Pruned& pruned);
+
+/// Flags those of a level's elements that may be on the hulls, among them all below the paths: 0 or 1, or
+/// FLAG_ON_PATH. band: of the paths' chords.
+void prune_roughly(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
+                   const Buffer<cl_double>& band, const Buffer<cl_uchar>& flags);
+
+/// Points of each region in the order of u; of one u in any order, and points may stand several times.
+struct Sequences {
+  std::size_t room = 0;     ///< no more points than that
+  Buffer<cl_int> begins{};  ///< regions + 1
+  Buffer<cl_int> ids{};
+  Buffer<cl_double2> projections{};
+};
+Sequences allocate_sequences(Arena& arena, std::size_t regions, std::size_t room);
+/// Replaces sequences by their strict lower hulls. group: work-items that share a region. sizes: of the
+/// hulls.
+void chain_hulls(Workspace& work, const PointTable& table, const Level& level, const Sequences& sequences,
+                 std::size_t group, const Buffer<cl_uint>& sizes);
+/// Computes the strict hulls of a level's regions without rounds; see chains.cl. flags: what prune decided
+/// about all points and corners. Waits once.
+Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
+                  LevelStatistics& statistics);
 
 /// Decides exactly those of `count` elements whose flag is FLAG_UNDECIDED. Element i is point ids[i], which
 /// is compared with the chord that begins at path vertex chord[i]. keep_on: also keeps points on the chord.
@@ -256,6 +279,10 @@ void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& t
 /// Converts ids to indices of input points and copies them to the host.
 std::vector<std::int32_t> read_indices(Workspace& work, const PointTable& table, const Buffer<cl_int>& ids,
                                        std::size_t count);
+
+/// The size of work-groups that take a region of about so many elements each. One work-item on devices where
+/// a work-item walks a chunk.
+std::size_t region_group(const Workspace& work, std::size_t elements);
 
 /// Lists the elements with FLAG_UNDECIDED. The length of the list stays on the device, and is added to
 /// Workspace::undecided.

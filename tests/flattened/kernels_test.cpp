@@ -29,6 +29,7 @@ TEST(Kernels, AllAreLaunched) {
     check_cells(runtime, places, cells, {0, 0, 0}, random);
     check_output(runtime, testing::reference_delaunay(make_fixture("uniform", 10, 27)), random);
     check_restart(runtime);
+    check_many_kept_corners(runtime, met);
     MetRegions met_regions;
     check_regions(runtime, make_fixture("grid", 100, 1), 2, true, met_regions);
     for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
@@ -37,9 +38,10 @@ TEST(Kernels, AllAreLaunched) {
   std::size_t kernels = 0;
   for (const char* const file :
        {"flattened/ingest", "flattened/border", "flattened/cut", "flattened/project", "flattened/prune",
-        "flattened/quickhull", "flattened/hull_depth", "flattened/merge", "flattened/children",
-        "flattened/lists", "flattened/endgame", "flattened/endgame_exact", "flattened/strips",
-        "flattened/neighbors", "flattened/canonical", "flattened/output", "flattened/regions"}) {
+        "flattened/chains", "flattened/quickhull", "flattened/hull_depth", "flattened/merge",
+        "flattened/children", "flattened/lists", "flattened/endgame", "flattened/endgame_exact",
+        "flattened/strips", "flattened/neighbors", "flattened/canonical", "flattened/output",
+        "flattened/regions"}) {
     const std::string source = host::kernel_source(file);
     const std::regex pattern("\nkernel void (\\w+)\\(|\nSEGMENTED_ARG_REDUCE\\((\\w+),");
     for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {

@@ -250,10 +250,12 @@ inline Paths upload_paths(Call& call, const HostPaths& paths) {
 }
 
 inline void expect_paths(Call& call, const Paths& paths, const HostPaths& expected) {
-  EXPECT_TRUE(same(call.read(paths.vertices, paths.size), expected.vertices));
-  EXPECT_TRUE(same(call.read(paths.projections, paths.size), expected.projections));
-  EXPECT_TRUE(same(call.read(paths.regions, paths.size), expected.regions));
-  EXPECT_TRUE(same(call.read(paths.offsets, expected.offsets.size()), expected.offsets));
+  ASSERT_TRUE(same(call.read(paths.offsets, expected.offsets.size()), expected.offsets));
+  const std::size_t size = expected.vertices.size();
+  ASSERT_LE(size, paths.size);
+  EXPECT_TRUE(same(call.read(paths.vertices, size), expected.vertices));
+  EXPECT_TRUE(same(call.read(paths.projections, size), expected.projections));
+  EXPECT_TRUE(same(call.read(paths.regions, size), expected.regions));
 }
 
 /// Few values of coordinates, so that points coincide and line up.
@@ -368,6 +370,8 @@ void check_hulls(Call& call, const ExactPoints& points, const Level& level,
                  const std::vector<Region>& regions, const std::vector<Frame>& frames, const Paths& paths,
                  const std::vector<std::vector<int>>& expected, Met& met);
 void check_restart(Runtime& runtime);
+/// A region with so many kept corners that runs of them are merged; see chains_test.cpp.
+void check_many_kept_corners(Runtime& runtime, Met& met);
 /// Merges and returns the next level's regions; see merge_test.cpp.
 Regions check_merge(Call& call, const ExactPoints& points, PointTable& table, const Level& level,
                     const std::vector<Region>& regions, const CutLevel& cut, const Paths& paths, Level& next,

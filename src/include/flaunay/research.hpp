@@ -31,7 +31,8 @@ enum class Cut {
 
 /// How the dividing paths are computed. All variants give the same paths.
 enum class Hull {
-  prune,           ///< discard most points by candidates from buckets, then quickhull
+  prune,           ///< discard most points by candidates from buckets, then quickhull; on a device, unless
+                   ///< operations are counted, chains (docs/architecture.md)
   quickhull,       ///< quickhull alone
   balanced,        ///< a few rounds of quickhull, then balanced splits (Chan, Snoeyink and Yap)
   monotone_chain,  ///< Andrew's scan over points sorted along the cut; Mode::recursive only
@@ -100,10 +101,10 @@ struct LevelStatistics {
   std::size_t corners = 0;          ///< border corners of these regions, in total
   std::size_t largest_region = 0;   ///< internal points of the largest region
   std::size_t candidates = 0;       ///< candidates by which prune discards points
-  std::size_t survivors = 0;        ///< points that prune leaves to quickhull
+  std::size_t survivors = 0;        ///< points that prune leaves, of which the hulls are
   std::size_t path_vertices = 0;    ///< vertices of the dividing paths, in total
-  int candidate_rounds = 0;         ///< rounds of quickhull on the candidates
-  int hull_rounds = 0;              ///< rounds of quickhull on the survivors
+  int candidate_rounds = 0;         ///< rounds of quickhull on the candidates, if any
+  int hull_rounds = 0;              ///< rounds of quickhull on the survivors, if any
   double seconds = 0;               ///< wall time
 };
 
