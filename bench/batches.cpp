@@ -5,7 +5,7 @@
 
 #include "contest.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::batches {
 namespace {
 
 struct Request : Measurement {
@@ -121,7 +121,7 @@ Result measure_batches(const Request& request) {
 
 }  // namespace
 
-void add_batches(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
       app, action, "batches", "many sets in one call, beside loops over the same sets",
@@ -147,4 +147,4 @@ void add_batches(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::batches

@@ -5,7 +5,7 @@
 
 #include "contest.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::cliffs {
 namespace {
 
 constexpr double kMostTimesUniform = 2;
@@ -73,7 +73,7 @@ Result measure_cliffs(const Request& request) {
 
 }  // namespace
 
-void add_cliffs(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
       app, action, "cliffs", "inputs on which triangulators are slow, beside uniform points",
@@ -92,4 +92,4 @@ void add_cliffs(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::cliffs

@@ -123,7 +123,7 @@ int measure_and_record(const std::string& subcommand, const std::string& command
                 {"driver", result.device.driver},
                 {"platform", result.device.platform},
                 {"host", host_description()},
-                {"commit", FLAUNAY_COMMIT},
+                {"commit", commit()},
                 {"command", command_line},
                 {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
                 {"runs", measurement.runs},

@@ -41,6 +41,9 @@ using Action = std::function<int(const std::string& command_line)>;
 int measure_and_record(const std::string& subcommand, const std::string& command_line,
                        const Measurement& measurement, const std::function<Result()>& measure);
 
+/// What was compiled, as git describes it.
+const char* commit();
+
 /// Adds a subcommand with --json and --device; its Request derives from Measurement.
 template <typename Request>
 CLI::App* add_command(CLI::App& app, Action& action, const std::string& name, const std::string& description,

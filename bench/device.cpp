@@ -15,7 +15,7 @@
 #include "timing.hpp"
 #include "tuning/tuning.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::device {
 namespace {
 
 using host::Buffer;
@@ -191,7 +191,7 @@ Result measure_device(const Request& request) {
 
 }  // namespace
 
-void add_device(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command =
       add_command(app, action, "device", "what launches, waits, loads and arithmetic take on a device",
@@ -209,4 +209,4 @@ void add_device(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::device

@@ -11,7 +11,7 @@
 #include "peer.hpp"
 #include "tests/support/embedder.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::embedding {
 namespace {
 
 struct Request : Measurement {
@@ -510,7 +510,7 @@ Result measure_embedding(const Request& request) {
 
 }  // namespace
 
-void add_embedding(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command =
       add_command(app, action, "embedding", "from device memory to device memory, and queries, beside CGAL's",
@@ -521,4 +521,4 @@ void add_embedding(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::embedding

@@ -10,7 +10,7 @@
 #include "calls.hpp"
 #include "command.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::launches {
 namespace {
 
 using research::LaunchStatistics;
@@ -198,7 +198,7 @@ Result measure_launches(const Request& request) {
 
 }  // namespace
 
-void add_launches(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
       app, action, "launches", "what a call launches: work-items, longest chains of steps, waits and bytes",
@@ -225,4 +225,4 @@ void add_launches(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::launches

@@ -10,21 +10,47 @@
 
 namespace flaunay::bench {
 
-// Each is defined in the file of its name; scaling and small are in sizes.cpp.
-void add_targets(CLI::App& app, Action& action);
-void add_peers(CLI::App& app, Action& action);
-void add_modes(CLI::App& app, Action& action);
+// Each is defined in the file of its namespace's name.
+namespace targets {
+void add(CLI::App& app, Action& action);
+}
+namespace peers {
+void add(CLI::App& app, Action& action);
+}
+namespace modes {
+void add(CLI::App& app, Action& action);
+}
+namespace sizes {
 void add_scaling(CLI::App& app, Action& action);
-void add_cliffs(CLI::App& app, Action& action);
 void add_small(CLI::App& app, Action& action);
-void add_batches(CLI::App& app, Action& action);
-void add_embedding(CLI::App& app, Action& action);
-void add_threads(CLI::App& app, Action& action);
-void add_processes(CLI::App& app, Action& action);
-void add_launches(CLI::App& app, Action& action);
-void add_device(CLI::App& app, Action& action);
-void add_primitives(CLI::App& app, Action& action);
-void add_paper(CLI::App& app, Action& action);
+}  // namespace sizes
+namespace cliffs {
+void add(CLI::App& app, Action& action);
+}
+namespace batches {
+void add(CLI::App& app, Action& action);
+}
+namespace embedding {
+void add(CLI::App& app, Action& action);
+}
+namespace threads {
+void add(CLI::App& app, Action& action);
+}
+namespace processes {
+void add(CLI::App& app, Action& action);
+}
+namespace launches {
+void add(CLI::App& app, Action& action);
+}
+namespace device {
+void add(CLI::App& app, Action& action);
+}
+namespace primitives {
+void add(CLI::App& app, Action& action);
+}
+namespace paper {
+void add(CLI::App& app, Action& action);
+}
 
 namespace {
 
@@ -39,9 +65,9 @@ int run(int argc, char** argv) {
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
-  for (const auto add :
-       {add_targets, add_peers, add_modes, add_scaling, add_cliffs, add_small, add_batches, add_embedding,
-        add_threads, add_processes, add_launches, add_device, add_primitives, add_paper}) {
+  for (const auto add : {targets::add, peers::add, modes::add, sizes::add_scaling, cliffs::add,
+                         sizes::add_small, batches::add, embedding::add, threads::add, processes::add,
+                         launches::add, device::add, primitives::add, paper::add}) {
     add(app, action);
   }
   try {

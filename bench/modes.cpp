@@ -7,7 +7,7 @@
 
 #include "contest.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::modes {
 namespace {
 
 struct Request : Measurement {
@@ -159,7 +159,7 @@ Result measure_modes(const Request& request) {
 
 }  // namespace
 
-void add_modes(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
       app, action, "modes", "flaunay's modes beside each other, by number of points",
@@ -181,4 +181,4 @@ void add_modes(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::modes

@@ -14,7 +14,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::paper {
 namespace {
 
 using research::Component;
@@ -360,7 +360,7 @@ Result measure_paper(const Request& request) {
 
 }  // namespace
 
-void add_paper(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const CLI::Range exponents(6, 24);
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
@@ -379,4 +379,4 @@ void add_paper(CLI::App& app, Action& action) {
   add_option(command, "--threads", request->threads, "host threads");
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::paper

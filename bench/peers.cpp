@@ -4,7 +4,7 @@
 #include "contest.hpp"
 #include "peer.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::peers {
 namespace {
 
 std::vector<std::string> peer_names() {
@@ -82,7 +82,7 @@ Result measure_peers(const Request& request) {
 
 }  // namespace
 
-void add_peers(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command =
       add_command(app, action, "peers", "flaunay beside other triangulators on the same points", help(),
@@ -95,4 +95,4 @@ void add_peers(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::peers

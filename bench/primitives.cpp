@@ -15,7 +15,7 @@
 #include "launchers/flattened/quickhull.cl.hpp"
 #include "tuning/tuning.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::primitives {
 namespace {
 
 using host::Buffer;
@@ -303,7 +303,7 @@ Result measure_primitives(const Request& request) {
 
 }  // namespace
 
-void add_primitives(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command =
       add_command(app, action, "primitives", "the vector operations beside a plain copy and Boost.Compute's",
@@ -312,4 +312,4 @@ void add_primitives(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::primitives

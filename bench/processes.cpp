@@ -19,7 +19,7 @@
 
 extern char** environ;
 
-namespace flaunay::bench {
+namespace flaunay::bench::processes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,7 +145,7 @@ Result measure_processes(const Request& request) {
 
 }  // namespace
 
-void add_processes(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   request->runs = 11;
   CLI::App* command = add_command(
@@ -160,4 +160,4 @@ void add_processes(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::processes

@@ -5,7 +5,7 @@
 
 #include "contest.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::sizes {
 namespace {
 
 struct Request : Measurement {
@@ -118,4 +118,4 @@ void add_scaling(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::sizes

@@ -8,7 +8,7 @@
 
 #include "contest.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::targets {
 namespace {
 
 struct Request : Measurement {
@@ -180,7 +180,7 @@ Result measure_targets(const Request& request) {
 
 }  // namespace
 
-void add_targets(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
       app, action, "targets", "all targets of speed and memory: at least, goal, measured",
@@ -195,4 +195,4 @@ void add_targets(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::targets

@@ -6,7 +6,7 @@
 #include "child.hpp"
 #include "contest.hpp"
 
-namespace flaunay::bench {
+namespace flaunay::bench::threads {
 namespace {
 
 // The host reads the first, PoCL the second.
@@ -105,7 +105,7 @@ Result measure_threads(const Request& request) {
 
 }  // namespace
 
-void add_threads(CLI::App& app, Action& action) {
+void add(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = add_command(
       app, action, "threads", "what more threads of the host or of the driver are worth",
@@ -124,4 +124,4 @@ void add_threads(CLI::App& app, Action& action) {
   add_runs_option(command, request->runs);
 }
 
-}  // namespace flaunay::bench
+}  // namespace flaunay::bench::threads

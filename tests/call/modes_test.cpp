@@ -149,6 +149,8 @@ TEST_P(OnFixture, FlattenedEndsInBlocks) {
                                    ("small-blocks,region_points=" + std::to_string(most)).c_str());
     Triangulator tuned(device_under_test());
     for (const std::size_t n : {3, 7, 12, 30, 200, 900}) {
+      // More levels than 200 points have, once: with the tiniest regions, each takes as many launches again.
+      if (n == 900 && most != 6) continue;
       SCOPED_TRACE(std::to_string(n) + " points, regions of " + std::to_string(most));
       const Coordinates points = make_fixture(GetParam(), n, n);
       const Coordinates moved = perturbed(make_fixture(GetParam(), n, 2), 3);

@@ -109,7 +109,7 @@ case "$1" in
   subdirectory)
     configure "$WORK/subdirectory" -DFLAUNAY_SOURCE="$SOURCE" -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
       -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
-    "$CMAKE" --build "$WORK/subdirectory" --parallel 2
+    "$CMAKE" --build "$WORK/subdirectory" --parallel 1
     run_consumers "$WORK/subdirectory"
     rm -rf "$static"
     "$CMAKE" --install "$WORK/subdirectory" --prefix "$static"
