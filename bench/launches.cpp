@@ -133,6 +133,7 @@ void add_launches(Json& rows, const Call& call) {
                         {"kernel", launch.kernel},
                         {"work_items", launch.work_items},
                         {"group", launch.group},
+                        {"busy", launch.busy},
                         {"elements", launch.elements},
                         {"bytes", launch.bytes},
                         {"longest_chain", launch.longest_chain},

@@ -111,7 +111,7 @@ class Model:
 
     def paths(self, cost, launch):
         """How many times as long a divergent warp takes as its longest lane alone."""
-        lanes = min(self.machine["warp"], launch["group"], launch["work_items"])
+        lanes = min(self.machine["warp"], launch["busy"], launch["work_items"])
         return lanes / max(1, lanes * self.machine["active_share"]) if cost["divergent"] else 1
 
     def resident(self, kernel):

@@ -17,6 +17,7 @@ namespace flaunay::host {
 struct Launch {
   std::string kernel;  ///< its name, "fill" or "copy"
   std::size_t work_items = 0, group = 0;
+  std::size_t busy = 0;             ///< the most work-items of a group that have work
   std::size_t elements = 0;         ///< the most elements that one work-item goes through
   std::size_t bytes = 0;            ///< of fills and copies
   std::uint32_t longest_chain = 0;  ///< the most steps of one work-item; 0 unless the kernel counted them

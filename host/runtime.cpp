@@ -366,9 +366,11 @@ void Runtime::enqueue(Kernel& kernel, std::size_t work_items, std::size_t group)
   if (!is_native() && !kernel.requires_group)
     group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
   ++launches_;
-  const std::size_t elements = std::exchange(elements_, 1);
+  const std::size_t elements = std::exchange(elements_, 1), spread = std::exchange(spread_, 1);
   const std::size_t busy = std::exchange(busy_items_, std::numeric_limits<std::size_t>::max());
-  if (log_ != nullptr) log_->add({kernel.name, std::min(work_items, busy), group, elements});
+  if (log_ != nullptr) {
+    log_->add({kernel.name, std::min(work_items, busy), group, (group + spread - 1) / spread, elements});
+  }
   if (is_native()) return run_natively(kernel, work_items, group);
   cl_event event = nullptr;
   for (;;) {
@@ -429,7 +431,7 @@ void Runtime::enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes
     return;
   }
   ++launches_;
-  if (log_ != nullptr) log_->add({"fill", 0, 0, 0, bytes});
+  if (log_ != nullptr) log_->add({"fill", 0, 0, 0, 0, bytes});
   FLAUNAY_CL(clEnqueueFillBuffer(queue_.get(), to, value, value_bytes, 0, bytes, 0, nullptr, nullptr));
   keep_order();
 }
@@ -441,7 +443,7 @@ void Runtime::enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std:
     return;
   }
   ++launches_;
-  if (log_ != nullptr) log_->add({"copy", 0, 0, 0, bytes});
+  if (log_ != nullptr) log_->add({"copy", 0, 0, 0, 0, bytes});
   FLAUNAY_CL(clEnqueueCopyBuffer(queue_.get(), from, to, from_offset, to_offset, bytes, 0, nullptr, nullptr));
   keep_order();
 }

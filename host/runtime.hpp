@@ -285,6 +285,8 @@ class Runtime {
   std::vector<Launch> recorded_launches();
   /// For the record: how many elements each work-item of the next launch goes through, at most.
   void note_elements(std::size_t elements) { elements_ = elements; }
+  /// For the record: only each so many-th work-item of the next launch has work.
+  void note_spread(std::size_t spread) { spread_ = spread; }
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
   /// counters as their last argument; see kernels/shared/counting.h. An empty buffer ends this.
@@ -430,6 +432,7 @@ class Runtime {
   double all_build_seconds_ = 0;  // never reset
   std::unique_ptr<LaunchLog> log_;
   std::size_t elements_ = 1;  // of the next launch
+  std::size_t spread_ = 1;    // of the next launch
   // How many of the next launch's work-items have work, if the launch spreads these over more.
   std::size_t busy_items_ = std::numeric_limits<std::size_t>::max();
 };

@@ -484,6 +484,7 @@ TEST_F(PredictionTest, FollowTheModel) {
     row.update({{"kernel", kernel},
                 {"work_items", work_items},
                 {"group", 1},
+                {"busy", 1},
                 {"elements", elements},
                 {"bytes", bytes},
                 {"longest_chain", 0},

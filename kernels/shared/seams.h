@@ -239,7 +239,10 @@ static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int 
                   CROSSINGS_PER_VERTEX * (halves.end - halves.begin),
                   removed + is_downward * PAIRS_PER_VERTEX * blocks->places,
                   crossings + CROSSINGS_PER_VERTEX * (is_downward * blocks->places + halves.begin)};
-  const int from_low = lowest_end(g, &s, low, g->points[first_along(high, halves.axis)], 0);
+  // Upwards is along y, or against x.
+  const int lowest =
+      (halves.axis == 1) != is_downward ? last_along(high, !halves.axis) : first_along(high, !halves.axis);
+  const int from_low = lowest_end(g, &s, low, g->points[lowest], 0);
   const int from_high = lowest_end(g, &s, high, g->points[from_low], 1);
   return is_downward ? walk_along(g, &s, from_high, from_low) : walk_along(g, &s, from_low, from_high);
 }

@@ -57,6 +57,7 @@ void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const Halv
   const Tuning& tuning = tuning_of(runtime);
   const std::size_t cells = cells_of(blocks, height);
   const std::size_t spread = spread_of(tuning, 2 * cells);
+  runtime.note_spread(spread);
   runtime.launch(spread * 2 * cells, tuning.block_group, 2 * cells,
                  kernels::walk_seams{.spread = spread,
                                      .height = height,
@@ -135,6 +136,7 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
       merge_from_both_ends(work, blocks, halved, rings, seams, height, parts);
       continue;
     }
+    runtime.note_spread(spread);
     runtime.launch(spread * cells, tuning.block_group, cells,
                    kernels::merge_parts{.spread = spread,
                                         .height = height,
@@ -183,6 +185,7 @@ void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::
   const std::size_t merges = end - first;
   const auto states = work.scratch().allocate<cl_int>(merges);
   const std::size_t spread = spread_of(tuning, merges);
+  runtime.note_spread(spread);
   runtime.launch(spread * merges, tuning.block_group, merges,
                  kernels::merge_trees{.spread = spread,
                                       .first_merge = first,

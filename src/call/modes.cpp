@@ -32,8 +32,8 @@ class Recording {
   std::vector<research::LaunchStatistics> launches() const {
     std::vector<research::LaunchStatistics> all;
     for (const host::Launch& launch : runtime_.recorded_launches()) {
-      all.push_back({launch.kernel, launch.work_items, launch.group, launch.elements, launch.bytes,
-                     launch.longest_chain, launch.steps, launch.seconds});
+      all.push_back({launch.kernel, launch.work_items, launch.group, launch.busy, launch.elements,
+                     launch.bytes, launch.longest_chain, launch.steps, launch.seconds});
     }
     return all;
   }

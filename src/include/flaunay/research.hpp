@@ -120,6 +120,7 @@ struct LaunchStatistics {
   std::string kernel;          ///< the kernel's name; "fill" and "copy" are those of OpenCL
   std::size_t work_items = 0;  ///< without those that fill up the last work-group; 0 for fills and copies
   std::size_t group = 0;       ///< the work-group's size
+  std::size_t busy = 0;        ///< the most work-items of a work-group that have work
   std::size_t elements = 0;    ///< the most elements that a work-item goes through
   std::size_t bytes = 0;       ///< bytes that a fill or a copy writes
   /// The most steps that one block, merge or walk takes, one after the other; 0 if the kernel does not count
