@@ -305,6 +305,9 @@ TEST(Kernels, AllAreLaunched) {
     check_stages(runtime, Coordinates(200, 0.5), met);
     check_stages(runtime, make_fixture("uniform", 400, 24), met);
     check_stages(runtime, make_fixture("uniform", 5, 25), met);
+    std::vector<std::size_t> one_large_set{0};
+    for (std::size_t end = 12; end <= 32; end += 2) one_large_set.push_back(end);
+    check_stages(runtime, make_fixture("uniform", 32, 26), one_large_set, met);
     for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
     runtime.set_profiling(false);
   }
@@ -322,7 +325,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, testing::tests_native() ? 43u : 68u);
+  EXPECT_EQ(kernels, testing::tests_native() ? 43u : 73u);
 }
 
 }  // namespace
