@@ -12,10 +12,9 @@
 //    put corners in order, or merge_corner_runs does where regions have many. join_sequences merges the three: each
 //    element's place is the number of elements before it, which it finds by binary searches.
 // 2. hull_chains makes the hull of each region's sequence. A work-group takes a region; each work-item makes the hull
-// of
-//    consecutive points by a monotone chain, and neighbouring hulls are joined along their common tangent, in steps of
-//    which each halves their number. The tangent is found by a search for its left end, in which each probe is a binary
-//    search for the right one; the work-items of both hulls take a probe each, and one of them goes on alone.
+//    of consecutive points by a monotone chain, and neighbouring hulls are joined along their common tangent, in steps
+//    of which each halves their number. The tangent is found by a search for its left end, in which each probe is a
+//    binary search for the right one; the work-items of both hulls take a probe each, and one of them goes on alone.
 // 3. A scan (scan.cl) of the hulls' sizes tells where paths begin, and write_paths writes them.
 //
 // The kernels but hull_chains and write_paths have one work-item per element, or share elements whose number only the

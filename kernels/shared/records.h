@@ -47,8 +47,9 @@ typedef struct {
 } solved_block;
 ASSERT_SIZE(solved_block, 24);
 
-// A walk along the seam of a merge: the vertices of its first crossing edge, and the hull edges out of them that it saw
-// there; how many crossing edges it has, and how it ended.
+// A walk along the seam of a merge: the vertices of its first crossing edge, of which a downward walk has the high
+// side's as its left one, and the hull edges out of them that it saw there; how many crossing edges it has, and how it
+// ended.
 typedef struct {
   int left, right, left_edge, right_edge;
   int crossings, outcome;

@@ -88,7 +88,8 @@ static inline double height_at_cut(const seam_line* line, double2 low, double2 h
   return from + share * (height_of(high, line->axis) - from);
 }
 
-// Whether a walk is beyond the middle for sure. So the last edge of either walk is one of the other's.
+// Whether a walk is beyond the middle, whatever the rounding errors. Edges pass the cut in their order, and both walks
+// go that far or to the other end; so the last edge of either is one of the other's.
 static inline int is_beyond(const seam* s, double2 low, double2 high) {
   const double height = height_at_cut(&s->line, low, high);
   return s->is_downward ? height < s->line.middle - s->line.error : height > s->line.middle + s->line.error;
@@ -160,8 +161,8 @@ static inline int lowest_end(const rings* g, const seam* s, hull_ends ends, doub
 }
 
 // Moves along the hulls to the tangent that has both sides above it, and of points on it to those next to the cut. They
-// may begin anywhere: each move lowers where the line passes the cut, or keeps it. Returns whether it found the
-// tangent.
+// may begin anywhere: each move lowers where the line passes the cut, or keeps it and comes nearer to the cut, so none
+// comes back. Returns whether it found the tangent.
 static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
   GLOBAL const ring_edge* edges = g->edges;
   const int axis = s->line.axis;

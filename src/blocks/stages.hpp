@@ -70,7 +70,7 @@ struct PointBlocks {
 /// tiny.
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings);
-constexpr std::size_t kParallelBytesPerPoint = 76;
+constexpr std::size_t kParallelBytesPerPoint = 82;
 
 /// What the stage `halve` leaves for `merge`, from the scratch arena.
 struct HalvedBlocks {

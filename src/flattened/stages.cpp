@@ -11,7 +11,7 @@ namespace flaunay::flattened {
 std::size_t region_group(const Workspace& work, std::size_t elements) {
   const Tuning& tuning = tuning_of(work.runtime);
   if (tuning.tile_group == 0) return 1;
-  std::size_t group = std::min(tuning.chain_group_least, tuning.tile_group);
+  std::size_t group = std::clamp<std::size_t>(tuning.chain_group_least, 1, tuning.tile_group);
   while (2 * group <= tuning.tile_group && 2 * group * tuning.chain_points <= elements) group *= 2;
   return group;
 }

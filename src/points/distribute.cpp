@@ -5,6 +5,7 @@
 #include "points/cut_tree.hpp"
 #include "points/inspect.hpp"
 #include "points/move.hpp"
+#include "shared/limits.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {
@@ -121,7 +122,8 @@ Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
   Blocks blocks;
   const host::Runtime::Settled settled(work.runtime);
   // A set of two blocks would need one more round than a single block.
-  blocks.largest = 2 * block_points;
+  // If all blocks were tiny, halving would take this for read.
+  blocks.largest = std::max<std::size_t>(2 * block_points, kernel::TINY_BLOCK + 1);
   const Plan plan = begin_blocks(work, offsets, block_points, blocks.largest, blocks);
   Arena::Scope scope(work.scratch());
   // Not needed: these points have no duplicates.

@@ -182,7 +182,7 @@ constexpr Row kTable[] = {
      {16},
      {16},
      {8},
-     "From here on two walks take fewer steps than what a launch more costs."},
+     "From here on two walks save more than what a further launch costs."},
     {"sewing_group",
      &Tuning::sewing_group,
      {1},

@@ -35,13 +35,13 @@ struct Tuning : host::Sizes {
   std::size_t scratch_per_point = 1;
   /// Pairs of edges that are fetched into the cache before they are needed; 0: none.
   std::size_t fetch_ahead = 0;
-  /// If work-groups take tiles (tile_group): the points and samples per tile, at most
-  /// kernel::LARGEST_POINT_TILE and kernel::LARGEST_SAMPLE_TILE, and the bits of a block's number per pass
-  /// over the points, at most kernel::MOST_BLOCK_BITS.
   /// Of a region's points a work-item of a group makes a chain of about so many, in groups of at least this
   /// size.
   std::size_t chain_points = 1;
   std::size_t chain_group_least = 1;
+  /// If work-groups take tiles (tile_group): the points and samples per tile, at most
+  /// kernel::LARGEST_POINT_TILE and kernel::LARGEST_SAMPLE_TILE, and the bits of a block's number per pass
+  /// over the points, at most kernel::MOST_BLOCK_BITS.
   std::size_t point_tile = 1;
   std::size_t sample_tile = 1;
   std::size_t block_bits = 1;
