@@ -40,6 +40,17 @@ struct Seams {
   Buffer<cl_int> slots{};
 };
 
+// Two walks and the sewing are more work than one merge, but a shorter chain: they pay where merges are so
+// few that the longest one decides.
+int first_height_of_seams(const Tuning& tuning, const PointBlocks& blocks, int heights) {
+  int height = 1;
+  while (height <= heights &&
+         (least_vertices(height) < tuning.seam_points || cells_of(blocks, height) > tuning.merge_items)) {
+    ++height;
+  }
+  return height;
+}
+
 Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
   Arena& scratch = work.scratch();
   const std::size_t pairs = kernel::PAIRS_PER_VERTEX * blocks.points;
@@ -126,8 +137,7 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   const auto parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
   const auto states = work.scratch().allocate<cl_int>(cells_of(blocks, 0));
   const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
-  int first_seams = 1;
-  while (first_seams <= heights && least_vertices(first_seams) < tuning.seam_points) ++first_seams;
+  const int first_seams = first_height_of_seams(tuning, blocks, heights);
   const Seams seams = first_seams <= heights ? seams_of(work, blocks, first_seams) : Seams{};
   for (int height = 0; height <= heights; ++height) {
     const std::size_t cells = cells_of(blocks, height);

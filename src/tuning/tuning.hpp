@@ -24,7 +24,8 @@ struct Tuning : host::Sizes {
   /// A launch of merges that are fewer than this has about so many work-items, most of them idle, so that
   /// merges are not in one warp.
   std::size_t merge_items = 0;
-  /// Halves of blocks that have at least so many points together are merged from both ends of their seam.
+  /// Halves of blocks that have at least so many points together are merged from both ends of their seam, if
+  /// they are at most merge_items.
   std::size_t seam_points = 1;
   /// The work-group that sews the seam of a merge.
   std::size_t sewing_group = 1;
