@@ -45,14 +45,10 @@ static inline int may_be_sewn(const sewing* s, int pair) {
 }
 
 // Gives a vertex whose edge goes another one, which stays: each has one along the seam.
-static inline void replace_vertex_edge(const sewing* s, int e) {
-  const int v = s->edges[e ^ 1].to;
-  if (s->vertex_edge[v] != e) return;
-  int kept = e;
-  do {
-    kept = s->edges[kept].next;
-  } while (is_removed(s, kept / 2));
-  s->vertex_edge[v] = kept;
+static inline void replace_vertex_edge(const sewing* s, int v) {
+  int e = s->vertex_edge[v];
+  while (is_removed(s, e / 2)) e = s->edges[e].next;
+  s->vertex_edge[v] = e;
 }
 
 // The half of crossing edge i with this end as its origin.
@@ -125,11 +121,8 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
   uint slot = sum_before(own, sums, &all);
   for (int pair = own_first; pair < own_end; ++pair) {
     if (may_be_sewn(&s, pair)) s.slots[slot++] = pair;
-    if (is_removed(&s, pair)) {
-      replace_vertex_edge(&s, 2 * pair);
-      replace_vertex_edge(&s, 2 * pair + 1);
-    }
   }
+  for (int v = begin + me; v < end; v += lanes) replace_vertex_edge(&s, v);
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
   const int count = is_merge ? s.seam.up.crossings + meets : 0;
   sewing sewn = s;

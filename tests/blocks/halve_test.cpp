@@ -92,7 +92,7 @@ DeviceBlocks::DeviceBlocks(Call& call, const BlockPoints& points) {
 void with_groups(std::size_t capacity, const std::function<void(Runtime&)>& check) {
   if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
   Runtime& runtime = Runtimes::get("groups");
-  for (const std::size_t group : {1, 2, 32, 64, 256}) {
+  for (const std::size_t group : testing::groups_to_test()) {
     SCOPED_TRACE("groups of " + std::to_string(group));
     Tuning tuning = tuning_of(runtime);
     tuning.blocks_in_parallel = 1;
