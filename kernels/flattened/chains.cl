@@ -116,20 +116,6 @@ kernel void sequence_of_lists(int n, global const int* restrict offsets, global 
   }
 }
 
-// How many of the ascending positions are below i.
-static inline int positions_below(int i, int count, global const int* restrict positions) {
-  int low = 0, high = count;
-  while (low < high) {
-    const int middle = (low + high) / 2;
-    if (positions[middle] < i) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
 // positions: of the kept elements among all. before[r]: the numbers of kept internal points and of kept corners of the
 // regions before r; begins[r]: with the paths of those. facts: see codes.h; 0 before.
 kernel void keep_bounds(int n, int points_count, global const uint* restrict kept_count,

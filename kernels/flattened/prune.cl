@@ -175,20 +175,6 @@ kernel void prune_corners(int n, int points_count, int rough, double bound, glob
   }
 }
 
-// How many of the ascending positions are below i.
-static inline int positions_below(int i, int kept, global const int* restrict positions) {
-  int low = 0, high = kept;
-  while (low < high) {
-    const int middle = (low + high) / 2;
-    if (positions[middle] < i) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
 // The first paths of quickhull: each region's two ends. The kept points are below the chord between them. positions: of
 // the kept elements among all. before[r]: the numbers of kept internal points and of kept corners of the regions before
 // r; internal points come first in each region. first: where the points below each path vertex's chord begin.

@@ -21,6 +21,20 @@ static inline int segment_of(int i, int count, GLOBAL const int* RESTRICT offset
   return low;
 }
 
+// How many of the ascending positions are below i.
+static inline int positions_below(int i, int count, GLOBAL const int* RESTRICT positions) {
+  int low = 0, high = count;
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    if (positions[middle] < i) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
 // The last path vertex of first..last with u no greater than the given one; first if there is none. Projections are
 // (h, u), ascending in u.
 static inline int search_path(double u, int first, int last, GLOBAL const double2* RESTRICT path_projections) {

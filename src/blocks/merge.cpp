@@ -140,12 +140,12 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   const int first_seams = first_height_of_seams(tuning, blocks, heights);
   const Seams seams = first_seams <= heights ? seams_of(work, blocks, first_seams) : Seams{};
   for (int height = 0; height <= heights; ++height) {
-    const std::size_t cells = cells_of(blocks, height);
-    const std::size_t spread = spread_of(tuning, cells);
     if (height >= first_seams) {
       merge_from_both_ends(work, blocks, halved, rings, seams, height, parts);
       continue;
     }
+    const std::size_t cells = cells_of(blocks, height);
+    const std::size_t spread = spread_of(tuning, cells);
     runtime.note_spread(spread);
     runtime.launch(spread * cells, tuning.block_group, cells,
                    kernels::merge_parts{.spread = spread,
