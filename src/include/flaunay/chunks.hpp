@@ -1,0 +1,131 @@
+// Triangulations of more points than fit into the memory of a device or of the machine: points are read in
+// pieces, results are written in pieces.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "flaunay/export.h"
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay {
+
+/// Points that are read in pieces. No two calls are made at a time.
+class FLAUNAY_API PointSource {
+ public:
+  virtual ~PointSource();
+  /// The number of points.
+  virtual std::uint64_t size() const = 0;
+  /// Reads the points [first, first + count): 2 count coordinates, x0 y0 x1 y1 ... Throws Error(input) if it
+  /// cannot. Every point is read twice, and some more often; they must be the same each time.
+  virtual void read(std::uint64_t first, std::size_t count, double* coordinates) = 0;
+};
+
+/// The arrays of a triangulation, as Triangulation describes them. In `triangles` and `neighbors`, a row has
+/// three entries.
+enum class MeshArray { triangles, neighbors, hull, representatives };
+
+/// Where a triangulation is written, in pieces. No two calls are made at a time.
+class FLAUNAY_API MeshSink {
+ public:
+  virtual ~MeshSink();
+  /// Whether an array is wanted. Others are not computed.
+  virtual bool wants(MeshArray array) const = 0;
+  /// Stores `count` values as the entries [first, first + count) of an array; throws an Error if it cannot.
+  /// Entries may be written in any order. Some neighbours are written twice, and the later value counts.
+  virtual void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) = 0;
+};
+
+/// The options of triangulate_chunks.
+struct ChunkOptions {
+  /// Bytes that the call may use on the host, devices that share its memory included, but not what the system
+  /// keeps of files. 0: half of what is free.
+  std::uint64_t memory_bytes = 0;
+  /// The folder for the points of chunks, 24 bytes per point, in a file without a name. Empty: TMPDIR, or
+  /// /tmp.
+  std::string scratch;
+  /// The devices, each named as for Triangulator; "all": every usable device. They take chunks from one
+  /// queue. Empty: flaunay's own choice of one.
+  std::vector<std::string> devices;
+  /// Points of a chunk. 0: as many as the memory permits.
+  std::size_t chunk_points = 0;
+  /// If not empty, called from time to time on the calling thread. stage: "sampling", "distributing" or
+  /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. An
+  /// exception that it throws ends the call.
+  std::function<void(const std::string& stage, int round, double done)> progress;
+};
+
+/// A round of chunks.
+struct ChunkRound {
+  std::uint64_t points = 0;     ///< distinct points of the round; of the first one, with duplicates
+  std::uint64_t chunks = 0;     ///< chunks into which they were cut
+  std::uint64_t triangles = 0;  ///< triangles that became final
+  std::uint64_t handed_on = 0;  ///< points that went on to the next round
+};
+
+/// What triangulate_chunks did.
+struct ChunkStatistics {
+  std::uint64_t points = 0;         ///< input points
+  std::uint64_t duplicates = 0;     ///< input points that are not their own representative
+  std::uint64_t triangles = 0;      ///< number of rows of `triangles` and `neighbors`
+  std::uint64_t hull_vertices = 0;  ///< number of entries of `hull`
+  std::uint64_t undecided = 0;      ///< predicates that needed exact evaluation
+  std::uint64_t scratch_bytes = 0;  ///< the largest size of the scratch file
+  std::size_t chunk_points = 0;     ///< points of a chunk, at most about
+  std::vector<ChunkRound> rounds;
+  std::vector<std::string> devices;       ///< their names
+  std::vector<std::uint64_t> device_points;  ///< points of the chunks that each device triangulated
+  std::vector<PhaseStatistics> phases;    ///< in the order in which they ran
+  double seconds = 0;                     ///< wall time
+};
+
+/// Triangulates one set of points in chunks. What is final in a chunk is written; points around which
+/// something is missing, some hundredths of a chunk's, go on to chunks that are cut otherwise, until one
+/// chunk has them all. The set of triangles with their neighbours, the hull and the representatives are those
+/// of Triangulator::triangulate. Rows are in the order of rounds, then of chunks, then of the rows of a call
+/// on the chunk alone; so their order depends on the options, too. Indices are 64-bit numbers.
+///
+/// Throws what Triangulator::triangulate throws, and: Error(input) if the scratch folder has too little room
+/// or writing there fails; if the points that are left to the last chunk do not fit memory_bytes, as of points
+/// that are all on one circle; Error(usage) if memory_bytes is too small for any work. What was written to the
+/// sink before an error is without use. A device that fails in the middle of the call leaves its chunk to the
+/// others; the call fails if none is left. O(n log n) work.
+FLAUNAY_API ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink,
+                                               const ChunkOptions& options = {});
+
+/// Points in memory, such as a memory-mapped file.
+class FLAUNAY_API ArrayPoints : public PointSource {
+ public:
+  /// coordinates: 2 n values, which are not copied.
+  ArrayPoints(const double* coordinates, std::uint64_t n) : coordinates_(coordinates), n_(n) {}
+  std::uint64_t size() const override { return n_; }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override;
+
+ private:
+  const double* coordinates_;
+  std::uint64_t n_;
+};
+
+/// Arrays in memory for the results, such as memory-mapped files. Index: std::int32_t or std::int64_t. An
+/// array that is null is not wanted. n points have at most 2 n triangles and n hull vertices.
+template <typename Index>
+struct MeshArrays {
+  Index* triangles = nullptr;        ///< room for 6 n indices
+  Index* neighbors = nullptr;        ///< room for 6 n indices
+  Index* hull = nullptr;             ///< room for n indices
+  Index* representatives = nullptr;  ///< room for n indices
+};
+
+/// The same with points and results in memory. Throws Error(input), too, if there are more points than
+/// 32-bit indices can count.
+FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
+                                               const MeshArrays<std::int32_t>& results,
+                                               const ChunkOptions& options = {});
+FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
+                                               const MeshArrays<std::int64_t>& results,
+                                               const ChunkOptions& options = {});
+
+}  // namespace flaunay
