@@ -224,6 +224,7 @@ void FinishedChunk::write_duplicates(MeshSink& sink) const {
 }
 
 void FinishedChunk::write_hull(MeshSink& sink) const {
+  if (!sink.wants(MeshArray::hull)) return;
   std::vector<std::int64_t> hull;
   hull.reserve(mesh_.hull.size());
   for (const std::int32_t v : mesh_.hull) hull.push_back(points_.ids[v]);

@@ -293,6 +293,24 @@ TEST(Chunks, NeedMemory) {
   EXPECT_THROW(triangulate_chunks(points.data(), 10, MeshArrays<std::int64_t>{}, options), Error);
 }
 
+TEST(Chunks, WriteWhatIsWantedAlone) {
+  const Coordinates points = with_copies(make_fixture("uniform", 500, 1), 30, 2);
+  const std::size_t n = points.size() / 2;
+  const Triangulation expected = triangulator().triangulate(points.data(), n);
+  ChunkOptions options;
+  options.chunk_points = 60;
+  std::vector<std::int64_t> triangles(6 * n), hull(n), representatives(n);
+  const ChunkStatistics statistics =
+      triangulate_chunks(points.data(), n, MeshArrays<std::int64_t>{triangles.data()}, options);
+  EXPECT_EQ(3 * statistics.triangles, expected.triangles.size());
+  triangulate_chunks(points.data(), n, MeshArrays<std::int64_t>{nullptr, nullptr, hull.data()}, options);
+  hull.resize(expected.hull.size());
+  EXPECT_EQ(hull, wide(expected.hull));
+  triangulate_chunks(points.data(), n,
+                     MeshArrays<std::int64_t>{nullptr, nullptr, nullptr, representatives.data()}, options);
+  EXPECT_EQ(representatives, wide(expected.representatives));
+}
+
 TEST(Chunks, OfNoPoints) {
   const ChunkStatistics statistics = triangulate_chunks(nullptr, 0, MeshArrays<std::int64_t>{});
   EXPECT_EQ(statistics.triangles, 0u);
