@@ -28,19 +28,15 @@ struct GenerateRequest {
 };
 
 int generate(const GenerateRequest& request) {
-  constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max();
-  if (request.count > kMostPoints) {
-    throw Error(ErrorKind::usage, fmt::format("{} points are too many: indices are 32 bits, so at most {}",
-                                              request.count, kMostPoints));
-  }
   if (request.output == "-") {
     // As in every filter, a closed pipe ends the program without a message.
     std::signal(SIGPIPE, SIG_DFL);
   }
   OutputFiles outputs("-");
   outputs.add_points(request.output);
-  const io::Points points = io::generate(request.distribution, request.count, request.seed);
-  io::write_points(outputs.files(), request.output, points);
+  io::PointWriter writer(outputs.files(), request.output, request.count);
+  io::generate(request.distribution, request.count, request.seed,
+               [&writer](const double* coordinates, std::size_t count) { writer.write(coordinates, count); });
   outputs.files().commit();
   return kSuccess;
 }

@@ -10,7 +10,7 @@ namespace flaunay::cli {
 void add_input(CLI::App* command, std::string& path) {
   command
       ->add_option("input", path,
-                   "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text from standard input")
+                   "Points: .npy, .node, .xy, .txt, .csv, .bin, .las, or - for text from standard input")
       ->required();
 }
 

@@ -55,7 +55,7 @@ void OutputFiles::add(const std::string& path, const std::string& ending) {
 
 void OutputFiles::add_points(const std::string& path) {
   if (path == "-") return;
-  io::check_points_ending(path);
+  io::check_points_output(path);
   io::check_output(path, io::ending_of(path));
   reserve(path);
 }

@@ -42,7 +42,7 @@ void write_results(const ResultPaths& paths, const io::Points& points, const res
   for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
     const ArrayFile& file = kArrayFiles[k];
     if (paths.arrays[k].empty()) continue;
-    io::write_npy_int32(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns);
+    io::write_npy_indices(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns);
   }
   outputs.files().write_out();
   facts.writing_seconds = stopwatch.seconds();

@@ -49,9 +49,9 @@ void write_mesh(const std::string& path, const Points& points, const Triangulati
   write_mesh(outputs, path, points, mesh);
   outputs.commit();
 }
-void write_npy_int32(const std::string& path, const Indices& values, std::size_t columns) {
+void write_npy_indices(const std::string& path, const Indices& values, std::size_t columns) {
   Outputs outputs;
-  write_npy_int32(outputs, path, values, columns);
+  write_npy_indices(outputs, path, values, columns);
   outputs.commit();
 }
 void write_region(const std::string& stem, const Points& points, const research::Region& region) {
@@ -842,15 +842,15 @@ TEST_F(IoTest, VtuArraysAreWhereTheHeaderSays) {
 }
 
 TEST_F(IoTest, NpyIsAsNumpyWritesIt) {
-  write_npy_int32(path("a.npy"), {1, 2, 3, 4, 5, 6}, 3);
+  write_npy_indices(path("a.npy"), {1, 2, 3, 4, 5, 6}, 3);
   std::string expected = std::string("\x93NUMPY\x01\x00\x76\x00", 10) + npy_header("<i4", "(2, 3)");
   expected.resize(127, ' ');
   EXPECT_EQ(read(path("a.npy")), expected + "\n" + raw<std::int32_t>({1, 2, 3, 4, 5, 6}));
-  write_npy_int32(path("b.npy"), {7, 8}, 0);
+  write_npy_indices(path("b.npy"), {7, 8}, 0);
   EXPECT_NE(read(path("b.npy")).find("'shape': (2,)"), std::string::npos);
   EXPECT_EQ(read(path("b.npy")).size(), 128u + 8u);
   expect_error(ErrorKind::internal, path("c.npy"), {"rows of 3"}, [&] {
-    write_npy_int32(path("c.npy"), {1, 2}, 3);
+    write_npy_indices(path("c.npy"), {1, 2}, 3);
   });
 }
 
@@ -910,7 +910,7 @@ TEST_F(IoTest, BadTrianglesNameThePlace) {
 
 TEST_F(IoTest, NeighborsReadBackAsWritten) {
   const Indices neighbors = {1, 3, -1, 2, 0, -1};
-  write_npy_int32(path("a.npy"), neighbors, 3);
+  write_npy_indices(path("a.npy"), neighbors, 3);
   EXPECT_EQ(read_neighbors(path("a.npy")), neighbors);
   const std::string bad =
       write("b.npy", npy(npy_header("<i8", "(2, 3)"), raw<std::int64_t>({0, 1, -1, 0, -2, 1})));
