@@ -233,7 +233,6 @@ class Array {
   std::size_t promised_ = 0;
 };
 
-constexpr std::string_view kPointArray = "a NumPy array of shape (n, 2)";
 const Layout& point_layout() {
   static const Layout layout = {"n", 2, "<f8", "<f4"};
   return layout;

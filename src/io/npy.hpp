@@ -14,6 +14,8 @@ namespace flaunay::io {
 
 Points read_npy_points(const std::string& path);
 
+constexpr const char* kPointArray = "a NumPy array of shape (n, 2)";
+
 /// Where the points of a file are: float64, or float32.
 struct NpyPoints {
   std::uint64_t size = 0;
