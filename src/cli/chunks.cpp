@@ -132,6 +132,17 @@ bool are_too_many(std::uint64_t points, const Triangulator& triangulator) {
   return of_host + of_device > 1;
 }
 
+std::string what_would_fit(const Triangulator& triangulator) {
+  const DeviceInfo device = triangulator.device();
+  host::MemoryLeft memory = host::memory_left();
+  // The host itself, as a device, has no numbers of its own.
+  if (device.available_bytes > 0 && device.available_bytes < memory.bytes) {
+    memory = {device.available_bytes, "the memory of the device"};
+  }
+  return fmt::format("{} would fit on {} ({} of memory by {})", triangulator.capacity(), device.name,
+                     host::mebibytes(memory.bytes), memory.limit);
+}
+
 io::IndexType index_type(const std::string& choice, std::uint64_t points, const ResultPaths& results) {
   if (choice == "64") return io::IndexType::int64;
   const bool has_rows = !results.arrays[static_cast<std::size_t>(MeshArray::neighbors)].empty();

@@ -40,6 +40,8 @@ void check_chunk_options(const CLI::App& command, const std::string& mode);
 constexpr std::uint64_t kMayBeTooMany = 1'000'000;
 /// Whether so many points with their results are too many for one call.
 bool are_too_many(std::uint64_t points, const Triangulator& triangulator);
+/// How many points one call can take, where, and what limits it, for messages.
+std::string what_would_fit(const Triangulator& triangulator);
 
 /// The type of indices in the files. Throws Error(usage) if the one that was asked for is too narrow.
 io::IndexType index_type(const std::string& choice, std::uint64_t points, const ResultPaths& results);

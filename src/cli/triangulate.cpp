@@ -94,14 +94,18 @@ bool do_not_fit(const TriangulateRequest& request, std::uint64_t points,
   return are_too_many(points, *triangulator);
 }
 
-int triangulate_too_many(const TriangulateRequest& request, std::uint64_t points) {
-  const std::string reason = fmt::format("about {} points do not fit memory at once", points);
+int triangulate_too_many(const TriangulateRequest& request, std::uint64_t points,
+                         std::unique_ptr<Triangulator> triangulator) {
+  const std::string reason =
+      fmt::format("about {} points are too many at once: {}", points, what_would_fit(*triangulator));
   if (!request.results.mesh.empty() || request.profile) {
-    throw Error(ErrorKind::input,
-                fmt::format("{}: {}; in chunks they can be triangulated without {}", request.input, reason,
-                            request.profile ? "--profile" : "--output, by --triangles and --neighbors"));
+    throw Error(
+        ErrorKind::device,
+        fmt::format("{}: {}; without {}, they are triangulated in chunks", request.input, reason,
+                    request.profile ? "--profile" : "--output (but with --triangles and --neighbors)"));
   }
-  return triangulate_in_chunks(chunk_request(request), fmt::format("note: {}: in chunks\n", reason));
+  triangulator.reset();
+  return triangulate_in_chunks(chunk_request(request), fmt::format("note: {}\n", reason));
 }
 
 RunFacts facts_of(const TriangulateRequest& request) {
@@ -145,8 +149,7 @@ int triangulate(const TriangulateRequest& request) {
   Stopwatch stopwatch;
   std::unique_ptr<Triangulator> triangulator;
   if (do_not_fit(request, about, triangulator)) {
-    triangulator.reset();
-    return triangulate_too_many(request, about);
+    return triangulate_too_many(request, about, std::move(triangulator));
   }
   facts.opening_seconds = stopwatch.restart();
   Progress progress(!request.quiet);
