@@ -10,7 +10,7 @@ namespace flaunay::cli {
 void add_input(CLI::App* command, std::string& path) {
   command
       ->add_option("input", path,
-                   "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text from standard input")
+                   "Points: .npy, .node, .xy, .txt, .csv, .bin, .las, or - for text from standard input")
       ->required();
 }
 
@@ -44,9 +44,9 @@ void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>&
   add_choice(command, "--hull-variant", variant, description, variants);
 }
 
-void add_device(CLI::App* command, std::string& device) {
-  command->add_option("--device", device,
-                      "OpenCL device: a part of its name, or #k for the k-th that flaunay devices lists");
+CLI::Option* add_device(CLI::App* command, std::string& device) {
+  return command->add_option(
+      "--device", device, "OpenCL device: a part of its name, or #k for the k-th that flaunay devices lists");
 }
 
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description) {

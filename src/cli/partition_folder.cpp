@@ -176,7 +176,7 @@ void PartitionWriter::write(const io::Points& points, const research::Partition&
     region.commit_without_waiting();
   }
   io::Outputs others;
-  io::write_npy_int32(others, inside(aside, kFinished), partition.triangles, 3);
+  io::write_npy_indices(others, inside(aside, kFinished), partition.triangles, 3);
   others.open(inside(aside, kDescription)).print("{}", description(partition, facts));
   others.commit_without_waiting();
   write_to_disk(aside);

@@ -105,6 +105,32 @@ class InputFile {
     return got;
   }
 
+  /// Reads the next bytes after those of earlier calls of this function, without the others. Returns how many
+  /// there are; fewer than `count` at the end.
+  std::size_t read_next(void* to, std::size_t count) {
+    std::size_t got = 0;
+    while (got < count && !ended_) got += read_some(static_cast<char*>(to) + got, count - got);
+    used_ += got;
+    if (used_ == 0 && ended_) fail_empty();
+    return got;
+  }
+
+  /// Reads the bytes [begin, begin + count) of a regular file, at any time. Fails if they are not there,
+  /// since callers know the size of the file from before.
+  void read_at(std::uint64_t begin, std::size_t count, void* to) const {
+    for (std::size_t got = 0; got < count;) {
+      const ssize_t more =
+          ::pread(descriptor_, static_cast<char*>(to) + got, count - got, static_cast<off_t>(begin + got));
+      if (more < 0 && errno == EINTR) continue;
+      if (more < 0) fail(name_, "cannot be read: {}", system_reason(errno));
+      if (more == 0) {
+        fail(name_, "ends after {} bytes, but had {} when it was opened: it became shorter while it was read",
+             begin + got, size_);
+      }
+      got += static_cast<std::size_t>(more);
+    }
+  }
+
   /// All bytes. Nothing can be read afterwards.
   std::string all() {
     for (std::size_t room = whole_; !ended_; room *= 2) read_until(room);
@@ -119,8 +145,9 @@ class InputFile {
     while (used_ < count && !ended_) {
       used_ += read_some(&bytes_[used_], count - used_);
     }
-    if (used_ == 0 && ended_) fail(name_, "is empty (zero bytes); expected {}", expected_);
+    if (used_ == 0 && ended_) fail_empty();
   }
+  [[noreturn]] void fail_empty() const { fail(name_, "is empty (zero bytes); expected {}", expected_); }
   std::size_t read_some(char* to, std::size_t most) {
     const ssize_t got = ::read(descriptor_, to, most);
     if (got < 0 && errno == EINTR) return 0;

@@ -82,19 +82,26 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Collects the points of one set.
+/// Passes the points of one set on in pieces.
 class Sink {
  public:
-  explicit Sink(std::size_t n) { points_.coordinates.reserve(2 * n); }
+  explicit Sink(const PointConsumer& consume) : consume_(consume) { piece_.reserve(2 * kPiece); }
   void add(double x, double y) {
-    points_.coordinates.push_back(x);
-    points_.coordinates.push_back(y);
+    piece_.push_back(x);
+    piece_.push_back(y);
+    if (piece_.size() == 2 * kPiece) pass_on();
   }
   void add(Direction p) { add(p.x, p.y); }
-  Points take() { return std::move(points_); }
+  void pass_on() {
+    consume_(piece_.data(), piece_.size() / 2);
+    piece_.clear();
+  }
 
  private:
-  Points points_;
+  static constexpr std::size_t kPiece = std::size_t{1} << 16;
+
+  const PointConsumer& consume_;
+  std::vector<double> piece_;
 };
 
 /// Columns of the smallest square grid that has n nodes.
@@ -105,23 +112,18 @@ std::size_t grid_width(std::size_t n) {
   return width;
 }
 
-Points uniform(std::size_t n, Random& random) {
-  Sink sink(n);
+void uniform(std::size_t n, Random& random, Sink& sink) {
   for (std::size_t i = 0; i < n; ++i) {
     const double x = random.unit();
     sink.add(x, random.unit());
   }
-  return sink.take();
 }
 
-Points normal(std::size_t n, Random& random) {
-  Sink sink(n);
+void normal(std::size_t n, Random& random, Sink& sink) {
   for (std::size_t i = 0; i < n; ++i) sink.add(random.normal_pair());
-  return sink.take();
 }
 
-Points kuzmin(std::size_t n, Random& random) {
-  Sink sink(n);
+void kuzmin(std::size_t n, Random& random, Sink& sink) {
   for (std::size_t i = 0; i < n; ++i) {
     // M(r) = 1 - 1 / sqrt(1 + r^2), inverted.
     const double rest = 1 - random.unit();
@@ -129,57 +131,46 @@ Points kuzmin(std::size_t n, Random& random) {
     const Direction d = direction(random.unit());
     sink.add(radius * d.x, radius * d.y);
   }
-  return sink.take();
 }
 
-Points line(std::size_t n, Random& random) {
+void line(std::size_t n, Random& random, Sink& sink) {
   constexpr double b = 0.001;
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     const double u = random.unit();
     const double x = b / (u - b * u + b);
     sink.add(x, random.unit());
   }
-  return sink.take();
 }
 
-Points grid(std::size_t n, Random&) {
-  Sink sink(n);
+void grid(std::size_t n, Random&, Sink& sink) {
   const std::size_t width = grid_width(n);
   for (std::size_t i = 0; i < n; ++i)
     sink.add(static_cast<double>(i % width), static_cast<double>(i / width));
-  return sink.take();
 }
 
-Points rotated_grid(std::size_t n, Random&) {
-  Sink sink(n);
+void rotated_grid(std::size_t n, Random&, Sink& sink) {
   const std::size_t width = grid_width(n);
   const double cosine = 3 / std::sqrt(10.0), sine = 1 / std::sqrt(10.0);  // by atan(1/3)
   for (std::size_t i = 0; i < n; ++i) {
     const auto x = static_cast<double>(i % width), y = static_cast<double>(i / width);
     sink.add(cosine * x - sine * y, sine * x + cosine * y);
   }
-  return sink.take();
 }
 
-Points hexagonal(std::size_t n, Random&) {
-  Sink sink(n);
+void hexagonal(std::size_t n, Random&, Sink& sink) {
   const std::size_t width = grid_width(n);
   const double row_distance = std::sqrt(3.0) / 2;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t row = i / width;
     sink.add(static_cast<double>(i % width) + (row % 2 ? 0.5 : 0.0), row_distance * static_cast<double>(row));
   }
-  return sink.take();
 }
 
-Points circle(std::size_t n, Random& random) {
-  Sink sink(n);
+void circle(std::size_t n, Random& random, Sink& sink) {
   const double start = random.unit();
   for (std::size_t i = 0; i < n; ++i) {
     sink.add(direction((static_cast<double>(i) + start) / static_cast<double>(n)));
   }
-  return sink.take();
 }
 
 struct IntegerPoint {
@@ -213,7 +204,7 @@ std::vector<IntegerPoint> integer_circle_points(const std::vector<GaussianPrime>
   return points;
 }
 
-Points integer_circle(std::size_t n, Random& random) {
+void integer_circle(std::size_t n, Random& random, Sink& sink) {
   // 5 = 2^2 + 1^2, 13 = 3^2 + 2^2, ...; each circle has more points than the one before, 4 to 36,864.
   const std::vector<std::vector<GaussianPrime>> circles = {
       {},
@@ -238,7 +229,6 @@ Points integer_circle(std::size_t n, Random& random) {
     if (points.size() >= n) break;
   }
   // Scaled by 1, 2, 3, ..., the largest circle gives more circles of as many exactly cocircular points.
-  Sink sink(n);
   std::int64_t scale = 1;
   for (std::size_t left = n; left > 0; ++scale) {
     random.shuffle(points);
@@ -248,11 +238,9 @@ Points integer_circle(std::size_t n, Random& random) {
     }
     left -= taken;
   }
-  return sink.take();
 }
 
-Points nested_circles(std::size_t n, Random& random) {
-  Sink sink(n);
+void nested_circles(std::size_t n, Random& random, Sink& sink) {
   const std::size_t circles = grid_width(n) / 4 + 1;
   const double start = random.unit();
   for (std::size_t i = 0; i < n; ++i) {
@@ -262,32 +250,33 @@ Points nested_circles(std::size_t n, Random& random) {
         direction((static_cast<double>(i / circles) + start) / static_cast<double>(on_circle));
     sink.add(radius * d.x, radius * d.y);
   }
-  return sink.take();
 }
 
-Points columns(std::size_t n, Random& random) {
+void columns(std::size_t n, Random& random, Sink& sink) {
   constexpr std::size_t kColumns = 8;
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t column = i % kColumns, row = i / kColumns;
     // Even columns are equally spaced, odd ones irregular. All numbers are integers, and no two are equal.
     const std::uint64_t shift = column % 2 ? random.below(4) : 0;
     sink.add(static_cast<double>(column), static_cast<double>(4 * row + shift));
   }
-  return sink.take();
 }
 
-Points small_integers(std::size_t n, Random& random) {
-  Sink sink(n);
+/// Pairs of random small integers, each number changed by `change`.
+template <typename Change>
+void small_integers_changed(std::size_t n, Random& random, Sink& sink, const Change& change) {
   const std::uint64_t bound = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(n)) / 2) + 2;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto x = static_cast<double>(random.below(bound));
-    sink.add(x, static_cast<double>(random.below(bound)));
+    const double x = change(static_cast<double>(random.below(bound)));
+    sink.add(x, change(static_cast<double>(random.below(bound))));
   }
-  return sink.take();
 }
 
-Points half_duplicates(std::size_t n, Random& random) {
+void small_integers(std::size_t n, Random& random, Sink& sink) {
+  small_integers_changed(n, random, sink, [](double integer) { return integer; });
+}
+
+void half_duplicates(std::size_t n, Random& random, Sink& sink) {
   const std::size_t originals = n - n / 2;
   std::vector<Direction> all;
   all.reserve(n);
@@ -300,22 +289,17 @@ Points half_duplicates(std::size_t n, Random& random) {
     }
   }
   random.shuffle(all);
-  Sink sink(n);
   for (const Direction& p : all) sink.add(p);
-  return sink.take();
 }
 
-Points collinear(std::size_t n, Random& random) {
-  Sink sink(n);
+void collinear(std::size_t n, Random& random, Sink& sink) {
   for (std::size_t i = 0; i < n; ++i) {
     const auto position = static_cast<double>(random.below(8 * n));
     sink.add(position, 3 * position);
   }
-  return sink.take();
 }
 
-Points parabola(std::size_t n, Random&) {
-  Sink sink(n);
+void parabola(std::size_t n, Random&, Sink& sink) {
   // Scaled by a power of two, so that x is within [-1, 1] and x^2 as exact as the integer's square.
   int bits = 0;
   while ((n / 2) >> bits > 0) ++bits;
@@ -323,17 +307,15 @@ Points parabola(std::size_t n, Random&) {
     const double x = std::ldexp(static_cast<double>(i) - static_cast<double>(n / 2), -bits);
     sink.add(x, x * x);
   }
-  return sink.take();
 }
 
-Points clusters(std::size_t n, Random& random) {
+void clusters(std::size_t n, Random& random, Sink& sink) {
   constexpr int kClusters = 12;
   Direction centers[kClusters];
   for (Direction& center : centers) {
     center.x = random.unit();
     center.y = random.unit();
   }
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     // Each cluster a quarter the width of the one before: 1/8 down to 3e-8.
     const auto c = static_cast<int>(random.below(kClusters));
@@ -341,11 +323,9 @@ Points clusters(std::size_t n, Random& random) {
     const Direction d = random.normal_pair();
     sink.add(centers[c].x + width * d.x, centers[c].y + width * d.y);
   }
-  return sink.take();
 }
 
-Points spiral(std::size_t n, Random& random) {
-  Sink sink(n);
+void spiral(std::size_t n, Random& random, Sink& sink) {
   // Archimedes' spiral. The distance between its arms equals the distance between points along an arm.
   const double pi = 0x1.921fb54442d18p+1;
   const double arms = std::sqrt(static_cast<double>(n) / pi);
@@ -355,16 +335,13 @@ Points spiral(std::size_t n, Random& random) {
     const Direction d = direction(arms * radius + start);
     sink.add(radius * d.x, radius * d.y);
   }
-  return sink.take();
 }
 
-Points horizontal(std::size_t n, Random& random) {
-  Sink sink(n);
+void horizontal(std::size_t n, Random& random, Sink& sink) {
   for (std::size_t i = 0; i < n; ++i) sink.add(static_cast<double>(random.below(8 * n)), 7);
-  return sink.take();
 }
 
-Points thirty_lines(std::size_t n, Random& random) {
+void thirty_lines(std::size_t n, Random& random, Sink& sink) {
   constexpr std::size_t kLines = 30;
   // No two of the directions are parallel; each line goes through a random node of a grid as wide as it is
   // long, so that all of them cross.
@@ -377,20 +354,17 @@ Points thirty_lines(std::size_t n, Random& random) {
   for (auto& start : starts) {
     for (double& coordinate : start) coordinate = static_cast<double>(random.below(length + 1));
   }
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t l = random.below(kLines);
     const double position = static_cast<double>(random.below(length)) - static_cast<double>(length / 2);
     sink.add(starts[l][0] + static_cast<double>(kDirections[l][0]) * position,
              starts[l][1] + static_cast<double>(kDirections[l][1]) * position);
   }
-  return sink.take();
 }
 
-Points power_of_two_span(std::size_t n, Random& random) {
+void power_of_two_span(std::size_t n, Random& random, Sink& sink) {
   std::uint64_t span = 4;
   while (span * span / 16 < n) span *= 2;
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     // Two opposite corners, so that the span is exact.
     const bool corner = i < 2;
@@ -398,42 +372,35 @@ Points power_of_two_span(std::size_t n, Random& random) {
     const double x = coordinate();
     sink.add(x, coordinate());
   }
-  return sink.take();
 }
 
-Points one_ulp(std::size_t n, Random& random) {
-  Points points = small_integers(n, random);
-  for (double& coordinate : points.coordinates) coordinate = 1 + coordinate * 0x1p-52;
-  return points;
+void one_ulp(std::size_t n, Random& random, Sink& sink) {
+  small_integers_changed(n, random, sink, [](double integer) { return 1 + integer * 0x1p-52; });
 }
 
-Points mostly_equal(std::size_t n, Random& random) {
+void mostly_equal(std::size_t n, Random& random, Sink& sink) {
   constexpr std::size_t kOthers = 10;
   const double x = random.unit(), y = random.unit();
   const std::size_t stride = n / kOthers + 1;
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     const bool other = i % stride == stride / 2;
     const double own_x = other ? random.unit() : x;
     sink.add(own_x, other ? random.unit() : y);
   }
-  return sink.take();
 }
 
-Points two_clusters(std::size_t n, Random& random) {
+void two_clusters(std::size_t n, Random& random, Sink& sink) {
   constexpr double kDistance = 1e9;
-  Sink sink(n);
   for (std::size_t i = 0; i < n; ++i) {
     const double center = random.below(2) ? kDistance : 0;
     const Direction d = random.normal_pair();
     sink.add(center + d.x, center + d.y);
   }
-  return sink.take();
 }
 
 struct Generator {
   Distribution distribution;
-  Points (*generate)(std::size_t n, Random& random);
+  void (*generate)(std::size_t n, Random& random, Sink& sink);
 };
 
 const std::vector<Generator>& generators() {
@@ -479,16 +446,29 @@ const std::vector<Distribution>& distributions() {
   return all;
 }
 
-Points generate(const std::string& distribution, std::size_t n, std::uint64_t seed) {
+void generate(const std::string& distribution, std::size_t n, std::uint64_t seed,
+              const PointConsumer& consume) {
   std::string names;
   for (const Generator& generator : generators()) {
     if (generator.distribution.name == distribution) {
       Random random(seed);
-      return generator.generate(n, random);
+      Sink sink(consume);
+      generator.generate(n, random, sink);
+      sink.pass_on();
+      return;
     }
     names += (names.empty() ? "" : ", ") + generator.distribution.name;
   }
   throw Error(ErrorKind::usage, "unknown distribution '" + distribution + "'; expected one of " + names);
+}
+
+Points generate(const std::string& distribution, std::size_t n, std::uint64_t seed) {
+  Points points;
+  points.coordinates.reserve(2 * n);
+  generate(distribution, n, seed, [&points](const double* coordinates, std::size_t count) {
+    points.coordinates.insert(points.coordinates.end(), coordinates, coordinates + 2 * count);
+  });
+  return points;
 }
 
 }  // namespace flaunay::io

@@ -348,7 +348,7 @@ void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
     case Format::obj:
       return write_obj(outputs, path, points, mesh);
     case Format::npy:
-      return write_npy_int32(outputs, path, mesh.triangles, 3);
+      return write_npy_indices(outputs, path, mesh.triangles, 3);
     case Format::svg:
       return write_svg(outputs, path, points, mesh);
   }

@@ -22,15 +22,15 @@ void check_mesh_output(const std::string& path);
 /// Checks a path whose ending must be `ending` (".npy", ".json"), with the same errors.
 void check_output(const std::string& path, const std::string& ending);
 
-/// Writes an int32 .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
-void write_npy_int32(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
-                     std::size_t columns);
+/// Writes an .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
+void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+                       std::size_t columns, IndexType type = IndexType::int32);
 
 /// Reads triangles, 0-based, from .npy (int32 or int64, m x 3), .ele (either index base), .off, .obj (faces),
 /// .ply as write_mesh writes it. Throws Error(input) that names the place.
 std::vector<std::int32_t> read_triangles(const std::string& path);
 
-/// Reads neighbours, as write_npy_int32 writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
+/// Reads neighbours, as write_npy_indices writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
 /// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
 std::vector<std::int32_t> read_neighbors(const std::string& path);
 

@@ -182,18 +182,22 @@ std::size_t check_header(const std::string& path, const Header& header, const La
 /// An array whose header was checked. The values are read once.
 class Array {
  public:
-  Array(const std::string& path, std::string_view expected, const Layout& layout)
-      : path_(path), file_(path, expected), header_(read_header(path, file_)) {
+  Array(const std::string& path, InputFile& file, const Layout& layout)
+      : path_(path), file_(file), header_(read_header(path, file)) {
     promised_ = check_header(path, header_, layout);
   }
 
+  const Header& header() const { return header_; }
   const std::string& dtype() const { return header_.descr; }
+
+  /// Checks the size of a regular file.
+  void check_size() const { check(static_cast<std::size_t>(file_.size()) - header_.data_begin); }
 
   template <typename Value>
   std::vector<Value> values() {
     if (file_.size() < 0) return values_of_pipe<Value>();
     // Before there is memory for what the header promises.
-    check(static_cast<std::size_t>(file_.size()) - header_.data_begin);
+    check_size();
     std::vector<Value> all;
     all.reserve(promised_ / sizeof(Value));
     host::prefer_huge_pages(all.data(), promised_);
@@ -224,29 +228,21 @@ class Array {
   }
 
   const std::string& path_;
-  InputFile file_;
+  InputFile& file_;
   Header header_;
   std::size_t promised_ = 0;
 };
 
-void write_npy(Outputs& outputs, const std::string& path, const char* descr, const std::string& shape,
-               const void* data, std::size_t bytes) {
-  std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", descr, shape);
-  constexpr std::size_t kPrefix = 10, kAlignment = 64;  // NumPy aligns the data, and counts a final newline
-  text.append(kAlignment - (kPrefix + text.size() + 1) % kAlignment, ' ');
-  text += '\n';
-  OutputFile& file = outputs.open(path);
-  file.write(kMagic.data(), kMagic.size());
-  file.write("\x01\x00", 2);
-  file.write_value(static_cast<std::uint16_t>(text.size()));
-  file.write(text.data(), text.size());
-  file.write(data, bytes);
+const Layout& point_layout() {
+  static const Layout layout = {"n", 2, "<f8", "<f4"};
+  return layout;
 }
 
 }  // namespace
 
 Points read_npy_points(const std::string& path) {
-  Array array(path, "a NumPy array of shape (n, 2)", {"n", 2, "<f8", "<f4"});
+  InputFile file(path, kPointArray);
+  Array array(path, file, point_layout());
   Points points;
   if (array.dtype() == "<f8") {
     points.coordinates = array.values<double>();
@@ -257,16 +253,35 @@ Points read_npy_points(const std::string& path) {
   return points;
 }
 
-void write_npy_points(Outputs& outputs, const std::string& path, const Points& points) {
-  write_npy(outputs, path, "<f8", shape_text({points.size(), 2}), points.coordinates.data(),
-            2 * points.size() * sizeof(double));
+NpyPoints find_npy_points(const std::string& path, InputFile& file) {
+  const Array array(path, file, point_layout());
+  array.check_size();
+  return {array.header().shape[0], array.header().data_begin, array.dtype() == "<f8"};
+}
+
+std::string npy_header(const std::string& descr, std::uint64_t rows, std::size_t columns) {
+  std::vector<std::size_t> shape = {rows};
+  if (columns > 0) shape.push_back(columns);
+  std::string text =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", descr, shape_text(shape));
+  constexpr std::size_t kPrefix = 10, kAlignment = 64;  // NumPy aligns the data, and counts a final newline
+  text.append(kAlignment - (kPrefix + text.size() + 1) % kAlignment, ' ');
+  text += '\n';
+  const auto length = static_cast<std::uint16_t>(text.size());
+  std::string header = std::string(kMagic) + std::string("\x01\x00", 2);
+  header.append(reinterpret_cast<const char*>(&length), sizeof length);
+  header += text;
+  if (header.size() != kNpyHeaderBytes) throw Error(ErrorKind::internal, "an .npy header of another size");
+  return header;
 }
 
 namespace {
 
 /// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
 std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
-  Array array(path, "a NumPy array of shape (m, 3)", {"m", 3, "<i4", "<i8"});
+  InputFile file(path, "a NumPy array of shape (m, 3)");
+  const Layout layout = {"m", 3, "<i4", "<i8"};
+  Array array(path, file, layout);
   std::vector<std::int32_t> triangles;
   const auto check = [&](auto value, std::size_t i) {
     if (value < lowest || value > std::numeric_limits<std::int32_t>::max()) {
@@ -296,16 +311,21 @@ std::vector<std::int32_t> read_neighbors(const std::string& path) {
   return read_npy_indices(path, -1, "neighbour");
 }
 
-void write_npy_int32(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
-                     std::size_t columns) {
+void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+                       std::size_t columns, IndexType type) {
   if (columns > 0 && values.size() % columns != 0) {
     throw Error(ErrorKind::internal,
                 fmt::format("{}: {} values make no rows of {}", path, values.size(), columns));
   }
-  const std::vector<std::size_t> shape = columns == 0
-                                             ? std::vector<std::size_t>{values.size()}
-                                             : std::vector<std::size_t>{values.size() / columns, columns};
-  write_npy(outputs, path, "<i4", shape_text(shape), values.data(), values.size() * sizeof(std::int32_t));
+  const std::size_t rows = columns == 0 ? values.size() : values.size() / columns;
+  const std::string header = npy_header(descr_of(type), rows, columns);
+  OutputFile& file = outputs.open(path);
+  file.write(header.data(), header.size());
+  if (type == IndexType::int32) {
+    file.write(values.data(), values.size() * sizeof(std::int32_t));
+  } else {
+    for (const std::int64_t value : values) file.write_value(value);
+  }
 }
 
 }  // namespace flaunay::io

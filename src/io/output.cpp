@@ -212,6 +212,18 @@ void OutputFile::write_through(const char* data, std::size_t bytes) {
   }
 }
 
+void OutputFile::write_at(std::uint64_t place, const void* data, std::size_t bytes) {
+  const char* next = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t written = ::pwrite(descriptor_, next, bytes, static_cast<off_t>(place));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, "cannot be written: {}", system_reason(errno));
+    next += written;
+    place += static_cast<std::uint64_t>(written);
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
 void OutputFile::write_to_disk() {
   // Some file systems find only now that the disk is full. Others have no such call.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) {

@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -14,6 +15,9 @@
 #include "io/temporary.hpp"
 
 namespace flaunay::io {
+
+/// The type of the indices in a file.
+enum class IndexType { int32, int64 };
 
 /// What the system tells files apart by, whatever their paths.
 struct FileId {
@@ -63,6 +67,9 @@ class OutputFile {
     flush_if_full();
   }
   void write(const void* data, std::size_t bytes);
+  /// Writes at a place of the file, counted in bytes from its beginning, whatever else is written. Only
+  /// regular files have places.
+  void write_at(std::uint64_t place, const void* data, std::size_t bytes);
   template <typename Value>
   void write_value(const Value& value) {
     write(&value, sizeof value);

@@ -116,7 +116,7 @@ CodePoint first_code_point(std::string_view text) {
   return {value, bytes};
 }
 
-void check_text(const std::string& name, std::string_view text) {
+void check_text(const std::string& name, std::string_view text, std::size_t lines_before) {
   const char* const end = text.data() + text.size();
   const char* c = text.data();
   while ((c = skip_plain(c, end)) != end) {
@@ -125,7 +125,7 @@ void check_text(const std::string& name, std::string_view text) {
       c += next.bytes;
       continue;
     }
-    const auto line = std::count(text.data(), c, '\n') + 1;
+    const auto line = lines_before + static_cast<std::size_t>(std::count(text.data(), c, '\n')) + 1;
     const char* line_begin = c;
     while (line_begin != text.data() && line_begin[-1] != '\n') --line_begin;
     fail(name, "line {}, column {}: byte 0x{:02x} is {}; expected text in UTF-8", line, c - line_begin + 1,

@@ -75,8 +75,8 @@ struct CodePoint {
 CodePoint first_code_point(std::string_view text);
 
 /// Throws Error(input) that names the place if the text is not UTF-8 or has control characters besides blanks
-/// and line ends.
-void check_text(const std::string& name, std::string_view text);
+/// and line ends. lines_before: of the file, before the text.
+void check_text(const std::string& name, std::string_view text, std::size_t lines_before = 0);
 
 /// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
 /// fields. With Separator::blanks_or_comma, fields may be in double quotes.
@@ -84,12 +84,14 @@ class Lines {
  public:
   enum class Separator { blanks, blanks_or_comma };
 
-  /// name: the beginning of messages. The text must outlive this object. Throws what check_text throws.
-  Lines(std::string name, std::string_view text, Separator separator)
-      : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma) {
+  /// name: the beginning of messages. The text must outlive this object; if it is a later piece of a file,
+  /// `lines_before` are before it. Throws what check_text throws.
+  Lines(std::string name, std::string_view text, Separator separator, std::size_t lines_before = 0)
+      : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma), number_(lines_before) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
-    check_text(name_, text);
+    const bool is_marked = lines_before == 0 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark;
+    if (is_marked) text.remove_prefix(kByteOrderMark.size());
+    check_text(name_, text, lines_before);
     next_line_ = text.data();
     text_end_ = text.data() + text.size();
   }
@@ -179,6 +181,7 @@ class Lines {
   }
 
   const std::string& name() const { return name_; }
+  /// The number of the line, in the file; after the last one, how many lines there are.
   std::size_t number() const { return number_; }
   /// An upper bound of the number of lines left, for reserving memory.
   std::size_t lines_left() const {
@@ -226,12 +229,12 @@ class Lines {
 
   std::string name_;
   bool commas_;
+  std::size_t number_;
   const char* next_line_;
   const char* text_end_;
   const char* line_begin_ = nullptr;
   const char* line_end_ = nullptr;
   const char* cursor_ = nullptr;
-  std::size_t number_ = 0;
   std::size_t fields_taken_ = 0;
 };
 
