@@ -124,7 +124,8 @@ void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const Halv
                                     .parts = parts,
                                     .solved = rings.solved,
                                     .removed = seams.removed,
-                                    .slots = seams.slots});
+                                    .slots = seams.slots,
+                                    .account = rings.device_account});
 }
 
 }  // namespace
