@@ -19,9 +19,9 @@ kernel void walk_seams(int n, int spread, int height, int places, global const i
                        global ring_edge* restrict edges, global int* restrict vertex_edge,
                        global solved_block* restrict parts, global solved_block* restrict solved,
                        global int2* restrict crossings, global uchar* restrict removed,
-                       global seam_walk* walks COUNTERS) {
-  const int w = (int)get_global_id(0) / spread;
-  if (w < n && w * spread == (int)get_global_id(0)) {
+                       global seam_walk* walks, global volatile uint* account COUNTERS) {
+  const int w = spread_item(n, spread);
+  if (w < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);

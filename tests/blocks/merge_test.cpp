@@ -300,7 +300,8 @@ struct WalkedSeam {
                                                 .vertex_edge = rings.vertex_edge,
                                                 .parts = parts,
                                                 .solved = rings.solved,
-                                                .states = states});
+                                                .states = states,
+                                                .account = rings.device_account});
     }
     crossings = runtime.arena().allocate<cl_int2>(2 * kernel::CROSSINGS_PER_VERTEX * kPoints);
     removed = testing::upload(runtime, std::vector<cl_uchar>(2 * kPairs, 0));
@@ -320,7 +321,8 @@ struct WalkedSeam {
                                        .solved = rings.solved,
                                        .crossings = crossings,
                                        .removed = removed,
-                                       .walks = walks});
+                                       .walks = walks,
+                                       .account = rings.device_account});
   }
   /// Distinct points of a grid.
   static BlockPoints spread_points() {
