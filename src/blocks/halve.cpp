@@ -27,7 +27,8 @@ struct SortedPoints {
   Buffer<cl_uint> scanned{};  ///< how many distinct points large blocks have before each place
 };
 
-// Drops the duplicates of blocks of more than `capacity` points.
+// Sorts blocks of more than `capacity` points and drops their duplicates. Later rounds have none, and no
+// representative is written then, but such blocks are sorted nowhere else.
 void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
                      std::size_t capacity, const Buffer<cl_int>& representatives,
                      const SortedPoints& sorted) {
