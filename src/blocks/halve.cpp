@@ -10,8 +10,8 @@
 namespace flaunay::blocks {
 namespace {
 
-// A work-item has about so many points of its block.
-constexpr std::size_t kPointsPerItem = 8;
+// A work-item has about so many points of its block, unless the block has more than the largest group can take.
+constexpr std::size_t kPointsPerItem = 4;
 
 std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks, std::size_t groups) {
   // Not less than a warp, which would be there for less, too.
