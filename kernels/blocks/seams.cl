@@ -18,8 +18,8 @@ kernel void walk_seams(int n, int spread, int height, int places, global const i
                        global const uchar* restrict axes, filter_bounds bounds, global const double2* restrict points,
                        global ring_edge* restrict edges, global int* restrict vertex_edge,
                        global solved_block* restrict parts, global solved_block* restrict solved,
-                       global int2* restrict crossings, global uchar* restrict removed,
-                       global seam_walk* walks, global volatile uint* account COUNTERS) {
+                       global int2* restrict crossings, global uchar* restrict removed, global seam_walk* walks,
+                       global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);

@@ -10,7 +10,7 @@
 namespace flaunay::blocks {
 namespace {
 
-// A work-item has about so many points of its block, unless the block has more than the largest group can take.
+// So many points of a block for each work-item, or more in the largest groups.
 constexpr std::size_t kPointsPerItem = 4;
 
 std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks, std::size_t groups) {
