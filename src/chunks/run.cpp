@@ -150,15 +150,18 @@ class Round {
   }
 
   // Whether the other solvers would triangulate all chunks that are left before this one is done with one
-  // more.
+  // more. Of the fastest one that has none this is never so, so that no chunk is left to nobody.
   bool is_faster_without(std::size_t solver, std::size_t held) const {
-    double others = 0;
+    double others = 0, fastest = 0;
     for (std::size_t s = 0; s < paces_.size(); ++s) {
-      if (s != solver) others += paces_[s].speed();
+      if (s == solver) continue;
+      others += paces_[s].speed();
+      fastest = std::max(fastest, paces_[s].speed());
     }
     const double own = paces_[solver].speed();
+    if (own == 0 || others == 0) return false;
     const auto left = static_cast<double>(chunks_.size() - taken_);
-    return own > 0 && others > 0 && static_cast<double>(held + 1) / own > left / others;
+    return static_cast<double>(held + 1) / own > std::max(left / others, 1 / fastest);
   }
 
   // For the other solvers, if there are some. reason: why the solver was lost, null if that is known already.
@@ -252,6 +255,7 @@ class Round {
     const std::lock_guard lock(mutex_);
     ++paces_[solver].chunks;
     paces_[solver].seconds += seconds;
+    changed_.notify_all();  // who is the fastest may be another now
   }
 
   // Ends the turn of chunk k. Returns the number of its first row.
