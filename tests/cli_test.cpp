@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,11 +48,19 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// The int32 values of an .npy file as the command writes it; its shape as NumPy prints it.
+/// The indices in an .npy file as the command writes it; its shape as NumPy prints it.
 struct Array {
   std::string shape;
   std::vector<std::int32_t> values;
+  bool is_wide = false;  ///< int64
 };
+
+template <typename Index>
+std::vector<std::int32_t> indices_of(const std::string& bytes) {
+  std::vector<Index> values(bytes.size() / sizeof(Index));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Index));
+  return {values.begin(), values.end()};
+}
 
 Array read_array(const fs::path& path) {
   const std::string file = contents(path);
@@ -60,14 +69,14 @@ Array read_array(const fs::path& path) {
   const std::size_t header_size =
       static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]);
   const std::string header = file.substr(10, header_size);
-  EXPECT_NE(header.find("'<i4'"), std::string::npos) << header;
+  array.is_wide = header.find("'<i8'") != std::string::npos;
+  EXPECT_TRUE(array.is_wide || header.find("'<i4'") != std::string::npos) << header;
   EXPECT_NE(header.find("'fortran_order': False"), std::string::npos) << header;
   const std::size_t open = header.find('('), close = header.find(')');
   EXPECT_NE(close, std::string::npos) << header;
   array.shape = header.substr(open, close - open + 1);
-  const std::size_t start = 10 + header_size;
-  array.values.resize((file.size() - start) / 4);
-  if (!array.values.empty()) std::memcpy(array.values.data(), file.data() + start, 4 * array.values.size());
+  const std::string bytes = file.substr(10 + header_size);
+  array.values = array.is_wide ? indices_of<std::int64_t>(bytes) : indices_of<std::int32_t>(bytes);
   return array;
 }
 
@@ -123,8 +132,8 @@ TEST_F(CommandUsageTest, RequestsThatMakeNoSense) {
   expect_error(kUsage, {"empty"}, {"triangulate", points, "-o", ""});
   expect_error(kUsage, {"many"}, {"generate", "uniform", "many", "-o", path("many.npy")});
   expect_error(kUsage, {"-5"}, {"generate", "uniform", "-5", "-o", path("negative.npy")});
-  expect_error(kUsage, {"4000000000", "2147483647"},
-               {"generate", "uniform", "4000000000", "-o", path("g.npy")});
+  expect_error(kBadInput, {"g.npy", "has room for"},
+               {"generate", "uniform", "4000000000000000000", "-o", path("g.npy")});
   expect_error(kUsage, {"output"}, {"generate", "uniform", "10"});
 }
 
@@ -246,7 +255,7 @@ TEST_F(CommandUsageTest, MessagesEscapeWhatATerminalWouldObey) {
 using CommandBadInputTest = CommandTest;
 
 TEST_F(CommandBadInputTest, MissingFile) {
-  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin"}) {
+  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin", ".las"}) {
     expect_error(kBadInput, {std::string("missing") + ending, "No such file"},
                  {"triangulate", path(std::string("missing") + ending), "-o", path("mesh.off")});
   }
@@ -258,7 +267,7 @@ TEST_F(CommandBadInputTest, ADirectoryIsNoFile) {
 }
 
 TEST_F(CommandBadInputTest, EmptyFile) {
-  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin"}) {
+  for (const char* ending : {".npy", ".node", ".xy", ".txt", ".csv", ".bin", ".las"}) {
     const std::string file = write(std::string("empty") + ending, "");
     expect_error(kBadInput, {std::string("empty") + ending}, {"triangulate", file, "-o", path("mesh.off")});
   }
@@ -586,7 +595,8 @@ TEST_F(CommandDeviceTest, WhatWouldFitDependsOnTheLimitsOfTheProcess) {
   run_well({"generate", "uniform", "4000000", "-o", path("points.npy")}, {});
   // Enough for the driver, but not for the points, which take 1.2 GB at most. In kilobytes.
   const std::string limited = "ulimit -v 1200000; exec '" FLAUNAY_EXECUTABLE "' triangulate '" +
-                              path("points.npy") + "' 2>'" + path("message") + "'";
+                              path("points.npy") + "' -o '" + path("mesh.off") + "' 2>'" + path("message") +
+                              "'";
   const int status = std::system(limited.c_str());
   EXPECT_EQ(WEXITSTATUS(status), kDevice);
   const std::string message = contents(path("message"));
@@ -907,6 +917,165 @@ TEST_F(CommandTriangulateTest, CountPrintsATableByComponent) {
   // No points, no division by their number.
   const std::string none = write("none.xy", "# none\n");
   run_well({"triangulate", none, "--mode", "dwyer", "--count"}, kNoPlatform);
+}
+
+// --------------------------------------------------------------------------------------------------- chunks
+
+class CommandChunksTest : public CommandTest {
+ protected:
+  Arguments triangulate(const std::string& input, const Arguments& options) const {
+    Arguments all = {"triangulate", input};
+    for (const char* array : {"triangles", "neighbors", "hull", "duplicates"}) {
+      all.insert(all.end(), {"--" + std::string(array), path(array) + ".npy"});
+    }
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+  /// The files are those of the call that was made before, but for the order of triangles.
+  void expect_same(const Rows& triangles, const Array& hull, const Array& duplicates, bool is_wide) const {
+    for (const char* name : {"triangles.npy", "neighbors.npy", "hull.npy", "duplicates.npy"}) {
+      EXPECT_EQ(read_array(path(name)).is_wide, is_wide) << name;
+    }
+    EXPECT_EQ(sorted_rows(path("triangles.npy")), triangles);
+    EXPECT_EQ(read_array(path("hull.npy")).values, hull.values);
+    EXPECT_EQ(read_array(path("hull.npy")).shape, hull.shape);
+    EXPECT_EQ(read_array(path("duplicates.npy")).values, duplicates.values);
+  }
+};
+
+TEST_F(CommandChunksTest, EveryFormatHasTheTriangulationOfOneCall) {
+  run_well({"generate", "small-integers", "4000", "-o", path("points.npy")}, kNoPlatform);
+  run_well(triangulate(path("points.npy"), {"--quiet"}), kNoPlatform);
+  const Rows triangles = sorted_rows(path("triangles.npy"));
+  const Array hull = read_array(path("hull.npy")), duplicates = read_array(path("duplicates.npy"));
+  for (const char* ending : {".npy", ".node", ".xy", ".csv", ".bin"}) {
+    const std::string input = path("points" + std::string(ending));
+    run_well({"generate", "small-integers", "4000", "-o", input}, kNoPlatform);
+    for (const Arguments& options :
+         {Arguments{"--chunk-points", "500"}, Arguments{"--memory", "1G", "--scratch", path("")},
+          Arguments{"--chunk-points", "900", "--index", "64"}, Arguments{"--device", "host,host"}}) {
+      SCOPED_TRACE(input + " " + options[0] + " " + options[1]);
+      const std::vector<std::string> before = files();
+      const Outcome outcome = run_well(triangulate(input, options), kNoPlatform);
+      EXPECT_NE(outcome.out.find(" chunk"), std::string::npos) << outcome.out;
+      expect_same(triangles, hull, duplicates, options.size() == 4 && options[3] == "64");
+      run_well({"verify", input, path("triangles.npy"), "--neighbors", path("neighbors.npy")}, kNoPlatform);
+      EXPECT_EQ(files(), before) << "something was left";
+    }
+  }
+  run_well(triangulate("-", {"--chunk-points", "500"}), kNoPlatform, contents(path("points.xy")));
+  expect_same(triangles, hull, duplicates, false);
+}
+
+TEST_F(CommandChunksTest, IndicesOf64BitsWithoutChunks) {
+  run_well({"generate", "uniform", "500", "-o", path("points.npy")}, kNoPlatform);
+  run_well(triangulate(path("points.npy"), {"--index", "32"}), kNoPlatform);
+  const Rows triangles = sorted_rows(path("triangles.npy"));
+  const Array hull = read_array(path("hull.npy")), duplicates = read_array(path("duplicates.npy"));
+  run_well(triangulate(path("points.npy"), {"--index", "64"}), kNoPlatform);
+  expect_same(triangles, hull, duplicates, true);
+}
+
+TEST_F(CommandChunksTest, StatisticsHaveRoundsAndDevices) {
+  run_well({"generate", "uniform", "5000", "-o", path("points.npy")}, kNoPlatform);
+  run_well({"triangulate", path("points.npy"), "--chunk-points", "500", "--stats", path("s.json")},
+           kNoPlatform);
+  const nlohmann::json statistics = nlohmann::json::parse(contents(path("s.json")));
+  EXPECT_EQ(statistics["points"], 5000);
+  EXPECT_EQ(statistics["mode"], "blocks");
+  EXPECT_GT(statistics["points_per_second"], 0);
+  EXPECT_FALSE(statistics["phases"].empty());
+  const nlohmann::json& chunks = statistics["chunks"];
+  ASSERT_FALSE(chunks["rounds"].empty());
+  EXPECT_EQ(chunks["rounds"][0]["points"], 5000);
+  std::uint64_t number = 0, triangles = 0;
+  for (const nlohmann::json& round : chunks["rounds"]) {
+    number += round["chunks"].get<std::uint64_t>();
+    triangles += round["triangles"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(chunks["number"], number);
+  EXPECT_GT(number, 1u);
+  EXPECT_EQ(statistics["triangles"], triangles);
+  ASSERT_EQ(chunks["devices"].size(), 1u);
+  EXPECT_EQ(chunks["devices"][0]["device"], "host");
+  EXPECT_GE(chunks["devices"][0]["points"], 5000);
+}
+
+TEST_F(CommandChunksTest, WhatChunksCannotDoIsRefusedFirst) {
+  // The input is missing: that the option is what is complained of shows that it comes first.
+  const auto refused = [this](const std::vector<std::string>& parts, Arguments arguments) {
+    arguments.insert(arguments.begin(), {"triangulate", path("missing.xy")});
+    expect_error(kUsage, parts, arguments);
+  };
+  for (const Arguments& chunks : {Arguments{"--memory", "4G"}, Arguments{"--chunk-points", "50"},
+                                  Arguments{"--device", "all"}, Arguments{"--device", "host,#0"}}) {
+    const auto with = [&chunks](Arguments more) {
+      more.insert(more.end(), chunks.begin(), chunks.end());
+      return more;
+    };
+    refused({"--output", "--triangles"}, with({"-o", path("mesh.off")}));
+    refused({"--profile"}, with({"--profile"}));
+    refused({"--count"}, with({"--count"}));
+    refused({"--mode", "blocks", "flattened"}, with({"--mode", "flattened"}));
+  }
+  refused({"--memory", "-4G"}, {"--memory", "-4G"});
+  refused({"--memory", "0"}, {"--memory", "0"});
+  refused({"--memory", "4X"}, {"--memory", "4X"});
+  refused({"--memory"}, {"--memory", "99999999999T"});
+  refused({"--chunk-points", "0"}, {"--chunk-points", "0"});
+  refused({"--chunk-points", "-5"}, {"--chunk-points", "-5"});
+  refused({"--index", "16"}, {"--index", "16"});
+  refused({"--scratch", "nowhere"}, {"--memory", "1G", "--scratch", path("nowhere")});
+  refused({"--device", "host,"}, {"--device", "host,"});
+  refused({"--device", ",host"}, {"--device", ",host"});
+}
+
+TEST_F(CommandChunksTest, WrongInputAndOutput) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> points(4000);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<double>(i * i % 997);
+  points.back() = nan;
+  const std::string last = write("last.npy", npy("<f8", "False", "(2000, 2)", bytes_of(points)));
+  const Arguments chunks = {"--chunk-points", "100"};
+  expect_error(kBadInput, {last + ": point 1999 is (", "finite"}, triangulate(last, chunks));
+  const std::string text = write("points.xy", "0 0\n1 0\n0 1x\n");
+  expect_error(kBadInput, {"points.xy", "line 3, column 3"}, triangulate(text, chunks));
+  expect_error(kBadInput, {"missing.bin", "No such file"}, triangulate(path("missing.bin"), chunks));
+  expect_error(kBadInput, {"scan.laz", "compressed"}, triangulate(write("scan.laz", "LASF"), chunks));
+  ASSERT_EQ(mkfifo(path("pipe.npy").c_str(), 0600), 0);
+  expect_error(kUsage, {"pipe.npy", "no regular file"},
+               {"triangulate", text, "--memory", "1G", "--triangles", path("pipe.npy")});
+  expect_error(kDevice, {"no such device"},
+               triangulate(write("good.xy", "0 0\n1 0\n0 1\n"), {"--device", "host,no such device"}), {});
+}
+
+TEST_F(CommandChunksTest, DegenerateInput) {
+  for (const auto& [text, rows] : {std::pair("# none\n", 0),
+                                   {"1 1\n", 0},
+                                   {"1 1\n1 1\n", 0},
+                                   {"0 0\n1 1\n2 2\n3 3\n", 0},
+                                   {"0 0\n1 0\n0 1\n", 1}}) {
+    SCOPED_TRACE(text);
+    const std::string input = write("points.xy", text);
+    run_well(triangulate(input, {}), kNoPlatform);
+    const Array hull = read_array(path("hull.npy")), duplicates = read_array(path("duplicates.npy"));
+    run_well(triangulate(input, {"--chunk-points", "2"}), kNoPlatform);
+    EXPECT_EQ(read_array(path("triangles.npy")).shape, "(" + std::to_string(rows) + ", 3)");
+    EXPECT_EQ(read_array(path("hull.npy")).values, hull.values);
+    EXPECT_EQ(read_array(path("duplicates.npy")).values, duplicates.values);
+  }
+}
+
+// PoCL can be told to have one GiB, which 4 million points do not fit.
+TEST_F(CommandChunksTest, TheyAreChosenIfThePointsDoNotFit) {
+  run_well({"generate", "uniform", "4000000", "-o", path("points.npy")}, kNoPlatform);
+  const Outcome outcome = run_well({"triangulate", path("points.npy"), "--device", "#0", "--scratch",
+                                    path(""), "--triangles", path("t.npy")},
+                                   {{"POCL_MEMORY_LIMIT", "1"}});
+  EXPECT_NE(outcome.out.find("note: about 4000000 points are too many at once: "), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find(" chunks"), std::string::npos) << outcome.out;
+  run_well({"verify", path("points.npy"), path("t.npy")}, kNoPlatform);
 }
 
 // ------------------------------------------------------------------------------------ partition and assemble

@@ -14,6 +14,7 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "flaunay/flaunay.hpp"
+#include "io/file.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::cli {
@@ -27,6 +28,14 @@ struct GenerateRequest {
   std::string output;
 };
 
+// The least bytes that n points take in a file: those of two doubles, or of "0 0" and the end of the line.
+std::uint64_t least_bytes(const std::string& path, std::uint64_t n) {
+  const std::string ending = io::ending_of(path);
+  const std::uint64_t point = ending == ".npy" || ending == ".bin" ? 2 * sizeof(double) : 4;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  return n > kMost / point ? kMost : n * point;
+}
+
 int generate(const GenerateRequest& request) {
   if (request.output == "-") {
     // As in every filter, a closed pipe ends the program without a message.
@@ -34,6 +43,7 @@ int generate(const GenerateRequest& request) {
   }
   OutputFiles outputs("-");
   outputs.add_points(request.output);
+  check_disk_space({{request.output, least_bytes(request.output, request.count)}});
   io::PointWriter writer(outputs.files(), request.output, request.count);
   io::generate(request.distribution, request.count, request.seed,
                [&writer](const double* coordinates, std::size_t count) { writer.write(coordinates, count); });

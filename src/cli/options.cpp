@@ -45,9 +45,9 @@ void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>&
   add_choice(command, "--hull-variant", variant, description, variants);
 }
 
-void add_device(CLI::App* command, std::string& device) {
-  command->add_option("--device", device,
-                      "OpenCL device: a part of its name, or #k for the k-th that flaunay devices lists");
+CLI::Option* add_device(CLI::App* command, std::string& device) {
+  return command->add_option(
+      "--device", device, "OpenCL device: a part of its name, or #k for the k-th that flaunay devices lists");
 }
 
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description) {

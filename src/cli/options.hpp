@@ -35,7 +35,7 @@ void add_cut(CLI::App* command, Cut& cut);
 /// variants: those that the subcommand supports.
 void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>& variants,
                       const std::string& description);
-void add_device(CLI::App* command, std::string& device);
+CLI::Option* add_device(CLI::App* command, std::string& device);
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description);
 /// --memory: a number of bytes such as 4G, at least 1.
 CLI::Option* add_memory(CLI::App* command, std::uint64_t& bytes, const std::string& description);

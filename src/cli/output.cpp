@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
 #include "flaunay/flaunay.hpp"
+#include "host/system_memory.hpp"
 #include "io/file.hpp"
 #include "io/mesh.hpp"
 #include "io/points.hpp"
+#include "io/scratch.hpp"
 
 namespace flaunay::cli {
 
@@ -20,6 +23,32 @@ bool print(const std::string& text) {
     return true;
   if (errno == EPIPE || errno == EBADF) return false;
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
+
+void check_disk_space(const std::vector<SizedOutput>& files) {
+  struct Disk {
+    dev_t device;
+    std::string path, folder;  // of one of its files
+    std::uint64_t needed;
+  };
+  std::vector<Disk> disks;
+  for (const SizedOutput& file : files) {
+    if (file.path.empty() || file.path == "-") continue;
+    const io::Target target = io::find_target(file.path);
+    if (target.is_direct) continue;
+    const auto same = [&](const Disk& disk) { return disk.device == target.folder_id.device; };
+    auto disk = std::find_if(disks.begin(), disks.end(), same);
+    if (disk == disks.end())
+      disk = disks.insert(disk, {target.folder_id.device, file.path, target.folder, 0});
+    disk->needed += file.bytes;
+  }
+  for (const Disk& disk : disks) {
+    const std::uint64_t room = io::free_bytes(disk.folder);
+    if (disk.needed > room) {
+      io::fail(disk.path, "the disk of '{}' has room for {}, but the outputs need {}", disk.folder,
+               host::mebibytes(room), host::mebibytes(disk.needed));
+    }
+  }
 }
 
 OutputFiles::OutputFiles(const std::string& input) : input_(input) {}

@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kSlow(500);
 constexpr std::chrono::milliseconds kRedraw(100);
+// Before, an estimate would jump.
+constexpr double kEstimateAfterSeconds = 3;
 constexpr const char* kClearLine = "\r\x1b[K";
 
 bool on_terminal() {
@@ -25,6 +27,14 @@ bool on_terminal() {
 std::size_t terminal_width() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string time_left(double seconds) {
+  const auto rounded = static_cast<long long>(std::ceil(seconds));
+  const long long minutes = rounded / 60, hours = minutes / 60;
+  if (hours > 0) return fmt::format("about {}:{:02} h left", hours, minutes % 60);
+  if (minutes > 0) return fmt::format("about {}:{:02} min left", minutes, rounded % 60);
+  return fmt::format("about {} s left", rounded);
 }
 
 // A failure to write is ignored, since the line is only for information.
@@ -45,6 +55,10 @@ void Progress::update(const std::string& stage, int level, double done) {
   stage_ = stage;
   stage_if_slow_.clear();
   level_ = level;
+  if (first_done_ < 0 || done < done_) {
+    first_done_ = done;
+    first_time_ = Clock::now();
+  }
   done_ = done;
 }
 
@@ -89,6 +103,10 @@ std::string Progress::line() const {
     const int filled = static_cast<int>(done * kBarLength);
     text = fmt::format("{:<28} [{:#<{}}{:.<{}}] {:3.0f}%", text, "", filled, "", kBarLength - filled,
                        std::floor(100 * done));
+    const double passed = std::chrono::duration<double>(Clock::now() - first_time_).count();
+    if (passed >= kEstimateAfterSeconds && done > first_done_) {
+      text += ", " + time_left(passed * (1 - done) / (done - first_done_));
+    }
   }
   return text;
 }

@@ -19,7 +19,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// level: -1 if the stage has none; done: the finished share from 0 to 1, or -1 if it is unknown.
+  /// level: -1 if the stage has none; done: the finished share from 0 to 1, or -1 if it is unknown. If it
+  /// grows for some seconds, the line says about how long the rest takes.
   void update(const std::string& stage, int level = -1, double done = -1);
   /// For a stage that needs an explanation only if it takes longer: `if_slow` is shown after half a second.
   void update_slow(const std::string& stage, const std::string& if_slow);
@@ -40,6 +41,8 @@ class Progress {
   Clock::time_point stage_start_;
   int level_ = -1;
   double done_ = -1;
+  double first_done_ = -1;  // since when it has grown
+  Clock::time_point first_time_;
   std::thread drawer_;
 };
 

@@ -18,7 +18,8 @@ namespace {
 // Shorter preparations are not mentioned in the final line.
 constexpr double kNoticeableSeconds = 0.05;
 
-double points_per_second(const Statistics& statistics) {
+template <typename AnyStatistics>
+double points_per_second(const AnyStatistics& statistics) {
   return statistics.seconds > 0 ? static_cast<double>(statistics.points) / statistics.seconds : 0;
 }
 
@@ -26,20 +27,20 @@ double compiling_seconds(const Statistics& statistics, const RunFacts& facts) {
   return facts.compiling_seconds + statistics.build_seconds;
 }
 
-std::string counted(std::size_t count, const char* one, const char* many) {
+std::string counted(std::uint64_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-std::string phase_times(const Statistics& statistics, const RunFacts& facts) {
+std::string phase_times(const std::vector<PhaseStatistics>& phases, double compiling, const RunFacts& facts) {
   std::string times = fmt::format("reading {:.3f} s", facts.reading_seconds);
   auto out = std::back_inserter(times);
   const auto add_if_noticeable = [&](const char* what, double seconds) {
     if (seconds >= kNoticeableSeconds) fmt::format_to(out, ", {} {:.3f} s", what, seconds);
   };
   add_if_noticeable("preparing the device", facts.opening_seconds);
-  add_if_noticeable("compiling kernels", compiling_seconds(statistics, facts));
+  add_if_noticeable("compiling kernels", compiling);
   add_if_noticeable("solving", facts.solving_seconds);
-  for (const PhaseStatistics& phase : statistics.phases) {
+  for (const PhaseStatistics& phase : phases) {
     fmt::format_to(out, ", {} {:.3f} s", phase.name, phase.seconds);
   }
   fmt::format_to(out, ", writing {:.3f} s", facts.writing_seconds);
@@ -49,9 +50,39 @@ std::string phase_times(const Statistics& statistics, const RunFacts& facts) {
 // The end of every final line.
 std::string times_and_speed(const Statistics& statistics, const RunFacts& facts) {
   // Says so when no device was used, since one may have been expected.
-  return fmt::format("{}; {}{} in {:.3f} s, {:.0f} points per second\n", phase_times(statistics, facts),
+  return fmt::format("{}; {}{} in {:.3f} s, {:.0f} points per second\n",
+                     phase_times(statistics.phases, compiling_seconds(statistics, facts), facts),
                      facts.what_was_done, statistics.device == "host" ? " on the host" : "",
                      statistics.seconds, points_per_second(statistics));
+}
+
+template <typename AnyStatistics>
+std::string counts(const AnyStatistics& statistics) {
+  return fmt::format("{}, {}, {}, {}", counted(statistics.points, "point", "points"),
+                     counted(statistics.duplicates, "duplicate", "duplicates"),
+                     counted(statistics.triangles, "triangle", "triangles"),
+                     counted(statistics.hull_vertices, "hull vertex", "hull vertices"));
+}
+
+std::uint64_t count_chunks(const ChunkStatistics& statistics) {
+  std::uint64_t chunks = 0;
+  for (const ChunkRound& round : statistics.rounds) chunks += round.chunks;
+  return chunks;
+}
+
+using Json = nlohmann::ordered_json;
+
+Json phases_json(const std::vector<PhaseStatistics>& phases) {
+  Json list = Json::array();
+  for (const PhaseStatistics& phase : phases) {
+    list.push_back({{"name", phase.name}, {"seconds", phase.seconds}});
+  }
+  return list;
+}
+
+// JSON must be UTF-8, but names of files need not be.
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 OperationCounts sum_over_levels(const Work& work, std::size_t component) {
@@ -72,11 +103,49 @@ std::string work_row(const char* name, const OperationCounts& counts, std::size_
 }  // namespace
 
 std::string summary(const Statistics& statistics, const RunFacts& facts) {
-  return fmt::format("{}, {}, {}, {}; {}", counted(statistics.points, "point", "points"),
-                     counted(statistics.duplicates, "duplicate", "duplicates"),
-                     counted(statistics.triangles, "triangle", "triangles"),
-                     counted(statistics.hull_vertices, "hull vertex", "hull vertices"),
-                     times_and_speed(statistics, facts));
+  return fmt::format("{}; {}", counts(statistics), times_and_speed(statistics, facts));
+}
+
+std::string chunk_summary(const ChunkStatistics& statistics, const RunFacts& facts) {
+  return fmt::format("{}; {}; triangulated in {} and {} in {:.3f} s, {:.0f} points per second\n",
+                     counts(statistics), phase_times(statistics.phases, 0, facts),
+                     counted(count_chunks(statistics), "chunk", "chunks"),
+                     counted(statistics.rounds.size(), "round", "rounds"), statistics.seconds,
+                     points_per_second(statistics));
+}
+
+std::string chunk_statistics_json(const ChunkStatistics& statistics, const RunFacts& facts) {
+  Json json;
+  json["flaunay"] = version();
+  json["mode"] = facts.mode;
+  json["input"] = facts.input;
+  json["points"] = statistics.points;
+  json["duplicates"] = statistics.duplicates;
+  json["triangles"] = statistics.triangles;
+  json["hull_vertices"] = statistics.hull_vertices;
+  json["seconds"] = {{"reading", facts.reading_seconds},
+                     {"triangulating", statistics.seconds},
+                     {"writing", facts.writing_seconds}};
+  json["points_per_second"] = points_per_second(statistics);
+  json["undecided_predicates"] = statistics.undecided;
+  json["phases"] = phases_json(statistics.phases);
+  Json& chunks = json["chunks"];
+  chunks["number"] = count_chunks(statistics);
+  chunks["points"] = statistics.chunk_points;
+  chunks["scratch_bytes"] = statistics.scratch_bytes;
+  chunks["rounds"] = Json::array();
+  for (const ChunkRound& round : statistics.rounds) {
+    chunks["rounds"].push_back({{"points", round.points},
+                                {"chunks", round.chunks},
+                                {"triangles", round.triangles},
+                                {"handed_on", round.handed_on}});
+  }
+  chunks["devices"] = Json::array();
+  for (std::size_t k = 0; k < statistics.devices.size(); ++k) {
+    chunks["devices"].push_back(
+        {{"device", statistics.devices[k]}, {"points", statistics.device_points.at(k)}});
+  }
+  return text_of(json);
 }
 
 std::string partition_summary(const research::Partition& partition, const RunFacts& facts) {
@@ -138,7 +207,6 @@ std::string work_table(const research::Triangulation& result) {
 
 std::string statistics_json(const research::Triangulation& result, const RunFacts& facts) {
   const Statistics& statistics = result.statistics;
-  using Json = nlohmann::ordered_json;
   Json json;
   json["flaunay"] = version();
   // The keys are always the same; values that a mode does not have are null.
@@ -170,10 +238,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["rounds"] = statistics.rounds;
   json["round_points"] = statistics.round_points;
   json["merged_points"] = statistics.merged_points;
-  json["phases"] = Json::array();
-  for (const PhaseStatistics& phase : statistics.phases) {
-    json["phases"].push_back({{"name", phase.name}, {"seconds", phase.seconds}});
-  }
+  json["phases"] = phases_json(statistics.phases);
   json["levels"] = Json::array();
   for (const LevelStatistics& level : result.levels) {
     json["levels"].push_back({{"regions", level.regions},
@@ -214,8 +279,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
     for (const auto& level : result.work.levels) json["work"]["levels"].push_back(components(level));
     json["work"]["endgame_sizes"] = result.work.endgame_sizes;
   }
-  // JSON must be UTF-8, but names of files need not be.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text_of(json);
 }
 
 }  // namespace flaunay::cli

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "flaunay/chunks.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::cli {
@@ -24,6 +25,10 @@ struct RunFacts {
 
 /// The final line: counts, the time of each phase, points per second.
 std::string summary(const Statistics& statistics, const RunFacts& facts);
+
+/// The same for a triangulation in chunks.
+std::string chunk_summary(const ChunkStatistics& statistics, const RunFacts& facts);
+std::string chunk_statistics_json(const ChunkStatistics& statistics, const RunFacts& facts);
 
 /// The final line for a partition.
 std::string partition_summary(const research::Partition& partition, const RunFacts& facts);

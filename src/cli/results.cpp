@@ -35,14 +35,14 @@ void announce(OutputFiles& outputs, const ResultPaths& paths) {
 }
 
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
-                   RunFacts& facts, Progress& progress, OutputFiles& outputs) {
+                   RunFacts& facts, Progress& progress, OutputFiles& outputs, io::IndexType index) {
   Stopwatch stopwatch;
   progress.update("writing");
   if (!paths.mesh.empty()) io::write_mesh(outputs.files(), paths.mesh, points, mesh);
   for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
     const ArrayFile& file = kArrayFiles[k];
     if (paths.arrays[k].empty()) continue;
-    io::write_npy_indices(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns);
+    io::write_npy_indices(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns, index);
   }
   outputs.files().write_out();
   facts.writing_seconds = stopwatch.seconds();

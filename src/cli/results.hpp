@@ -16,7 +16,7 @@
 
 namespace flaunay::cli {
 
-/// An array that the command can write, to a .npy file of int32.
+/// An array that the command can write, to a .npy file of indices. In the order of MeshArray (chunks.hpp).
 struct ArrayFile {
   const char* option;
   const char* description;
@@ -25,11 +25,11 @@ struct ArrayFile {
   bool Options::*computed_if;  ///< null: computed always
 };
 constexpr std::array<ArrayFile, 4> kArrayFiles = {{
-    {"--triangles", "Triangles: .npy, int32, 3 point indices per row", &Triangulation::triangles, 3, nullptr},
-    {"--neighbors", "Neighbours: .npy, int32, the triangle opposite to each vertex, -1 on the hull",
+    {"--triangles", "Triangles: .npy, 3 point indices per row", &Triangulation::triangles, 3, nullptr},
+    {"--neighbors", "Neighbours: .npy, the triangle opposite to each vertex, -1 on the hull",
      &Triangulation::neighbors, 3, &Options::neighbors},
-    {"--hull", "Hull: .npy, int32, counter-clockwise", &Triangulation::hull, 0, nullptr},
-    {"--duplicates", "Duplicates: .npy, int32, for each point the smallest index of an equal point",
+    {"--hull", "Hull: .npy, counter-clockwise", &Triangulation::hull, 0, nullptr},
+    {"--duplicates", "Duplicates: .npy, for each point the smallest index of an equal point",
      &Triangulation::representatives, 0, nullptr},
 }};
 
@@ -54,6 +54,7 @@ void announce(OutputFiles& outputs, const ResultPaths& paths);
 /// Writes and commits the files, and ends the progress. The statistics come last, because they say how long
 /// writing the others took.
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
-                   RunFacts& facts, Progress& progress, OutputFiles& outputs);
+                   RunFacts& facts, Progress& progress, OutputFiles& outputs,
+                   io::IndexType index = io::IndexType::int32);
 
 }  // namespace flaunay::cli

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/chunks.hpp"
 #include "cli/commands.hpp"
 #include "cli/compiling.hpp"
 #include "cli/options.hpp"
@@ -14,6 +15,7 @@
 #include "cli/report.hpp"
 #include "cli/results.hpp"
 #include "flaunay/research.hpp"
+#include "io/point_stream.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::cli {
@@ -33,6 +35,8 @@ struct TriangulateRequest {
   std::string device;
   bool profile = false;
   bool quiet = false;
+  bool in_chunks = false;  ///< the options ask for it
+  ChunkRequest chunks;     ///< without what the other members say, too
 };
 
 const research::ModeInfo& info_of(Mode mode) {
@@ -71,6 +75,39 @@ void check_combination(const CLI::App& command, const TriangulateRequest& reques
   }
 }
 
+// With what the other members of the request say.
+ChunkRequest chunk_request(const TriangulateRequest& request) {
+  ChunkRequest chunks = request.chunks;
+  chunks.input = request.input;
+  chunks.results = request.results;
+  chunks.devices = devices_of(request.device);
+  chunks.quiet = request.quiet;
+  return chunks;
+}
+
+// Opens the device before the points are read if there are so many that they may not fit. Returns whether
+// they do not.
+bool do_not_fit(const TriangulateRequest& request, std::uint64_t points,
+                std::unique_ptr<Triangulator>& triangulator) {
+  if (request.mode != Mode::blocks || points < kMayBeTooMany) return false;
+  triangulator = std::make_unique<Triangulator>(request.device);
+  return are_too_many(points, *triangulator);
+}
+
+int triangulate_too_many(const TriangulateRequest& request, std::uint64_t points,
+                         std::unique_ptr<Triangulator> triangulator) {
+  const std::string reason =
+      fmt::format("about {} points are too many at once: {}", points, what_would_fit(*triangulator));
+  if (!request.results.mesh.empty() || request.profile) {
+    throw Error(
+        ErrorKind::device,
+        fmt::format("{}: {}; without {}, they are triangulated in chunks", request.input, reason,
+                    request.profile ? "--profile" : "--output (but with --triangles and --neighbors)"));
+  }
+  triangulator.reset();
+  return triangulate_in_chunks(chunk_request(request), fmt::format("note: {}\n", reason));
+}
+
 RunFacts facts_of(const TriangulateRequest& request) {
   RunFacts facts;
   facts.input = request.input;
@@ -103,16 +140,24 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
 int triangulate(const TriangulateRequest& request) {
   // The request is checked before any work begins, and the input before a device is opened.
   io::check_points_ending(request.input);
+  if (request.in_chunks) return triangulate_in_chunks(chunk_request(request), "");
   OutputFiles outputs(request.input);
   announce(outputs, request.results);
+  const std::uint64_t about = io::estimate_points(request.input);
 
   RunFacts facts = facts_of(request);
-  Progress progress(!request.quiet);
   Stopwatch stopwatch;
+  std::unique_ptr<Triangulator> triangulator;
+  if (do_not_fit(request, about, triangulator)) {
+    return triangulate_too_many(request, about, std::move(triangulator));
+  }
+  facts.opening_seconds = stopwatch.restart();
+  Progress progress(!request.quiet);
 
   progress.update("reading");
   const io::Points points = io::read_points(request.input);
   facts.reading_seconds = stopwatch.restart();
+  const io::IndexType index = index_type(request.chunks.index, points.size(), request.results);
 
   const research::Options options = options_of(request, progress);
   research::Triangulation mesh;
@@ -120,17 +165,17 @@ int triangulate(const TriangulateRequest& request) {
     mesh = research::triangulate_on_host(points.coordinates.data(), {0, points.size()}, options);
   } else {
     progress.update_slow("preparing the device", "compiling kernels, cached for next time");
-    Triangulator triangulator(request.device);
-    facts.opening_seconds = stopwatch.restart();
+    if (triangulator == nullptr) triangulator = std::make_unique<Triangulator>(request.device);
+    facts.opening_seconds += stopwatch.restart();
     research::Options silent = options;
     silent.progress = nullptr;
     facts.compiling_seconds = compile_kernels(points.size(), request.mode, [&](std::size_t n) {
-      research::triangulate(triangulator, points.coordinates.data(), n, silent);
+      research::triangulate(*triangulator, points.coordinates.data(), n, silent);
     });
-    mesh = research::triangulate(triangulator, points.coordinates.data(), points.size(), options);
+    mesh = research::triangulate(*triangulator, points.coordinates.data(), points.size(), options);
   }
 
-  write_results(request.results, points, mesh, facts, progress, outputs);
+  write_results(request.results, points, mesh, facts, progress, outputs, index);
 
   if (!request.quiet) {
     print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
@@ -174,13 +219,19 @@ void add_triangulate(CLI::App& app, Action& action) {
                    "Mode partition: number of levels on the device; default: enough for the threads")
       ->check(CLI::Range(1, kMostPartitionLevels));
   add_threads(command, request->threads, "Mode partition: number of host threads; default: one per core");
-  add_device(command, request->device);
+  add_device(command, request->device)
+      ->description(
+          "Device: a part of its name, or #k for the k-th that flaunay devices lists; several with commas "
+          "between them, or all: triangulates in chunks, on each of them");
+  add_chunk_options(command, request->chunks);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
   command->add_flag("--count", request->count, "Count operations, for a table and for the statistics (slow)");
   add_quiet(command, request->quiet);
   command->footer(mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
+    request->in_chunks = asks_for_chunks(*command, request->device);
+    if (request->in_chunks) check_chunk_options(*command, to_string(request->mode));
     action = [request] { return triangulate(*request); };
   });
 }

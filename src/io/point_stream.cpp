@@ -1,6 +1,9 @@
 #include "io/point_stream.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cstring>
 #include <string_view>
 #include <vector>
 
@@ -128,11 +131,12 @@ std::unique_ptr<PointSource> open_point_stream(const std::string& path, const st
 
 std::uint64_t estimate_points(const std::string& path) {
   constexpr std::size_t kBeginning = std::size_t{1} << 16;
-  if (path == "-") return 0;
   const PointFormat format = point_format(path);
-  InputFile file(path, is_text(format) ? expected_text(path) : "points");
-  if (file.size() < 0) return 0;
+  // A pipe is not opened, since it can be read only once.
+  struct stat status {};
+  if (path == "-" || (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))) return 0;
   if (!is_text(format)) return RecordFile(path).size();
+  InputFile file(path, expected_text(path));
   const std::string_view beginning = file.first(kBeginning);
   const auto lines = std::count(beginning.begin(), beginning.end(), '\n') + 1;
   return static_cast<std::uint64_t>(static_cast<double>(file.size()) * static_cast<double>(lines) /

@@ -30,6 +30,7 @@
 #include "io/printable.hpp"
 #include "io/region.hpp"
 #include "io/svg.hpp"
+#include "tests/io/folder.hpp"
 #include "tests/support/paths.hpp"
 
 namespace flaunay::io {
@@ -66,47 +67,8 @@ void write_partition_svg(const std::string& path, const Points& points,
   outputs.commit();
 }
 
-/// A fresh folder for each test, removed after it.
-class IoTest : public testing::Test {
+class IoTest : public FolderTest {
  protected:
-  void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "flaunay-io-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
-  static std::string read(const std::string& file) {
-    std::ostringstream bytes;
-    bytes << std::ifstream(file, std::ios::binary).rdbuf();
-    return bytes.str();
-  }
-  std::set<std::string> names() const {
-    std::set<std::string> all;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_))
-      all.insert(entry.path().filename());
-    return all;
-  }
-
-  static void expect_error(ErrorKind kind, const std::string& start, const std::vector<std::string>& parts,
-                           const std::function<void()>& action) {
-    try {
-      action();
-      ADD_FAILURE() << "no error; expected one about " << start;
-    } catch (const Error& error) {
-      const std::string message = error.what();
-      EXPECT_EQ(error.kind(), kind) << message;
-      EXPECT_EQ(message.compare(0, start.size(), start), 0) << message << "\ndoes not begin with " << start;
-      for (const std::string& part : parts) {
-        EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
-      }
-    }
-  }
   /// Reading points from a file of these bytes must fail with these parts in the message.
   void expect_bad_points(const std::string& name, const std::string& bytes,
                          const std::vector<std::string>& parts) {
@@ -123,16 +85,7 @@ class IoTest : public testing::Test {
   Values points_of(const std::string& name, const std::string& bytes) {
     return read_points(write(name, bytes)).coordinates;
   }
-
-  std::string folder_;
 };
-
-template <typename Value>
-std::string raw(const std::vector<Value>& values) {
-  std::string bytes(values.size() * sizeof(Value), '\0');
-  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
-}
 
 std::string npy(const std::string& dictionary, const std::string& data, int version = 1) {
   std::string bytes = "\x93NUMPY";
