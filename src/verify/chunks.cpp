@@ -492,7 +492,8 @@ class ChunkChecker {
 VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::uint64_t rows, int threads) {
   constexpr std::uint64_t kLeast = std::uint64_t{64} << 20, kFixed = std::uint64_t{24} << 20;
   constexpr std::uint64_t kLeastWindow = std::uint64_t{1} << 18;  // rows; shorter ones have many edges across
-  constexpr std::uint64_t kMostWindow = std::uint64_t{1} << 28;   // so that numbers of vertices have 31 bits
+  constexpr std::uint64_t kMostWindow = std::uint64_t{1}
+                                        << 22;  // longer ones are slower, as caches are small
   constexpr std::uint64_t kMostRange = std::uint64_t{1} << 31;
   if (memory_bytes < kLeast) {
     throw Error(ErrorKind::usage, fmt::format("a check needs {} MiB of memory at least", kLeast >> 20));
