@@ -1075,7 +1075,7 @@ TEST_F(CommandChunksTest, WhatChunksCannotDoIsRefusedFirst) {
   }
   refused({"--memory", "-4G"}, {"--memory", "-4G"});
   refused({"--memory", "0"}, {"--memory", "0"});
-  refused({"--memory", "4X"}, {"--memory", "4X"});
+  refused({"--memory", "unit"}, {"--memory", "4X"});
   refused({"--memory"}, {"--memory", "99999999999T"});
   refused({"--chunk-points", "0"}, {"--chunk-points", "0"});
   refused({"--chunk-points", "-5"}, {"--chunk-points", "-5"});

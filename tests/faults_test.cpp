@@ -192,6 +192,81 @@ TEST_F(CommandFaultsTest, NamesThatDifferInCaseMayBeOneFile) {
   EXPECT_EQ(files(), (std::vector<std::string>{"NEW.npy", "new.npy", "points.xy"}));
 }
 
+// ------------------------------------------------------------------------------------------------- chunks
+
+class ChunkFaultsTest : public CommandFaultsTest {
+ protected:
+  void SetUp() override {
+    CommandFaultsTest::SetUp();
+    run_well({"generate", "uniform", "1000", "-o", path("points.npy")}, kNoPlatform);
+    write("t.npy", "precious");
+    fs::create_directory(path("scratch"));
+  }
+  Arguments in_chunks(const Arguments& options) const {
+    Arguments all = {"triangulate",   path("points.npy"), "--device",    "host",        "--scratch",
+                     path("scratch"), "--triangles",      path("t.npy"), "--neighbors", path("n.npy")};
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+};
+
+TEST_F(ChunkFaultsTest, SignalsLeaveNothingBehind) {
+  const auto before = everything();
+  for (const char* system : {"", ",no-unnamed-files"}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      SCOPED_TRACE(std::to_string(signal) + system);
+      const Outcome outcome = run(in_chunks({"--chunk-points", "100"}),
+                                  with("end-at-sync=" + std::to_string(signal) + std::string(system)));
+      EXPECT_EQ(outcome.signal, signal) << outcome.err;
+      EXPECT_EQ(everything(), before);
+    }
+  }
+}
+
+TEST_F(ChunkFaultsTest, SystemsWithoutUnnamedFiles) {
+  run_well(in_chunks({"--chunk-points", "100"}), with("no-unnamed-files"));
+  run_well({"verify", path("points.npy"), path("t.npy"), "--neighbors", path("n.npy")}, kNoPlatform);
+  EXPECT_TRUE(fs::is_empty(path("scratch")));
+}
+
+TEST_F(ChunkFaultsTest, AFullDiskLeavesOldOutputs) {
+  expect_unchanged({"t.npy", "No space left on device"}, in_chunks({"--memory", "1G"}), with("full-at-sync"));
+}
+
+TEST_F(ChunkFaultsTest, AFullDiskInTheMiddleLeavesOldOutputs) {
+  const auto before = everything();
+  // 36 bytes per point: more than the scratch file has, and fewer than triangles of int64.
+  const std::string command =
+      "\"$FLAUNAY\" triangulate points.npy --device host --scratch scratch --triangles t.npy --memory 1G "
+      "--index 64";
+  const Outcome results = run_script("ulimit -f 70; exec " + command);
+  EXPECT_EQ(results.exit_code, kBadInput) << "signal " << results.signal;
+  EXPECT_EQ(results.err, "flaunay: t.npy: cannot be written: File too large\n");
+  EXPECT_EQ(everything(), before);
+  const Outcome scratch = run_script("ulimit -f 8; exec " + command);
+  EXPECT_EQ(scratch.exit_code, kBadInput) << "signal " << scratch.signal;
+  EXPECT_NE(scratch.err.find("File too large"), std::string::npos) << scratch.err;
+  EXPECT_EQ(everything(), before);
+}
+
+TEST_F(ChunkFaultsTest, ADiskThatIsTooSmallIsFoundFirst) {
+  const std::string mounted = "mkdir disk && mount -t tmpfs -o size=64k none disk";
+  if (run_script("unshare --mount sh -c '" + mounted + "'").exit_code != 0) {
+    GTEST_SKIP() << "file systems cannot be mounted here";
+  }
+  fs::remove(path("disk"));
+  const auto before = everything();
+  const Outcome outcome =
+      run_script("unshare --mount sh -c '" + mounted +
+                 " && { \"$FLAUNAY\" triangulate points.npy --memory 1G --index 64 --triangles disk/t.npy "
+                 "--neighbors disk/n.npy; echo $?; ls -A disk; }'; rmdir disk");
+  EXPECT_EQ(outcome.out, "3\n");
+  EXPECT_EQ(
+      outcome.err,
+      "flaunay: disk/t.npy: the disk of 'disk/' has room for 64.0 KiB, but the outputs need 93.8 KiB\n");
+  EXPECT_EQ(everything(), before);
+}
+
 // ---------------------------------------------------------------------------------------------- partition
 
 class PartitionFaultsTest : public CommandFaultsTest {

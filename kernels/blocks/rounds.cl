@@ -74,21 +74,6 @@ kernel void join_boxes(int n, int sets, int step, global const int* restrict set
   }
 }
 
-static inline double from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
-
-// What is left of a rectangle on the one side of a cut.
-static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int is_high, scaling scale) {
-  const double at = scaled(from_orderable(cut.major), scale);
-  if (cut_axis(cut)) {
-    if (is_high) rectangle.low.y = max(rectangle.low.y, at);
-    if (!is_high) rectangle.high.y = min(rectangle.high.y, at);
-  } else {
-    if (is_high) rectangle.low.x = max(rectangle.low.x, at);
-    if (!is_high) rectangle.high.x = min(rectangle.high.x, at);
-  }
-  return rectangle;
-}
-
 // The edges of a triangle around a triangulation, from the outside; of other hulls none.
 static inline void find_outside(hull_ends ends, global const ring_edge* edges, global const int* vertex_edge,
                                 int* outside) {

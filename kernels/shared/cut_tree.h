@@ -18,6 +18,21 @@ static inline int goes_high(ulong x, ulong y, cut_node cut) {
   return is_at_least(major, minor, cut.major, cut.minor);
 }
 
+static inline double from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
+
+// What is left of a rectangle on the one side of a cut.
+static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int is_high, scaling scale) {
+  const double at = scaled(from_orderable(cut.major), scale);
+  if (cut_axis(cut)) {
+    if (is_high && at > rectangle.low.y) rectangle.low.y = at;
+    if (!is_high && at < rectangle.high.y) rectangle.high.y = at;
+  } else {
+    if (is_high && at > rectangle.low.x) rectangle.low.x = at;
+    if (!is_high && at < rectangle.high.x) rectangle.high.x = at;
+  }
+  return rectangle;
+}
+
 // Points that go down a tree at the same time: each step waits for the one before.
 #define DESCENTS 16
 

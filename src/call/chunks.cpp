@@ -1,14 +1,159 @@
+// The public calls for triangulations in chunks: devices, memory, arrays.
 #include "flaunay/chunks.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstring>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "call/errors.hpp"
+#include "chunks/run.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/system_memory.hpp"
 
 namespace flaunay {
+namespace {
+
+// What a call uses however small its chunks are, and what it needs at least.
+constexpr std::uint64_t kFixedBytes = std::uint64_t{64} << 20;
+constexpr std::uint64_t kLeastBytes = std::uint64_t{128} << 20;
+// Bytes on the host per point of a chunk: the points that are read ahead, the triangulation with its working
+// memory, the results, and the results of the chunk before, which are being written.
+constexpr std::uint64_t kBytesPerPoint = 480;
+// Chunks differ: those of more than one and a half times the points that they should have are cut again.
+constexpr double kMostUnequal = 1.6;
+constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
+
+constexpr const char* kAllDevices = "all";
+
+// Devices that cannot be used are left out if all were asked for.
+std::vector<std::string> device_names(const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return {""};
+  if (std::find(wanted.begin(), wanted.end(), kAllDevices) == wanted.end()) return wanted;
+  std::vector<std::string> names;
+  const std::vector<DeviceInfo> devices = list_devices(true);
+  for (std::size_t k = 0; k < devices.size(); ++k) {
+    if (devices[k].self_test_passed) names.push_back(fmt::format("#{}", k));
+  }
+  if (names.empty())
+    throw Error(ErrorKind::device, "none of the devices can be used; flaunay devices tells why");
+  return names;
+}
+
+struct Devices {
+  std::vector<chunks::Solver> solvers;
+  std::size_t capacity = std::numeric_limits<std::size_t>::max();
+};
+
+Devices open_devices(const std::vector<std::string>& wanted) {
+  Devices devices;
+  for (const std::string& name : device_names(wanted)) {
+    auto triangulator = std::make_shared<Triangulator>(name);
+    devices.capacity = std::min(devices.capacity, triangulator->capacity());
+    devices.solvers.push_back(
+        {triangulator->device().name, [triangulator](const double* coordinates, std::size_t n) {
+           return triangulator->triangulate(coordinates, n);
+         }});
+  }
+  return devices;
+}
+
+chunks::Plan make_plan(const ChunkOptions& options, const Devices& devices) {
+  const std::uint64_t memory =
+      options.memory_bytes != 0 ? options.memory_bytes : host::memory_left().bytes / 2;
+  if (memory < kLeastBytes) {
+    throw Error(ErrorKind::usage, fmt::format("{} of memory are too little for chunks; give at least {}",
+                                              host::mebibytes(memory), host::mebibytes(kLeastBytes)));
+  }
+  chunks::Plan plan;
+  plan.buffer_bytes = memory / kBufferShare;
+  const std::uint64_t for_chunks = memory - kFixedBytes - plan.buffer_bytes;
+  const std::size_t at_once = for_chunks / kBytesPerPoint;
+  plan.largest_chunk = std::min(at_once, devices.capacity);
+  const std::size_t most = std::min(at_once / devices.solvers.size(), devices.capacity);
+  plan.chunk_points =
+      std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(most) / kMostUnequal));
+  if (options.chunk_points != 0) plan.chunk_points = std::min(plan.chunk_points, options.chunk_points);
+  return plan;
+}
+
+// Points that rows and their number can refer to.
+void check_indices(std::uint64_t n, std::uint64_t most_index) {
+  if (2 * n <= most_index) return;
+  throw Error(
+      ErrorKind::input,
+      fmt::format(
+          "{} points are too many for 32-bit indices of triangles; at most {} are possible, more with "
+          "64-bit indices",
+          n, most_index / 2));
+}
+
+template <typename Index>
+class ArraySink : public MeshSink {
+ public:
+  explicit ArraySink(const MeshArrays<Index>& arrays) : arrays_(arrays) {}
+  bool wants(MeshArray array) const override { return place(array) != nullptr; }
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
+    Index* const to = place(array) + first;
+    for (std::size_t k = 0; k < count; ++k) to[k] = static_cast<Index>(values[k]);
+  }
+
+ private:
+  Index* place(MeshArray array) const {
+    switch (array) {
+      case MeshArray::triangles:
+        return arrays_.triangles;
+      case MeshArray::neighbors:
+        return arrays_.neighbors;
+      case MeshArray::hull:
+        return arrays_.hull;
+      case MeshArray::representatives:
+        return arrays_.representatives;
+    }
+    return nullptr;
+  }
+
+  const MeshArrays<Index>& arrays_;
+};
+
+template <typename Index>
+ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
+                                   const MeshArrays<Index>& results, const ChunkOptions& options) {
+  geometry::check_coordinates(coordinates, n);
+  check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
+  ArrayPoints points(coordinates, n);
+  ArraySink<Index> sink(results);
+  return triangulate_chunks(points, sink, options);
+}
+
+}  // namespace
 
 PointSource::~PointSource() = default;
 MeshSink::~MeshSink() = default;
 
 void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinates) {
   std::memcpy(coordinates, coordinates_ + 2 * first, 2 * count * sizeof(double));
+}
+
+ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {
+  return with_errors([&] {
+    if (points.size() == 0) return ChunkStatistics();
+    const Devices devices = open_devices(options.devices);
+    return chunks::run(points, sink, make_plan(options, devices), devices.solvers, options);
+  });
+}
+
+ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
+                                   const MeshArrays<std::int32_t>& results, const ChunkOptions& options) {
+  return triangulate_arrays(coordinates, n, results, options);
+}
+
+ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
+                                   const MeshArrays<std::int64_t>& results, const ChunkOptions& options) {
+  return triangulate_arrays(coordinates, n, results, options);
 }
 
 }  // namespace flaunay

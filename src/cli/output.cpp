@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
 #include "flaunay/flaunay.hpp"
-#include "host/system_memory.hpp"
 #include "io/file.hpp"
 #include "io/mesh.hpp"
 #include "io/points.hpp"
@@ -24,6 +24,18 @@ bool print(const std::string& text) {
   if (errno == EPIPE || errno == EBADF) return false;
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
+
+namespace {
+
+std::string readable(std::uint64_t bytes) {
+  constexpr std::array<const char*, 4> kUnits = {"KiB", "MiB", "GiB", "TiB"};
+  double size = static_cast<double>(bytes) / 1024;
+  std::size_t unit = 0;
+  for (; size >= 1024 && unit + 1 < kUnits.size(); ++unit) size /= 1024;
+  return fmt::format("{:.1f} {}", size, kUnits[unit]);
+}
+
+}  // namespace
 
 void check_disk_space(const std::vector<SizedOutput>& files) {
   struct Disk {
@@ -46,7 +58,7 @@ void check_disk_space(const std::vector<SizedOutput>& files) {
     const std::uint64_t room = io::free_bytes(disk.folder);
     if (disk.needed > room) {
       io::fail(disk.path, "the disk of '{}' has room for {}, but the outputs need {}", disk.folder,
-               host::mebibytes(room), host::mebibytes(disk.needed));
+               readable(room), readable(disk.needed));
     }
   }
 }

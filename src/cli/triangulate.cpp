@@ -39,6 +39,8 @@ struct TriangulateRequest {
   ChunkRequest chunks;     ///< without what the other members say, too
 };
 
+constexpr const char* kCompiling = "compiling kernels, cached for next time";
+
 const research::ModeInfo& info_of(Mode mode) {
   const std::vector<research::ModeInfo>& modes = research::list_modes();
   return *std::find_if(modes.begin(), modes.end(), [mode](const auto& info) { return info.mode == mode; });
@@ -87,9 +89,10 @@ ChunkRequest chunk_request(const TriangulateRequest& request) {
 
 // Opens the device before the points are read if there are so many that they may not fit. Returns whether
 // they do not.
-bool do_not_fit(const TriangulateRequest& request, std::uint64_t points,
+bool do_not_fit(const TriangulateRequest& request, std::uint64_t points, Progress& progress,
                 std::unique_ptr<Triangulator>& triangulator) {
   if (request.mode != Mode::blocks || points < kMayBeTooMany) return false;
+  progress.update_slow("preparing the device", kCompiling);
   triangulator = std::make_unique<Triangulator>(request.device);
   return are_too_many(points, *triangulator);
 }
@@ -146,13 +149,14 @@ int triangulate(const TriangulateRequest& request) {
   const std::uint64_t about = io::estimate_points(request.input);
 
   RunFacts facts = facts_of(request);
+  Progress progress(!request.quiet);
   Stopwatch stopwatch;
   std::unique_ptr<Triangulator> triangulator;
-  if (do_not_fit(request, about, triangulator)) {
+  if (do_not_fit(request, about, progress, triangulator)) {
+    progress.finish();
     return triangulate_too_many(request, about, std::move(triangulator));
   }
   facts.opening_seconds = stopwatch.restart();
-  Progress progress(!request.quiet);
 
   progress.update("reading");
   const io::Points points = io::read_points(request.input);
@@ -164,7 +168,7 @@ int triangulate(const TriangulateRequest& request) {
   if (info_of(request.mode).on_host) {
     mesh = research::triangulate_on_host(points.coordinates.data(), {0, points.size()}, options);
   } else {
-    progress.update_slow("preparing the device", "compiling kernels, cached for next time");
+    progress.update_slow("preparing the device", kCompiling);
     if (triangulator == nullptr) triangulator = std::make_unique<Triangulator>(request.device);
     facts.opening_seconds += stopwatch.restart();
     research::Options silent = options;

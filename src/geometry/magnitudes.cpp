@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "flaunay/flaunay.hpp"
 #include "shared/bounds.h"
@@ -12,22 +13,17 @@
 namespace flaunay::geometry {
 namespace {
 
+constexpr int kMantissaBits = 52;
+constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
+constexpr int kExponentMask = 0x7ff;
+constexpr int kExponentBias = 1023;
+
+int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
+
 [[noreturn]] void throw_range(const double* coordinates, std::size_t first, std::size_t last,
                               const Magnitudes& magnitudes) {
-  std::size_t largest = 0, finest = 0;
-  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
-    const double x = coordinates[i];
-    if (x == 0) continue;
-    if (std::ilogb(x) == magnitudes.largest) largest = i;
-    if (lowest_bit(x) == magnitudes.lowest) finest = i;
-  }
-  throw Error(
-      ErrorKind::input,
-      fmt::format(
-          "the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
-          "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
-          largest / 2, largest % 2 ? "y" : "x", coordinates[largest], finest / 2, finest % 2 ? "y" : "x",
-          coordinates[finest], bits_of(magnitudes), kernel::MOST_BITS));
+  const RangeEnds ends = find_ends(coordinates, first, last, magnitudes);
+  throw range_error(ends.largest, ends.finest, magnitudes);
 }
 
 }  // namespace
@@ -44,6 +40,60 @@ int lowest_bit(double x) {
   return low;
 }
 
+Magnitudes inspect(const double* coordinates, std::size_t first, std::size_t last) {
+  Magnitudes magnitudes;
+  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &coordinates[i], sizeof bits);
+    const int exponent = static_cast<int>(bits >> kMantissaBits) & kExponentMask;
+    if (exponent == 0) {
+      if (coordinates[i] == 0) continue;
+      magnitudes.largest = std::max(magnitudes.largest, std::ilogb(coordinates[i]));
+      magnitudes.lowest = std::min(magnitudes.lowest, lowest_bit(coordinates[i]));
+    } else if (exponent == kExponentMask) {
+      magnitudes.bad = static_cast<int>(i / 2);
+      return magnitudes;
+    } else {
+      const int lowest = trailing_zeros((bits & kMantissa) | (kMantissa + 1)) - kMantissaBits;
+      magnitudes.largest = std::max(magnitudes.largest, exponent - kExponentBias);
+      magnitudes.lowest = std::min(magnitudes.lowest, exponent - kExponentBias + lowest);
+    }
+  }
+  return magnitudes;
+}
+
+Magnitudes joined(const Magnitudes& a, const Magnitudes& b) {
+  return {std::max(a.largest, b.largest), std::min(a.lowest, b.lowest), std::min(a.bad, b.bad)};
+}
+
+RangeEnds find_ends(const double* coordinates, std::size_t first, std::size_t last,
+                    const Magnitudes& magnitudes) {
+  RangeEnds ends;
+  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
+    const double x = coordinates[i];
+    if (x == 0) continue;
+    const NamedCoordinate named{i / 2, i % 2 != 0, x};
+    if (std::ilogb(x) == magnitudes.largest) ends.largest = named;
+    if (lowest_bit(x) == magnitudes.lowest) ends.finest = named;
+  }
+  return ends;
+}
+
+Error range_error(const NamedCoordinate& largest, const NamedCoordinate& finest,
+                  const Magnitudes& magnitudes) {
+  return Error(
+      ErrorKind::input,
+      fmt::format(
+          "the coordinates' magnitudes differ too much to be exact: point {} has {} = {:.17g} and point "
+          "{} has {} = {:.17g}, whose bits span {} binary places; {} are supported",
+          largest.point, largest.is_y ? "y" : "x", largest.value, finest.point, finest.is_y ? "y" : "x",
+          finest.value, bits_of(magnitudes), kernel::MOST_BITS));
+}
+
+Error not_finite(std::uint64_t point, double x, double y) {
+  return Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", point, x, y));
+}
+
 int bits_of(const Magnitudes& magnitudes) {
   return magnitudes.lowest <= magnitudes.largest ? magnitudes.largest - magnitudes.lowest + 1 : 0;
 }
@@ -57,11 +107,15 @@ Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t la
   if (magnitudes.bad != kernel::NO_BAD) {
     const double x = coordinates[2 * magnitudes.bad];
     const double y = coordinates[2 * magnitudes.bad + 1];
-    throw Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", magnitudes.bad, x, y));
+    throw not_finite(magnitudes.bad, x, y);
   }
+  if (differ_too_much(magnitudes)) throw_range(coordinates, first, last, magnitudes);
+  return scaling_for(magnitudes);
+}
+
+Scaling scaling_for(const Magnitudes& magnitudes) {
   Scaling scaling;
   const int bits = bits_of(magnitudes);
-  if (bits > kernel::MOST_BITS) throw_range(coordinates, first, last, magnitudes);
   if (bits > 0) {
     if (magnitudes.largest > kernel::LARGEST_EXPONENT)
       scaling.shift = kernel::LARGEST_EXPONENT - magnitudes.largest;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "flaunay/flaunay.hpp"
 #include "shared/codes.h"
 #include "shared/coordinates.h"
 #include "shared/records.h"
@@ -30,6 +32,12 @@ struct Scaling {
   kernel::scaling powers() const { return kernel::scale_of(shift); }
 };
 
+/// The magnitudes of the points [first, last). At a point that is not finite it stops. O(last - first).
+Magnitudes inspect(const double* coordinates, std::size_t first, std::size_t last);
+
+/// The magnitudes of two sets of points together.
+Magnitudes joined(const Magnitudes& a, const Magnitudes& b);
+
 /// The exponent of the lowest set bit of x, which must be finite and not 0.
 int lowest_bit(double x);
 
@@ -38,6 +46,29 @@ int bits_of(const Magnitudes& magnitudes);
 
 /// Whether the magnitudes of finite points differ too much for one scaling.
 bool differ_too_much(const Magnitudes& magnitudes);
+
+/// A coordinate, for messages.
+struct NamedCoordinate {
+  std::uint64_t point = 0;
+  bool is_y = false;
+  double value = 0;
+};
+
+/// Coordinates that make the range of magnitudes as large as it is.
+struct RangeEnds {
+  NamedCoordinate largest, finest;
+};
+/// Those of the points [first, last); unchanged defaults if none of them does.
+RangeEnds find_ends(const double* coordinates, std::size_t first, std::size_t last,
+                    const Magnitudes& magnitudes);
+
+/// The error for magnitudes that differ too much, and for a point that is not finite.
+Error range_error(const NamedCoordinate& largest, const NamedCoordinate& finest,
+                  const Magnitudes& magnitudes);
+Error not_finite(std::uint64_t point, double x, double y);
+
+/// The scaling for magnitudes that are accepted.
+Scaling scaling_for(const Magnitudes& magnitudes);
 
 /// Chooses the scaling of the points [first, last). Throws Error(input), which names a point, if the
 /// magnitudes are not accepted; the coordinates are read in that case only.

@@ -14,11 +14,6 @@
 namespace flaunay::geometry {
 namespace {
 
-constexpr int kMantissaBits = 52;
-constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
-constexpr int kExponentMask = 0x7ff;
-constexpr int kExponentBias = 1023;
-
 // A mesh has up to 6 half-edges per point, which are numbered by 32-bit integers.
 constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max() / kernel::EDGES_PER_VERTEX;
 
@@ -27,30 +22,6 @@ void check_size(std::size_t n) {
   throw Error(
       ErrorKind::input,
       fmt::format("{} points are too many for 32-bit indices: at most {} are possible", n, kMostPoints));
-}
-
-int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
-
-Magnitudes inspect(const double* coordinates, std::size_t first, std::size_t last) {
-  Magnitudes magnitudes;
-  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &coordinates[i], sizeof bits);
-    const int exponent = static_cast<int>(bits >> kMantissaBits) & kExponentMask;
-    if (exponent == 0) {
-      if (coordinates[i] == 0) continue;
-      magnitudes.largest = std::max(magnitudes.largest, std::ilogb(coordinates[i]));
-      magnitudes.lowest = std::min(magnitudes.lowest, lowest_bit(coordinates[i]));
-    } else if (exponent == kExponentMask) {
-      magnitudes.bad = static_cast<int>(i / 2);
-      return magnitudes;
-    } else {
-      const int lowest = trailing_zeros((bits & kMantissa) | (kMantissa + 1)) - kMantissaBits;
-      magnitudes.largest = std::max(magnitudes.largest, exponent - kExponentBias);
-      magnitudes.lowest = std::min(magnitudes.lowest, exponent - kExponentBias + lowest);
-    }
-  }
-  return magnitudes;
 }
 
 // Adding 0 turns -0 into 0.

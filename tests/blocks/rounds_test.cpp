@@ -17,9 +17,12 @@
 #include "launchers/blocks/rounds.cl.hpp"
 #include "statistics/phases.hpp"
 #include "tests/blocks/support.hpp"
+#include "tests/support/stalling.hpp"
 
 namespace flaunay::blocks {
 namespace {
+
+using testing::stalling;
 
 /// All parts of a mesh, in host memory.
 class WholeExchange : public Exchange {
@@ -149,62 +152,6 @@ std::vector<RoundSizes> all_sizes() {
 /// Without the larger ones on a device, where rounds of few points take as long as those of many.
 std::vector<std::size_t> point_counts(const std::vector<std::size_t>& natively, std::size_t on_device) {
   return testing::tests_native() ? natively : std::vector<std::size_t>{on_device};
-}
-
-/// n points as close to one another as doubles allow, around each of several points.
-Coordinates one_ulp_clouds(std::size_t n, std::size_t clouds, std::uint64_t seed) {
-  FixtureRandom random(seed);
-  const Coordinates centres = make_fixture("uniform", clouds, seed);
-  Coordinates points;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (const std::size_t c : {0, 1}) {
-      const double centre = centres[2 * (i % clouds) + c] + 1;
-      points.push_back(centre + static_cast<double>(random.integer(-4, 4)) * 0x1p-52);
-    }
-  }
-  return points;
-}
-
-/// Uniform cells, 2^20 times as long as wide: circles reach beyond any block.
-Coordinates long_thin_cells(std::size_t n, std::uint64_t seed) {
-  Coordinates points = make_fixture("uniform", n, seed);
-  for (std::size_t i = 0; i < points.size(); i += 2) points[i] *= 0x1p20;
-  return points;
-}
-
-/// On lines in all directions.
-Coordinates on_lines(std::size_t n, std::size_t lines, std::uint64_t seed) {
-  return testing::fixtures_detail::on_lines(n, seed, lines);
-}
-
-/// A square lattice, turned by an angle that rounds its coordinates.
-Coordinates turned_lattice(std::size_t n) {
-  const auto width = static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
-  Coordinates points;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto x = static_cast<double>(i % width), y = static_cast<double>(i / width);
-    points.push_back(0.8 * x - 0.6 * y);
-    points.push_back(0.6 * x + 0.8 * y);
-  }
-  return points;
-}
-
-/// Of which a round emits little or nothing.
-std::vector<std::pair<std::string, Coordinates>> stalling(std::size_t n, std::uint64_t seed) {
-  Coordinates columns;
-  FixtureRandom random(seed);
-  for (std::size_t i = 0; i < n; ++i) {
-    append(columns, {static_cast<double>(i % 3), static_cast<double>(random.integer(0, 1000000))});
-  }
-  return {{"circle", make_fixture("circle", n, seed)},
-          {"integer circle", make_fixture("integer-circle", n, seed)},
-          {"columns", columns},
-          {"long thin cells", long_thin_cells(n, seed)},
-          {"one-ulp clouds", one_ulp_clouds(n, 5, seed)},
-          {"30 lines", on_lines(n, 30, seed)},
-          {"turned lattice", turned_lattice(n)},
-          {"perturbed lattice", testing::perturbed(turned_lattice(n), seed)},
-          {"collinear", make_fixture("collinear", n, seed)}};
 }
 
 /// Many sets, empty ones, single points, collinear ones and those of equal points among them.

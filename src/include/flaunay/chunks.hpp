@@ -76,10 +76,10 @@ struct ChunkStatistics {
   std::uint64_t scratch_bytes = 0;  ///< the largest size of the scratch file
   std::size_t chunk_points = 0;     ///< points of a chunk, at most about
   std::vector<ChunkRound> rounds;
-  std::vector<std::string> devices;       ///< their names
+  std::vector<std::string> devices;          ///< their names
   std::vector<std::uint64_t> device_points;  ///< points of the chunks that each device triangulated
-  std::vector<PhaseStatistics> phases;    ///< in the order in which they ran
-  double seconds = 0;                     ///< wall time
+  std::vector<PhaseStatistics> phases;       ///< in the order in which they ran
+  double seconds = 0;                        ///< wall time
 };
 
 /// Triangulates one set of points in chunks. What is final in a chunk is written; points around which
@@ -89,10 +89,10 @@ struct ChunkStatistics {
 /// on the chunk alone; so their order depends on the options, too. Indices are 64-bit numbers.
 ///
 /// Throws what Triangulator::triangulate throws, and: Error(input) if the scratch folder has too little room
-/// or writing there fails; if the points that are left to the last chunk do not fit memory_bytes, as of points
-/// that are all on one circle; Error(usage) if memory_bytes is too small for any work. What was written to the
-/// sink before an error is without use. A device that fails in the middle of the call leaves its chunk to the
-/// others; the call fails if none is left. O(n log n) work.
+/// or writing there fails; if the points that are left to the last chunk do not fit memory_bytes, as of
+/// points that are all on one circle; Error(usage) if memory_bytes is too small for any work. What was
+/// written to the sink before an error is without use. A device that fails in the middle of the call leaves
+/// its chunk to the others; the call fails if none is left. O(n log n) work.
 FLAUNAY_API ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink,
                                                const ChunkOptions& options = {});
 

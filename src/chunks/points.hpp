@@ -1,0 +1,41 @@
+// The points of a chunk, and what is handed on with them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "shared/records.h"
+
+namespace flaunay::chunks {
+
+/// kernel::open_edge beyond one device: an edge out of a chunk's point of which the triangles on one side are
+/// written and those on the other are missing. Its other end may be in another chunk.
+struct OpenEdge {
+  std::int64_t to;      ///< the other end's number in the input
+  double x, y;          ///< its coordinates
+  std::int64_t corner;  ///< the entry of `neighbors` that waits for the missing triangle
+  std::int64_t begins;  ///< whether the missing side begins at the edge, counter-clockwise: 1 or 0
+};
+
+/// Points in ascending order of their numbers in the input. In the first round there are duplicates and no
+/// open edges, later there are none and some.
+struct ChunkPoints {
+  std::vector<double> coordinates;        ///< x0 y0 x1 y1 ...
+  std::vector<std::int64_t> ids;          ///< their numbers in the input
+  std::vector<std::size_t> edge_offsets;  ///< size() + 1; empty in the first round
+  std::vector<OpenEdge> edges;            ///< those of point i are [edge_offsets[i], edge_offsets[i + 1])
+
+  std::size_t size() const { return ids.size(); }
+  bool is_first_round() const { return edge_offsets.empty(); }
+  kernel::double2 point(std::size_t i) const { return {coordinates[2 * i], coordinates[2 * i + 1]}; }
+  std::size_t edge_count(std::size_t i) const {
+    return is_first_round() ? 0 : edge_offsets[i + 1] - edge_offsets[i];
+  }
+  /// Appends a point with its open edges.
+  void add(kernel::double2 p, std::int64_t id, const OpenEdge* its_edges, std::size_t count);
+  /// Sorts the points by their numbers.
+  void sort();
+};
+
+}  // namespace flaunay::chunks

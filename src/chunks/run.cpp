@@ -1,0 +1,344 @@
+#include "chunks/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "chunks/finish.hpp"
+#include "host/clock.hpp"
+
+namespace flaunay::chunks {
+namespace {
+
+// The share of a call's time that is over when all points are in chunks, for progress.
+constexpr double kDistributed = 0.25;
+
+// A sink that several threads write to.
+class SharedSink : public MeshSink {
+ public:
+  explicit SharedSink(MeshSink& sink) : sink_(sink) {}
+  bool wants(MeshArray array) const override { return sink_.wants(array); }
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
+    const std::lock_guard lock(mutex_);
+    sink_.write(array, first, values, count);
+  }
+
+ private:
+  MeshSink& sink_;
+  std::mutex mutex_;
+};
+
+// What all rounds share.
+struct Call {
+  MeshSink& sink;
+  ScratchFile& file;
+  geometry::Scaling scaling;
+  kernel::vertex_box all;
+  std::uint64_t rows = 0;      // triangles so far
+  std::uint64_t vertices = 0;  // distinct points
+};
+
+// The chunks of a round, which solvers take from one queue. Each has a thread of its own. A chunk's rows
+// follow those of the chunk before, so a solver that is done with one waits until the numbers of all before
+// are known; it writes while it solves the next one.
+class Round {
+ public:
+  Round(Call& call, std::vector<Chunk> chunks, bool is_first, HandedOn& next, ChunkStatistics& statistics)
+      : call_(call), chunks_(std::move(chunks)), is_first_(is_first), next_(next), statistics_(statistics) {}
+
+  // The only chunk of the last round, which is not on disk.
+  void set_last(ChunkPoints points) { last_ = std::move(points); }
+
+  // progress: called on this thread with the share of the chunks that is done.
+  ChunkRound run(const std::vector<Solver>& solvers, std::vector<bool>& is_lost,
+                 const std::function<void(double done)>& progress) {
+    std::vector<std::thread> threads;
+    try {
+      std::vector<std::size_t> usable;
+      for (std::size_t s = 0; s < solvers.size(); ++s) {
+        if (!is_lost[s]) usable.push_back(s);
+      }
+      for (const std::size_t s : usable) {
+        {
+          const std::lock_guard lock(mutex_);
+          ++working_;
+        }
+        threads.emplace_back([this, &solvers, &is_lost, s] {
+          bool lost = false;
+          work(solvers[s], s, lost);
+          const std::lock_guard lock(mutex_);
+          is_lost[s] = lost;
+          --working_;
+          changed_.notify_all();
+        });
+      }
+      await(progress);
+    } catch (...) {
+      stop(std::current_exception());
+    }
+    for (std::thread& thread : threads) thread.join();
+    if (error_) std::rethrow_exception(error_);
+    if (turn_ < chunks_.size()) std::rethrow_exception(lost_);
+    return result_;
+  }
+
+ private:
+  bool is_last() const { return last_.has_value(); }
+
+  void await(const std::function<void(double done)>& progress) {
+    std::unique_lock lock(mutex_);
+    std::size_t reported = turn_;
+    while (working_ > 0 && !error_) {
+      changed_.wait(lock);
+      if (turn_ == reported) continue;
+      reported = turn_;
+      lock.unlock();
+      progress(static_cast<double>(reported) / static_cast<double>(chunks_.size()));
+      lock.lock();
+    }
+  }
+
+  void stop(std::exception_ptr error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = std::move(error);
+    changed_.notify_all();
+  }
+
+  // The next chunk: first what a lost solver gave back.
+  std::optional<std::size_t> take() {
+    const std::lock_guard lock(mutex_);
+    if (error_) return std::nullopt;
+    if (!returned_.empty()) return returned_.extract(returned_.begin()).value();
+    if (taken_ == chunks_.size()) return std::nullopt;
+    return taken_++;
+  }
+
+  // For the other solvers, if there are some. reason: why a solver was lost, null if that is known already.
+  void give_back(std::size_t k, std::exception_ptr reason = nullptr) {
+    const std::lock_guard lock(mutex_);
+    returned_.insert(k);
+    if (reason) lost_ = std::move(reason);
+    changed_.notify_all();
+  }
+
+  // Waits until it is the turn of chunk k. If a chunk before it is given back meanwhile, returns that one.
+  std::optional<std::size_t> await_turn(std::size_t k) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock,
+                  [&] { return error_ || turn_ == k || (!returned_.empty() && *returned_.begin() < k); });
+    if (error_ || turn_ == k) return std::nullopt;
+    return returned_.extract(returned_.begin()).value();
+  }
+
+  // A solver's thread, and what it writes meanwhile.
+  struct Worker {
+    const Solver& solver;
+    std::size_t number;
+    host::Threads threads{};
+    std::future<void> writing{};
+  };
+
+  void work(const Solver& solver, std::size_t number, bool& is_lost) {
+    Worker worker{solver, number};
+    try {
+      std::optional<std::size_t> k = take();
+      std::future<ChunkPoints> loaded;
+      if (k) loaded = load(*k);
+      while (k && !is_lost) {
+        ChunkPoints points = loaded.get();
+        const std::optional<std::size_t> following = take();
+        if (following) loaded = load(*following);
+        is_lost = !process(worker, *k, std::move(points));
+        if (is_lost && following) give_back(*following);
+        k = following;
+      }
+      if (worker.writing.valid()) worker.writing.get();
+      // Others may be lost while this one is idle.
+      while (!is_lost) {
+        const std::optional<std::size_t> returned = await_turn(chunks_.size());
+        if (!returned) break;
+        is_lost = !process(worker, *returned, load(*returned).get());
+      }
+      if (worker.writing.valid()) worker.writing.get();
+    } catch (...) {
+      stop(std::current_exception());
+    }
+  }
+
+  std::future<ChunkPoints> load(std::size_t k) {
+    return std::async(std::launch::async, [this, k] {
+      return is_last() ? std::move(*last_) : read_chunk(call_.file, chunks_[k].stored, is_first_);
+    });
+  }
+
+  // Returns whether the solver can go on; if not, the chunk is given back.
+  bool process(Worker& worker, std::size_t k, ChunkPoints points) {
+    Triangulation mesh;
+    try {
+      mesh = worker.solver.triangulate(points.coordinates.data(), points.size());
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::device) throw;
+      if (is_last()) last_ = std::move(points);
+      give_back(k, std::current_exception());
+      return false;
+    }
+    const std::size_t duplicates = mesh.statistics.duplicates, undecided = mesh.statistics.undecided;
+    auto finished = std::make_shared<FinishedChunk>(worker.threads, std::move(points), std::move(mesh),
+                                                    Place{chunks_[k].rectangle, call_.all}, call_.scaling);
+    while (const std::optional<std::size_t> before = await_turn(k)) {
+      if (!process(worker, *before, load(*before).get())) {
+        // This chunk is solved, but the solver is lost: others would wait for its turn.
+        give_back(k);
+        return false;
+      }
+    }
+    const std::uint64_t first_row = publish(k, worker.number, *finished, duplicates, undecided);
+    if (worker.writing.valid()) worker.writing.get();
+    worker.writing = std::async(std::launch::async, [this, chunk = std::move(finished), first_row]() mutable {
+      chunk->write(call_.sink, first_row);
+      if (is_first_) chunk->write_duplicates(call_.sink);
+      if (is_last()) chunk->write_hull(call_.sink);
+      chunk.reset();  // its memory, before anybody asks whether this is done
+    });
+    return true;
+  }
+
+  // Ends the turn of chunk k. Returns the number of its first row.
+  std::uint64_t publish(std::size_t k, std::size_t solver, const FinishedChunk& chunk, std::size_t duplicates,
+                        std::size_t undecided) {
+    const std::lock_guard lock(mutex_);
+    if (error_) return 0;
+    const std::uint64_t first_row = call_.rows;
+    call_.rows += chunk.triangles();
+    if (is_first_) call_.vertices += chunk.points().size() - duplicates;
+    statistics_.duplicates += duplicates;
+    statistics_.undecided += undecided;
+    statistics_.device_points[solver] += chunk.points().size();
+    result_.points += chunk.points().size();
+    result_.triangles += chunk.triangles();
+    ++result_.chunks;
+    if (is_last()) {
+      statistics_.hull_vertices = chunk.mesh().hull.size();
+    } else {
+      const ChunkPoints open = chunk.handed_on(first_row);
+      result_.handed_on += open.size();
+      next_.add(open);
+      for (const Extent& extent : chunks_[k].stored.extents) call_.file.release(extent);
+    }
+    ++turn_;
+    changed_.notify_all();
+    return first_row;
+  }
+
+  Call& call_;
+  std::vector<Chunk> chunks_;
+  bool is_first_;
+  HandedOn& next_;
+  ChunkStatistics& statistics_;
+  std::optional<ChunkPoints> last_;
+  ChunkRound result_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::size_t taken_ = 0, turn_ = 0, working_ = 0;
+  std::set<std::size_t> returned_;
+  std::exception_ptr error_, lost_;
+};
+
+// d points, of which h are on the hull, have 2d - 2 - h triangles, and none if they are on one line.
+void check_euler(std::uint64_t triangles, std::uint64_t h, std::uint64_t d) {
+  if (triangles == 0 ? h == d : triangles + h + 2 == 2 * d) return;
+  throw Error(ErrorKind::internal,
+              fmt::format("{} triangles and {} hull vertices of {} vertices; please report the "
+                          "input",
+                          triangles, h, d));
+}
+
+void require_memory(std::uint64_t points, const Plan& plan) {
+  if (points <= plan.largest_chunk) return;
+  throw Error(
+      ErrorKind::input,
+      fmt::format("{} points are left to one last chunk, because too little is final in smaller ones (as of "
+                  "points on one circle), but the memory permits {}; give about {} times as much memory",
+                  points, plan.largest_chunk,
+                  (points + plan.largest_chunk - 1) / std::max<std::size_t>(1, plan.largest_chunk)));
+}
+
+}  // namespace
+
+ChunkStatistics run(PointSource& source, MeshSink& given_sink, const Plan& plan,
+                    const std::vector<Solver>& solvers, const ChunkOptions& options) {
+  const double begin = host::now();
+  double phase_begin = begin;
+  ChunkStatistics statistics;
+  statistics.points = source.size();
+  statistics.chunk_points = plan.chunk_points;
+  statistics.device_points.resize(solvers.size());
+  for (const Solver& solver : solvers) statistics.devices.push_back(solver.name);
+  const auto end_phase = [&](const std::string& name) {
+    const double now = host::now();
+    statistics.phases.push_back({name, now - phase_begin});
+    phase_begin = now;
+  };
+  const auto progress = [&](const char* stage, int round, double done) {
+    if (options.progress) options.progress(stage, round, done);
+  };
+
+  SharedSink sink(given_sink);
+  ScratchFile file(options.scratch);
+  host::Threads threads;
+  FirstRound first = distribute(source, sink, file, plan, threads, [&](const char* step, double done) {
+    progress(step, 0, kDistributed * done);
+  });
+  statistics.duplicates = first.equal_points;
+  end_phase("distribute");
+
+  Call call{sink, file, first.scaling, first.all};
+  std::vector<bool> is_lost(solvers.size(), false);
+  std::vector<Chunk> chunks = std::move(first.chunks);
+  std::optional<ChunkPoints> last;
+  double done = kDistributed;
+  for (int r = 0;; ++r) {
+    const bool is_first = r == 0;
+    if (is_first && chunks.size() == 1) last = read_chunk(file, chunks.front().stored, true);
+    const bool is_last = last.has_value();
+    HandedOn next(file);
+    Round round(call, std::move(chunks), is_first, next, statistics);
+    if (last) round.set_last(std::move(*last));
+    last.reset();
+    // Later rounds have a few hundredths of the points.
+    const double end = is_last ? 1 : 1 - (1 - done) * 0.1;
+    const ChunkRound result = round.run(
+        solvers, is_lost, [&](double share) { progress("triangulating", r, done + (end - done) * share); });
+    done = end;
+    statistics.rounds.push_back(result);
+    end_phase(fmt::format("round {}", r));
+    if (is_last) break;
+    const std::uint64_t open = next.points();
+    const bool stalls = 100 * open > static_cast<std::uint64_t>(plan.most_handed_on_percent) * result.points;
+    if (open <= plan.chunk_points || stalls) {
+      require_memory(open, plan);
+      last = next.read_all();
+      chunks = {Chunk{{}, whole_plane()}};
+    } else {
+      chunks = next.distribute(plan);
+    }
+  }
+  statistics.triangles = call.rows;
+  check_euler(statistics.triangles, statistics.hull_vertices, call.vertices);
+  statistics.scratch_bytes = file.largest_bytes();
+  statistics.seconds = host::now() - begin;
+  progress("triangulating", static_cast<int>(statistics.rounds.size()) - 1, 1);
+  return statistics;
+}
+
+}  // namespace flaunay::chunks

@@ -1,0 +1,99 @@
+// Points of chunks on disk, in a file without a name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "chunks/points.hpp"
+#include "shared/language.h"
+
+namespace flaunay::chunks {
+
+/// The bytes of a point of the first round in the scratch file.
+constexpr std::size_t kFirstRoundBytes = 24;
+
+/// A part of the scratch file.
+struct Extent {
+  std::uint64_t begin, bytes;
+};
+
+/// A file that vanishes with the process. It is made when it is first written. All functions throw
+/// Error(input), which names the folder.
+class ScratchFile {
+ public:
+  /// folder: empty for TMPDIR, or /tmp.
+  explicit ScratchFile(std::string folder);
+  ~ScratchFile();
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+
+  /// Throws unless the folder has room for so many bytes.
+  void require(std::uint64_t bytes) const;
+  Extent append(const void* data, std::size_t bytes);
+  /// May be called by several threads.
+  void read(Extent extent, void* to) const;
+  /// Gives the room on the disk back, where the file system can.
+  void release(Extent extent);
+  /// The largest size so far, without what was given back.
+  std::uint64_t largest_bytes() const { return largest_; }
+
+ private:
+  void open();
+  [[noreturn]] void fail(const std::string& what, int error_number) const;
+
+  std::string folder_;
+  int descriptor_ = -1;
+  std::uint64_t end_ = 0, held_ = 0, largest_ = 0;
+};
+
+/// Points of one chunk in the scratch file: words of 8 bytes.
+struct StoredChunk {
+  std::vector<Extent> extents;
+  std::uint64_t points = 0;
+};
+
+/// Brings points to chunks in the scratch file, through a buffer for each.
+class ChunkWriters {
+ public:
+  /// buffer_bytes: of all chunks together.
+  ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes);
+
+  /// Of the first round.
+  void add(std::size_t chunk, kernel::double2 p, std::int64_t id) {
+    push(writers_[chunk], p, id);
+    count(writers_[chunk]);
+  }
+  /// Of later rounds: point i of a list, with its open edges.
+  void add(std::size_t chunk, const ChunkPoints& from, std::size_t i);
+  /// Writes what is in the buffers.
+  std::vector<StoredChunk> take();
+
+ private:
+  struct Writer {
+    std::vector<std::uint64_t> words;
+    StoredChunk stored;
+  };
+  static void push(Writer& writer, kernel::double2 p, std::int64_t id) {
+    writer.words.push_back(kernel::as_ulong(p.x));
+    writer.words.push_back(kernel::as_ulong(p.y));
+    writer.words.push_back(static_cast<std::uint64_t>(id));
+  }
+  // To be called when all words of a point are there.
+  void count(Writer& writer) {
+    ++writer.stored.points;
+    if (writer.words.size() >= most_words_) flush(writer);
+  }
+  void flush(Writer& writer);
+
+  ScratchFile& file_;
+  std::size_t most_words_;
+  std::vector<Writer> writers_;
+};
+
+/// Reads the points of a chunk.
+ChunkPoints read_chunk(const ScratchFile& file, const StoredChunk& chunk, bool is_first_round);
+
+}  // namespace flaunay::chunks

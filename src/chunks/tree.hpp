@@ -1,0 +1,44 @@
+// Trees of cuts between chunks, made from samples of the points on the host (kernels/shared/cut_tree.h).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shared/records.h"
+
+namespace flaunay::chunks {
+
+/// Where nodes are cut: the first round at medians; later ones in gaps, because their points lie along the
+/// cuts of the round before.
+enum class Cuts { at_medians, in_gaps };
+
+/// A tree whose leaves are chunks. Equal points have the same leaf.
+class ChunkTree {
+ public:
+  /// A single leaf.
+  ChunkTree() = default;
+  /// 2^depth leaves, which have about as many samples each unless points are equal. O(s log s) for s samples.
+  ChunkTree(std::vector<kernel::double2> samples, int depth, Cuts cuts);
+
+  /// Four leaves: the one with this number has the points that are equal to p, and no others.
+  static ChunkTree around(kernel::double2 p);
+  static constexpr std::size_t kEqualLeaf = 2;
+
+  std::size_t leaves() const { return std::size_t{1} << depth_; }
+  /// The leaf of each of `count` points. O(count * depth).
+  void find_leaves(const double* coordinates, std::size_t count, std::size_t* leaves) const;
+  /// What is left of a rectangle at a leaf. The cuts are the rectangle's sides, so points may lie on them.
+  kernel::vertex_box rectangle(std::size_t leaf, kernel::vertex_box whole) const;
+
+ private:
+  using Sample = std::vector<kernel::double2>::iterator;
+  void cut(std::size_t node, Sample begin, Sample end, Cuts cuts, double half);
+
+  int depth_ = 0;
+  std::vector<kernel::cut_node> nodes_;  // in the order of a heap, from 1 on
+};
+
+/// The rectangle that is the whole plane.
+kernel::vertex_box whole_plane();
+
+}  // namespace flaunay::chunks
