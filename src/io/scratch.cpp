@@ -53,19 +53,24 @@ ScratchFile::~ScratchFile() {
 }
 
 void ScratchFile::append(const void* data, std::size_t bytes) {
+  write_at(size_, data, bytes);
+  size_ += bytes;
+  held_ += bytes;
+  largest_ = std::max(largest_, held_);
+}
+
+void ScratchFile::write_at(std::uint64_t begin, const void* data, std::size_t bytes) {
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
-    const ssize_t written = ::pwrite(descriptor_, next, bytes, static_cast<off_t>(size_));
+    const ssize_t written = ::pwrite(descriptor_, next, bytes, static_cast<off_t>(begin));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
-      fail(folder_, "the scratch file of {} bytes cannot be written: {}", size_, system_reason(errno));
+      fail(folder_, "the scratch file cannot be written at byte {}: {}", begin, system_reason(errno));
     }
     next += written;
-    size_ += static_cast<std::uint64_t>(written);
-    held_ += static_cast<std::uint64_t>(written);
+    begin += static_cast<std::uint64_t>(written);
     bytes -= static_cast<std::size_t>(written);
   }
-  largest_ = std::max(largest_, held_);
 }
 
 void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) const {

@@ -22,6 +22,8 @@ class ScratchFile {
   ~ScratchFile();
 
   void append(const void* data, std::size_t bytes);
+  /// Writes at any place, also beyond the end; size() does not count it. Several threads may call it.
+  void write_at(std::uint64_t begin, const void* data, std::size_t bytes);
   /// Reads bytes that were written.
   void read_at(std::uint64_t begin, std::size_t count, void* to) const;
   std::uint64_t size() const { return size_; }
