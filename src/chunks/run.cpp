@@ -125,29 +125,33 @@ class Round {
     changed_.notify_all();
   }
 
-  // The next chunk for a solver that has `held` others: first what a lost solver gave back.
-  std::optional<std::size_t> take(std::size_t solver, std::size_t held) {
+  // The chunk that a solver does after the one that it has. It may not come before that, as those do that a
+  // lost solver gave back: each would wait for the other's turn.
+  std::optional<std::size_t> take_following(std::size_t solver) {
     const std::lock_guard lock(mutex_);
-    return next_for(solver, held);
+    return error_ ? std::nullopt : take_new(solver, 1);
   }
 
-  // The same for a solver without a chunk. Waits until there is one, or all are done.
+  // The next chunk of a solver that has none: first what a lost solver gave back. Waits until there is one,
+  // or all are done.
   std::optional<std::size_t> await_chunk(std::size_t solver) {
     std::unique_lock lock(mutex_);
     std::optional<std::size_t> k;
     changed_.wait(lock, [&] {
-      if (!error_ && turn_ < chunks_.size()) k = next_for(solver, 0);
-      return k || error_ || turn_ == chunks_.size();
+      if (error_) return true;
+      k = returned_.empty() ? take_new(solver, 0) : take_returned();
+      return k || turn_ == chunks_.size();
     });
     return k;
   }
 
-  std::optional<std::size_t> next_for(std::size_t solver, std::size_t held) {
-    if (error_) return std::nullopt;
-    if (!returned_.empty()) return returned_.extract(returned_.begin()).value();
+  // One that nobody had, for a solver that has `held` others.
+  std::optional<std::size_t> take_new(std::size_t solver, std::size_t held) {
     if (taken_ == chunks_.size() || is_faster_without(solver, held)) return std::nullopt;
     return taken_++;
   }
+
+  std::size_t take_returned() { return returned_.extract(returned_.begin()).value(); }
 
   // Whether the other solvers would triangulate all chunks that are left before this one is done with one
   // more. Of the fastest one that has none this is never so, so that no chunk is left to nobody.
@@ -179,7 +183,7 @@ class Round {
     changed_.wait(lock,
                   [&] { return error_ || turn_ == k || (!returned_.empty() && *returned_.begin() < k); });
     if (error_ || turn_ == k) return std::nullopt;
-    return returned_.extract(returned_.begin()).value();
+    return take_returned();
   }
 
   // A solver's thread, and what it writes meanwhile.
@@ -200,7 +204,7 @@ class Round {
         if (!k) break;
         if (!following) loaded = load(*k);
         ChunkPoints points = loaded.get();
-        following = take(number, 1);
+        following = take_following(number);
         if (following) loaded = load(*following);
         is_lost = !process(worker, *k, std::move(points));
         if (is_lost && following) give_back(number, *following);
