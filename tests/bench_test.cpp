@@ -324,6 +324,18 @@ TEST_F(BenchTest, WholeProcessesAreTimed) {
   EXPECT_NE(run("processes --sizes 50 --program " + path("none")), 0);
 }
 
+TEST_F(BenchTest, ChunksAreTimed) {
+  const auto record =
+      run_well("chunks --sizes 3000 --in-memory 3000 --memory 256M --distributions uniform --runs 1");
+  ASSERT_EQ(record["results"].size(), 2u);
+  EXPECT_TRUE(record["results"][0]["rounds"].is_null());
+  EXPECT_EQ(record["results"][1].value("rounds", 0), 1);
+  for (const auto& row : record["results"]) {
+    EXPECT_GT(row.value("resident_peak_mib", 0.0), 1);
+    EXPECT_GT(row.value("points_per_second", 0.0), 0);
+  }
+}
+
 TEST_F(BenchTest, BatchesAreBesideLoops) {
   const auto record = run_well("batches --quick");
   const bool cgal = !without_cgal(contents(path("err")));
