@@ -136,7 +136,7 @@ template <typename Visit>
 void take_pieces(ScratchFile& file, const StoredChunk& chunk, const Visit& visit) {
   for (const Extent& extent : chunk.extents) {
     visit(read_chunk(file, {{extent}, extent.bytes / kFirstRoundBytes}, true));
-    file.release(extent);
+    file.release(extent.begin, extent.bytes);
   }
 }
 
@@ -231,7 +231,7 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
                       host::Threads& threads, const Progress& progress) {
   const std::uint64_t n = source.size();
   const int depth = depth_for(n, plan.chunk_points);
-  file.require(n * kFirstRoundBytes);
+  file.require_room(n * kFirstRoundBytes, "the points of chunks");
   progress("sampling", 0);
   const ChunkTree tree =
       depth == 0 ? ChunkTree()
@@ -294,7 +294,7 @@ ChunkPoints HandedOn::read_all() {
     all.points += batch.points;
   }
   ChunkPoints points = read_chunk(file_, all, false);
-  for (const Extent& extent : all.extents) file_.release(extent);
+  for (const Extent& extent : all.extents) file_.release(extent.begin, extent.bytes);
   return points;
 }
 
@@ -307,7 +307,7 @@ std::vector<Chunk> HandedOn::distribute(const Plan& plan) {
     leaves.resize(points.size());
     tree.find_leaves(points.coordinates.data(), points.size(), leaves.data());
     for (std::size_t i = 0; i < points.size(); ++i) writers.add(leaves[i], points, i);
-    for (const Extent& extent : batch.extents) file_.release(extent);
+    for (const Extent& extent : batch.extents) file_.release(extent.begin, extent.bytes);
   }
   return chunks_of(tree, writers.take(), whole_plane());
 }

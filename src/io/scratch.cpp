@@ -5,6 +5,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <limits>
@@ -61,8 +62,10 @@ void ScratchFile::append(const void* data, std::size_t bytes) {
     }
     next += written;
     size_ += static_cast<std::uint64_t>(written);
+    held_ += static_cast<std::uint64_t>(written);
     bytes -= static_cast<std::size_t>(written);
   }
+  largest_ = std::max(largest_, held_);
 }
 
 void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) const {
@@ -78,10 +81,19 @@ void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) cons
   }
 }
 
+void ScratchFile::release(std::uint64_t begin, std::uint64_t count) {
+  held_ -= count;
+#ifdef FALLOC_FL_PUNCH_HOLE
+  // If this fails, nothing is wrong but that the room is given back later.
+  static_cast<void>(::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                                static_cast<off_t>(begin), static_cast<off_t>(count)));
+#endif
+}
+
 void ScratchFile::require_room(std::uint64_t bytes, const std::string& what) const {
   const std::uint64_t room = free_bytes(folder_);
   if (bytes > room) {
-    fail(folder_, "has room for {} bytes, but {} need about {}; name another folder by --scratch", room, what,
+    fail(folder_, "has room for {} bytes, but {} need about {}; name another scratch folder", room, what,
          bytes);
   }
 }

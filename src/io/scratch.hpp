@@ -26,13 +26,18 @@ class ScratchFile {
   void read_at(std::uint64_t begin, std::size_t count, void* to) const;
   std::uint64_t size() const { return size_; }
 
+  /// Gives the room of bytes that are not read again back, where the file system can.
+  void release(std::uint64_t begin, std::uint64_t count);
+  /// The most bytes that it had, without those that were given back.
+  std::uint64_t largest_bytes() const { return largest_; }
+
   /// Fails unless the folder has room for this many more bytes. what: what they are for.
   void require_room(std::uint64_t bytes, const std::string& what) const;
 
  private:
   std::string folder_;
   int descriptor_ = -1;
-  std::uint64_t size_ = 0;
+  std::uint64_t size_ = 0, held_ = 0, largest_ = 0;
 };
 
 }  // namespace flaunay::io
