@@ -125,10 +125,13 @@ class Round {
     changed_.notify_all();
   }
 
-  // The next chunk for a solver that has `held` others: first what a lost solver gave back.
-  std::optional<std::size_t> take(std::size_t solver, std::size_t held) {
+  // The next chunk for a solver that has chunk k.
+  std::optional<std::size_t> take_after(std::size_t k, std::size_t solver) {
     const std::lock_guard lock(mutex_);
-    return next_for(solver, held);
+    // One before k that was given back is done while k waits for its turn. Held until k is done, k would wait
+    // for it for ever.
+    if (!returned_.empty() && *returned_.begin() < k) return std::nullopt;
+    return next_for(solver, 1);
   }
 
   // The same for a solver without a chunk. Waits until there is one, or all are done.
@@ -200,7 +203,7 @@ class Round {
         if (!k) break;
         if (!following) loaded = load(*k);
         ChunkPoints points = loaded.get();
-        following = take(number, 1);
+        following = take_after(*k, number);
         if (following) loaded = load(*following);
         is_lost = !process(worker, *k, std::move(points));
         if (is_lost && following) give_back(number, *following);
