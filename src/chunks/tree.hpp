@@ -18,10 +18,8 @@ class ChunkTree {
  public:
   /// A single leaf.
   ChunkTree() = default;
-  /// 2^depth leaves, which have about as many samples each unless points are equal. O(s log s) for s samples.
-  ChunkTree(std::vector<kernel::double2> samples, int depth, Cuts cuts)
-      : ChunkTree(of_leaves(std::move(samples), std::size_t{1} << depth, cuts)) {}
-  /// The same with any number of leaves, at least 1.
+  /// This many leaves, at least 1, which have about as many samples each unless points are equal. O(s log s)
+  /// for s samples.
   static ChunkTree of_leaves(std::vector<kernel::double2> samples, std::size_t leaves, Cuts cuts);
   /// The tree with these nodes(), made elsewhere.
   ChunkTree(std::size_t leaves, std::vector<kernel::cut_node> nodes);
