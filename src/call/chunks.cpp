@@ -27,6 +27,9 @@ constexpr std::uint64_t kBytesPerPoint = 480;
 constexpr double kMostUnequal = 1.6;
 constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
 
+// So that their numbers of bytes are 64-bit numbers, on disk and in the results.
+constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 56;
+
 constexpr const char* kAllDevices = "all";
 
 // Devices that cannot be used are left out if all were asked for.
@@ -80,9 +83,15 @@ chunks::Plan make_plan(const ChunkOptions& options, const Devices& devices) {
   return plan;
 }
 
+void check_count(std::uint64_t n) {
+  if (n <= kMostPoints) return;
+  throw Error(ErrorKind::input,
+              fmt::format("{} points are too many; at most {} are possible", n, kMostPoints));
+}
+
 // Points that rows and their number can refer to.
 void check_indices(std::uint64_t n, std::uint64_t most_index) {
-  if (2 * n <= most_index) return;
+  if (n <= most_index / 2) return;
   throw Error(
       ErrorKind::input,
       fmt::format(
@@ -123,6 +132,7 @@ template <typename Index>
 ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
                                    const MeshArrays<Index>& results, const ChunkOptions& options) {
   geometry::check_coordinates(coordinates, n);
+  check_count(n);
   check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
   ArrayPoints points(coordinates, n);
   ArraySink<Index> sink(results);
@@ -141,6 +151,7 @@ void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinat
 ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {
   return with_errors([&] {
     if (points.size() == 0) return ChunkStatistics();
+    check_count(points.size());
     const Devices devices = open_devices(options.devices);
     return chunks::run(points, sink, make_plan(options, devices), devices.solvers, options);
   });
