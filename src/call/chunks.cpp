@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "call/errors.hpp"
+#include "chunks/array_sink.hpp"
 #include "chunks/run.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/system_memory.hpp"
@@ -101,41 +102,13 @@ void check_indices(std::uint64_t n, std::uint64_t most_index) {
 }
 
 template <typename Index>
-class ArraySink : public MeshSink {
- public:
-  explicit ArraySink(const MeshArrays<Index>& arrays) : arrays_(arrays) {}
-  bool wants(MeshArray array) const override { return place(array) != nullptr; }
-  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
-    Index* const to = place(array) + first;
-    for (std::size_t k = 0; k < count; ++k) to[k] = static_cast<Index>(values[k]);
-  }
-
- private:
-  Index* place(MeshArray array) const {
-    switch (array) {
-      case MeshArray::triangles:
-        return arrays_.triangles;
-      case MeshArray::neighbors:
-        return arrays_.neighbors;
-      case MeshArray::hull:
-        return arrays_.hull;
-      case MeshArray::representatives:
-        return arrays_.representatives;
-    }
-    return nullptr;
-  }
-
-  const MeshArrays<Index>& arrays_;
-};
-
-template <typename Index>
 ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
                                    const MeshArrays<Index>& results, const ChunkOptions& options) {
   geometry::check_coordinates(coordinates, n);
   check_count(n);
   check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
   ArrayPoints points(coordinates, n);
-  ArraySink<Index> sink(results);
+  chunks::ArraySink<Index> sink(results);
   return triangulate_chunks(points, sink, options);
 }
 
