@@ -30,6 +30,9 @@ void add(CLI::App& app, Action& action);
 namespace batches {
 void add(CLI::App& app, Action& action);
 }
+namespace chunks {
+void add(CLI::App& app, Action& action);
+}
 namespace embedding {
 void add(CLI::App& app, Action& action);
 }
@@ -66,8 +69,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Action action;
   for (const auto add : {targets::add, peers::add, modes::add, sizes::add_scaling, cliffs::add,
-                         sizes::add_small, batches::add, embedding::add, threads::add, processes::add,
-                         launches::add, device::add, primitives::add, paper::add}) {
+                         sizes::add_small, batches::add, chunks::add, embedding::add, threads::add,
+                         processes::add, launches::add, device::add, primitives::add, paper::add}) {
     add(app, action);
   }
   try {

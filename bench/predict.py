@@ -28,6 +28,8 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 MACHINES = os.path.join(FOLDER, "machines")
 # Of a kernel that the static table lacks.
 REGISTERS = 64
+# The share of the instructions of which "work_items_of_most_instructions" is said.
+MOST = 0.9
 # With so many elements a work-item has a chunk of its own, so that a warp's accesses are far apart.
 LEAST_ELEMENTS_OF_CHUNKS = 2
 
@@ -93,12 +95,32 @@ def with_cores(machine, cores):
     return dict(machine, cores=cores, fp64_per_second=share * machine["fp64_per_second"], bytes_per_second=bandwidth)
 
 
+def steps_of(launch):
+    return launch["steps"] or launch["work_items"] * launch["elements"]
+
+
 class Model:
     """What launches take on a machine. registers: by kernel."""
 
     def __init__(self, machine, registers=None):
         self.machine, self.registers = machine, registers or {}
         self.kernels = load(os.path.join(FOLDER, "kernels.json"))["kernels"]
+
+    def cost(self, launch):
+        return self.kernels.get(launch["kernel"], self.kernels["any other"])
+
+    def work_items_of_most_instructions(self, launches):
+        """The largest w such that launches of at least w work-items do most of the instructions, on any machine."""
+        sizes = {}
+        for launch in launches:
+            instructions = steps_of(launch) * self.cost(launch)["instructions"]
+            sizes[launch["work_items"]] = sizes.get(launch["work_items"], 0) + instructions
+        done = 0
+        for work_items in sorted(sizes, reverse=True):
+            done += sizes[work_items]
+            if done >= MOST * sum(sizes.values()):
+                return work_items
+        return 0
 
     def step_seconds(self, cost):
         m = self.machine
@@ -122,12 +144,12 @@ class Model:
     def launch(self, launch):
         """Seconds, and what bounds them."""
         m = self.machine
-        cost = self.kernels.get(launch["kernel"], self.kernels["any other"])
+        cost = self.cost(launch)
         if launch["work_items"] == 0:  # a fill or a copy
             times = {"memory": launch["bytes"] / m["bytes_per_second"]}
         else:
             chain = max(1, launch["longest_chain"] or launch["elements"])
-            steps = launch["steps"] or launch["work_items"] * launch["elements"]
+            steps = steps_of(launch)
             paths = self.paths(cost, launch)
             scattered = m["kind"] == "gpu" and (cost["divergent"] or launch["elements"] >= LEAST_ELEMENTS_OF_CHUNKS)
             step = self.step_seconds(cost) * paths
@@ -167,7 +189,8 @@ def predict_call(model, summary, launches):
     rate = machine["transfer_bytes_per_second"]
     transfers = (summary["bytes_to_device"] + summary["bytes_to_host"]) / rate if rate else 0
     return rows, {"device_seconds": on_device, "call_seconds": on_device + transfers,
-                  "points_per_second": summary["n"] / on_device}
+                  "points_per_second": summary["n"] / on_device,
+                  "work_items_of_most_instructions": model.work_items_of_most_instructions(launches)}
 
 
 def launches_of(record, summary):
@@ -195,6 +218,8 @@ def print_call(machine, summary, rows, totals, measured):
     print("|---|--:|--:|---|" + "--:|" * measured)
     for line in lines:
         print("| " + " | ".join(line) + " |")
+    print(f"\nLaunches of at least {totals['work_items_of_most_instructions']} work-items do {MOST:.0%} of the "
+          "instructions.")
 
 
 def arguments_of(command_line):

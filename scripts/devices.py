@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Compares the results of all OpenCL runtimes that can be had for CPUs with those of Debian's PoCL, byte for byte: both
 modes, queries and Voronoi diagrams on all fixtures, with the sizes for the device and with those of GPUs. Those of PyPI
-are installed by pip in an environment of its own, build/device-runtimes. Each process loads one driver.
+are installed by pip in an environment of its own, build/device-runtimes. Each process loads one driver; at the end one
+loads two, which share the chunks of a triangulation.
 
 Exit code: 0; 1 if a result differed or a run failed; 77 if no runtime of PyPI could be installed, which takes a
 network. See docs/known-issues.md for the devices that were tried.
 """
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -22,6 +24,11 @@ INSTALL_SECONDS = 120
 # Kernels with barriers run with a GPU's sizes. A simulator takes long: little input, and the sizes that it has by name.
 TUNINGS = ["", "gpu"]
 SIMULATED_POINTS = 3
+# Two drivers share chunks. There are enough of them for the one that has more to compile.
+CHUNKED_POINTS = 200000
+CHUNK_POINTS = 5000
+# The one whose LLVM is not in conflict with the system's.
+TOGETHER = "Intel's CPU runtime"
 
 
 class Runtime:
@@ -126,6 +133,39 @@ class Comparison:
     def run_on(self, runtime, tuning):
         return self.run(runtime.name, tuning, [self.program], self.environment(runtime, tuning), runtime.known)
 
+    def chunks_of(self, name, devices, environment):
+        """The bytes of a triangulation in chunks, with each device's points, or None."""
+        points, files = self.outputs / "points.npy", [self.outputs / f"chunks-{part}.npy" for part in "tn"]
+        statistics = self.outputs / "chunks.json"
+        flaunay = self.program.parent.parent / "flaunay"
+        command = [flaunay, "generate", "kuzmin", str(CHUNKED_POINTS), "-o", points]
+        subprocess.run(command, check=True, capture_output=True)
+        command = [flaunay, "triangulate", points, "--quiet", "--device", devices, "--chunk-points", str(CHUNK_POINTS),
+                   "--triangles", files[0], "--neighbors", files[1], "--stats", statistics]
+        if self.run(f"{name}, in chunks", "", command, environment) is None:
+            return None
+        shares = {share["device"]: share["points"] for share in json.loads(statistics.read_text())["chunks"]["devices"]}
+        return [path.read_bytes() for path in files], shares
+
+    def work_together(self, runtime):
+        """Two drivers in one process take chunks from one queue."""
+        environment = self.environment(runtime, "")
+        both = self.folder / "drivers" / f"{self.key(REFERENCE)}-and-{self.key(runtime)}"
+        both.mkdir(parents=True, exist_ok=True)
+        for number, each in enumerate([REFERENCE, runtime]):
+            shutil.copy(self.drivers(each) / "driver.icd", both / f"{number}.icd")
+        environment["OCL_ICD_VENDORS"] = str(both)
+        together = self.chunks_of(f"{REFERENCE.name} with {runtime.name}", "#0,#1", environment)
+        alone = self.chunks_of("the host", "host", environment)
+        if together is None or alone is None:
+            return
+        shares = together[1]
+        if together[0] != alone[0] or len(shares) != 2 or 0 in shares.values():
+            self.failures += 1
+            print(f"  DIFFERENT, or not done by both: {shares}", flush=True)
+        else:
+            print(f"  the same bytes; points of each device: {shares}", flush=True)
+
     def simulate(self):
         """Oclgrind comes before the loader; its interpreter lacks intrinsics of optimised kernels."""
         most = str(SIMULATED_POINTS)
@@ -162,6 +202,8 @@ def main():
     for runtime in installed:
         for tuning in TUNINGS:
             comparison.compare(comparison.run_on(runtime, tuning), expected)
+        if runtime.name == TOGETHER:
+            comparison.work_together(runtime)
     if shutil.which("oclgrind"):
         comparison.simulate()
     return 1 if comparison.failures else 0

@@ -324,6 +324,18 @@ TEST_F(BenchTest, WholeProcessesAreTimed) {
   EXPECT_NE(run("processes --sizes 50 --program " + path("none")), 0);
 }
 
+TEST_F(BenchTest, ChunksAreTimed) {
+  const auto record =
+      run_well("chunks --sizes 3000 --in-memory 3000 --memory 256M --distributions uniform --runs 1");
+  ASSERT_EQ(record["results"].size(), 2u);
+  EXPECT_TRUE(record["results"][0]["rounds"].is_null());
+  EXPECT_EQ(record["results"][1].value("rounds", 0), 1);
+  for (const auto& row : record["results"]) {
+    EXPECT_GT(row.value("resident_peak_mib", 0.0), 1);
+    EXPECT_GT(row.value("points_per_second", 0.0), 0);
+  }
+}
+
 TEST_F(BenchTest, BatchesAreBesideLoops) {
   const auto record = run_well("batches --quick");
   const bool cgal = !without_cgal(contents(path("err")));
@@ -468,19 +480,10 @@ class PredictionTest : public BenchTest {
         << contents(path("err"));
     return nlohmann::json::parse(contents(json), nullptr, false);
   }
-};
-
-// By hand: what each launch takes by the model's definition and the machine's values.
-TEST_F(PredictionTest, FollowTheModel) {
-  const nlohmann::json call = {{"mode", "blocks"}, {"distribution", "uniform"}, {"n", 1000}};
-  nlohmann::json summary = call, fill = call, serial = call;
-  summary.update({{"kernel_launches", 2},
-                  {"host_waits", 3},
-                  {"bytes_to_device", 0},
-                  {"bytes_to_host", 5e7},
-                  {"seconds_median", 1.0}});
-  const auto add_launch = [](nlohmann::json& row, const char* kernel, std::size_t work_items,
-                             std::size_t elements, double bytes) {
+  /// Launches of a kernel that the model does not know, or of "fill", as a record has them.
+  static nlohmann::json launch_row(const char* kernel, std::size_t work_items, std::size_t elements,
+                                   double bytes) {
+    nlohmann::json row = kCall;
     row.update({{"kernel", kernel},
                 {"work_items", work_items},
                 {"group", 1},
@@ -490,15 +493,44 @@ TEST_F(PredictionTest, FollowTheModel) {
                 {"longest_chain", 0},
                 {"steps", 0},
                 {"seconds", 0.5}});
-  };
-  add_launch(fill, "fill", 0, 0, 4.8e9);
-  add_launch(serial, "a kernel that nobody knows", 1, 1000000, 0);
-  std::ofstream(path("launches.json")) << nlohmann::json{
-      {"subcommand", "launches"}, {"device", "none"}, {"results", {summary}}, {"launches", {fill, serial}}};
-  const auto of = [&](const std::string& machine) {
+    return row;
+  }
+  /// Writes a record of one call.
+  void write_record(const std::vector<nlohmann::json>& launches, int waits, double bytes_to_host) const {
+    nlohmann::json summary = kCall;
+    summary.update({{"kernel_launches", launches.size()},
+                    {"host_waits", waits},
+                    {"bytes_to_device", 0},
+                    {"bytes_to_host", bytes_to_host},
+                    {"seconds_median", 1.0}});
+    std::ofstream(path("launches.json")) << nlohmann::json{
+        {"subcommand", "launches"}, {"device", "none"}, {"results", {summary}}, {"launches", launches}};
+  }
+  /// The prediction for that call.
+  nlohmann::json predicted_for(const std::string& machine) const {
     return predicted(path("launches.json"), "--machine " + machine)["results"][0];
+  }
+
+  static constexpr const char* kUnknown = "a kernel that nobody knows";
+  static inline const nlohmann::json kCall = {{"mode", "blocks"}, {"distribution", "uniform"}, {"n", 1000}};
+};
+
+// By hand: launches of so many work-items that go through so many elements each.
+TEST_F(PredictionTest, WorkItemsOfMostInstructions) {
+  const auto of_last = [&](std::size_t elements) {
+    write_record({launch_row(kUnknown, 10, elements, 0), launch_row(kUnknown, 1000, 10, 0),
+                  launch_row(kUnknown, 100, 850, 0)},
+                 0, 0);
+    return predicted_for("h200").value("work_items_of_most_instructions", 0);
   };
-  const auto h200 = of("h200"), cpu = of("cpu-64-cores");
+  EXPECT_EQ(of_last(500), 100);
+  EXPECT_EQ(of_last(2000), 10);
+}
+
+// By hand: what each launch takes by the model's definition and the machine's values.
+TEST_F(PredictionTest, FollowTheModel) {
+  write_record({launch_row("fill", 0, 0, 4.8e9), launch_row(kUnknown, 1, 1000000, 0)}, 3, 5e7);
+  const auto h200 = predicted_for("h200"), cpu = predicted_for("cpu-64-cores");
   const auto seconds_of = [](const nlohmann::json& result, const std::string& kernel) {
     for (const auto& row : result["kernels"]) {
       if (row["kernel"] == kernel) return row["predicted_seconds"].get<double>();
@@ -508,12 +540,11 @@ TEST_F(PredictionTest, FollowTheModel) {
   // 4.8 TB/s.
   EXPECT_NEAR(seconds_of(h200, "fill"), 1e-3, 1e-9);
   // 40 instructions at 0.3 cycles and a tenth of a misprediction of 15 cycles, at 4.5 GHz.
-  EXPECT_NEAR(seconds_of(cpu, "a kernel that nobody knows"), 1e6 * (40 * 0.3 + 0.1 * 15) / 4.5e9, 1e-9);
+  EXPECT_NEAR(seconds_of(cpu, kUnknown), 1e6 * (40 * 0.3 + 0.1 * 15) / 4.5e9, 1e-9);
   // 40 instructions at 4.5 cycles, a load from L2 and one from memory.
-  EXPECT_NEAR(seconds_of(h200, "a kernel that nobody knows"), 1e6 * (40 * 4.5 + 263 + 479) / 1.98e9, 1e-6);
+  EXPECT_NEAR(seconds_of(h200, kUnknown), 1e6 * (40 * 4.5 + 263 + 479) / 1.98e9, 1e-6);
   const double on_device = h200["device_seconds"];
-  EXPECT_NEAR(on_device, seconds_of(h200, "fill") + seconds_of(h200, "a kernel that nobody knows") + 3 * 2e-5,
-              1e-9);
+  EXPECT_NEAR(on_device, seconds_of(h200, "fill") + seconds_of(h200, kUnknown) + 3 * 2e-5, 1e-9);
   EXPECT_NEAR(h200["call_seconds"].get<double>() - on_device, 1e-3, 1e-9);
 }
 

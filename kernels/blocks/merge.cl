@@ -4,19 +4,22 @@
 //
 // There is a launch of merge_parts per height, the first of which makes the leaves of all blocks, and then one of
 // merge_trees per level of the trees of cuts. There is one work-item per cell or merge, but where these are few, only
-// each `spread`-th work-item has one, so that merges are not in the same warp and do not wait for each other.
+// each `spread`-th work-item has one, so that merges are not in the same warp and do not wait for each other. Kernels
+// that continue merges have the same arguments; the account is theirs alone.
 
 #define RINGS_STOP
 #include "shared/cut_tree.h"
 #include "shared/halves.h"
+#include "shared/work_group.h"
 
 kernel void merge_parts(int n, int spread, int height, int places, global const int* restrict offsets,
                         global const int* restrict distinct, global const int* restrict block_of_place,
                         global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                        global solved_block* solved, global int* restrict states COUNTERS) {
-  const int cell = (int)get_global_id(0) / spread;
-  if (cell < n && cell * spread == (int)get_global_id(0)) {
+                        global solved_block* solved, global int* restrict states,
+                        global volatile uint* account COUNTERS) {
+  const int cell = spread_item(n, spread);
+  if (cell < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[cell] = do_cell(&g, &blocks, height, cell, MERGE_IS_NEW);
@@ -27,9 +30,9 @@ kernel void merge_parts(int n, int spread, int height, int places, global const 
 kernel void merge_trees(int n, int spread, int first_merge, global const block_merge* restrict merges,
                         global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
-                        global int* restrict states COUNTERS) {
-  const int m = (int)get_global_id(0) / spread;
-  if (m < n && m * spread == (int)get_global_id(0)) {
+                        global int* restrict states, global volatile uint* account COUNTERS) {
+  const int m = spread_item(n, spread);
+  if (m < n) {
     const block_merge merge = merges[first_merge + m];
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[m] = merge_two_blocks(&g, solved, merge, cut_axis(nodes[merge.node]), MERGE_IS_NEW);

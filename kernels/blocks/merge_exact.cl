@@ -1,6 +1,6 @@
 // Leaves and merges at which floating point could not decide, with exact predicates: what blocks/merge.cl has stopped
 // at is continued to its end, and walks along seams at which blocks/seams.cl has stopped are done again. Each kernel is
-// one pass over the states of a launch, most of which are done, with one work-item per cell or merge.
+// one pass over the states of a launch, most of which are done, with the work-items and arguments of that launch.
 
 // Compiled in half the time, and these are called rarely.
 #define OUT_OF_LINE __attribute__((noinline))
@@ -8,14 +8,15 @@
 #include "shared/halves.h"
 #include "shared/rings_account.h"
 #include "shared/seams.h"
+#include "shared/work_group.h"
 
-kernel void finish_parts(int n, int height, int places, global const int* restrict offsets,
+kernel void finish_parts(int n, int spread, int height, int places, global const int* restrict offsets,
                          global const int* restrict distinct, global const int* restrict block_of_place,
                          global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                          global solved_block* solved, global int* restrict states,
                          global volatile uint* account COUNTERS) {
-  const int cell = get_global_id(0);
+  const int cell = spread_item(n, spread);
   if (cell < n && states[cell] != MERGE_IS_DONE) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
@@ -25,13 +26,13 @@ kernel void finish_parts(int n, int height, int places, global const int* restri
   }
 }
 
-kernel void finish_walks(int n, int height, int places, global const int* restrict offsets,
+kernel void finish_walks(int n, int spread, int height, int places, global const int* restrict offsets,
                          global const int* restrict distinct, global const int* restrict block_of_place,
                          global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                          global solved_block* solved, global int2* restrict crossings, global uchar* restrict removed,
                          global seam_walk* restrict walks, global volatile uint* account COUNTERS) {
-  const int w = get_global_id(0);
+  const int w = spread_item(n, spread);
   if (w < n && walks[w].outcome == WALK_HAS_STOPPED) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
@@ -41,11 +42,11 @@ kernel void finish_walks(int n, int height, int places, global const int* restri
   }
 }
 
-kernel void finish_trees(int n, int first_merge, global const block_merge* restrict merges,
+kernel void finish_trees(int n, int spread, int first_merge, global const block_merge* restrict merges,
                          global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
                          global int* restrict states, global volatile uint* account COUNTERS) {
-  const int m = get_global_id(0);
+  const int m = spread_item(n, spread);
   if (m < n && states[m] != MERGE_IS_DONE) {
     const block_merge merge = merges[first_merge + m];
     rings g = rings_on(edges, points, vertex_edge, bounds);

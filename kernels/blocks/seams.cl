@@ -3,8 +3,12 @@
 // cross the seam and mark those that go. Walks that stopped are done again by finish_walks of blocks/merge_exact.cl. A
 // launch of sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
 // in the rings. Each is one pass over what begins in the cells of that height (shared/halves.h).
+//
+// Walks that do not meet would be an error of the program. Such halves stay as they are, which is safe for all later
+// kernels, and the account tells the host.
 
 #define RINGS_STOP
+#include "shared/codes.h"
 #include "shared/halves.h"
 #include "shared/seams.h"
 #include "shared/work_group.h"
@@ -14,10 +18,10 @@ kernel void walk_seams(int n, int spread, int height, int places, global const i
                        global const uchar* restrict axes, filter_bounds bounds, global const double2* restrict points,
                        global ring_edge* restrict edges, global int* restrict vertex_edge,
                        global solved_block* restrict parts, global solved_block* restrict solved,
-                       global int2* restrict crossings, global uchar* restrict removed,
-                       global seam_walk* walks COUNTERS) {
-  const int w = (int)get_global_id(0) / spread;
-  if (w < n && w * spread == (int)get_global_id(0)) {
+                       global int2* restrict crossings, global uchar* restrict removed, global seam_walk* walks,
+                       global volatile uint* account COUNTERS) {
+  const int w = spread_item(n, spread);
+  if (w < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);
@@ -94,10 +98,10 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
                       global const int* restrict block_of_place, global const uchar* restrict axes,
                       global const double2* restrict points, global const int2* restrict crossings,
                       global const seam_walk* restrict walks, global ring_edge* edges, global int* vertex_edge,
-                      global solved_block* parts, global solved_block* solved, global uchar* removed,
-                      global int* slots) {
+                      global solved_block* parts, global solved_block* solved, global uchar* removed, global int* slots,
+                      global volatile uint* account) {
   local uint sums[LARGEST_TILE_GROUP];
-  local int meets;
+  local int meets;  // the downward walk's edge that is the last one of the upward walk, or -1
   const int cell = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
   const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
   const part_halves halves = halves_of_cell(&blocks, height, cell);
@@ -109,7 +113,7 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
                     removed,
                     removed + PAIRS_PER_VERTEX * places,
                     slots + PAIRS_PER_VERTEX * begin};
-  if (me == 0) meets = 0;
+  if (me == 0) meets = -1;
   barrier(CLK_LOCAL_MEM_FENCE);
   for (int k = me; k < s.seam.down.crossings; k += lanes) {
     if (walks_meet(&s.seam, k, edges)) meets = k;
@@ -122,14 +126,17 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
   for (int pair = own_first; pair < own_end; ++pair) {
     if (may_be_sewn(&s, pair)) s.slots[slot++] = pair;
   }
-  for (int v = begin + me; v < end; v += lanes) replace_vertex_edge(&s, v);
+  const int count = s.seam.up.crossings + meets;
+  // A walk that has stopped has not listed all that it should.
+  const int is_whole = s.seam.up.outcome != WALK_HAS_STOPPED && s.seam.down.outcome != WALK_HAS_STOPPED;
+  const int is_sewn = is_merge && is_whole && meets >= 0 && count <= (int)all;
+  for (int v = begin + me; is_sewn && v < end; v += lanes) replace_vertex_edge(&s, v);
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
-  const int count = is_merge ? s.seam.up.crossings + meets : 0;
   sewing sewn = s;
   sewn.seam.count = count;
-  for (int i = me; i < count; i += lanes) sew_crossing(&sewn, i);
+  for (int i = me; is_sewn && i < count; i += lanes) sew_crossing(&sewn, i);
   // The others are free, in the order of their places.
-  for (int k = count + me; k < (int)all; k += lanes) {
+  for (int k = count + me; is_sewn && k < (int)all; k += lanes) {
     const int e = 2 * s.slots[k];
     const ring_edge pair[2] = {{NO_VERTEX, k + 1 < (int)all ? 2 * s.slots[k + 1] : NO_EDGE, e}, {NO_VERTEX, e, e}};
     edges[e] = pair[0];
@@ -140,14 +147,19 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
   if (me == 0 && is_merge) {
     const filter_bounds none = {0, 0, 0};
     rings g = rings_on(edges, points, vertex_edge, none);
-    const int lowest = crossing_from(&s, 0, 0), highest = crossing_from(&s, count - 1, 1);
-    vertex_edge[edges[lowest ^ 1].to] = lowest;
-    vertex_edge[edges[highest ^ 1].to] = highest;
-    if (count < (int)all) {
-      g.free_first = 2 * s.slots[count];
-      g.free_last = 2 * s.slots[all - 1];
+    const solved_block low = parts[halves.low_at], high = parts[halves.high_at];
+    if (!is_sewn) {
+      join_free_lists(&g, low.unused, high.unused);
+      atomic_inc(&account[RINGS_BROKEN]);
+    } else {
+      const int lowest = crossing_from(&s, 0, 0), highest = crossing_from(&s, count - 1, 1);
+      vertex_edge[edges[lowest ^ 1].to] = lowest;
+      vertex_edge[edges[highest ^ 1].to] = highest;
+      if (count < (int)all) {
+        g.free_first = 2 * s.slots[count];
+        g.free_last = 2 * s.slots[all - 1];
+      }
     }
-    finish_part(&g, &blocks, halves.part,
-                joined_ends(&g, parts[halves.low_at].ends, parts[halves.high_at].ends, halves.axis));
+    finish_part(&g, &blocks, halves.part, joined_ends(&g, low.ends, high.ends, halves.axis));
   }
 }

@@ -46,7 +46,8 @@ static inline int thin_region(int i, int regions, global const int* offsets) {
 }
 
 // Place i gets the lowest of its part of the region's list, the first of several. Parts are as equal as they can be; if
-// there are fewer points than places, points are taken twice. A region without points gets its end.
+// there are fewer points than places, points are taken twice. Without internal points it gets the first end of the
+// region's hull, which is -1 for a set without points.
 kernel void thin_lists(int n, int regions, global const int* restrict offsets, global const int* restrict x_list,
                        global const int* restrict y_list, global const double2* restrict projections,
                        global const int* restrict axis, global const int* restrict first_end,
@@ -86,7 +87,8 @@ kernel void thin_lists(int n, int regions, global const int* restrict offsets, g
 // The list of a region whose axis is AXIS_Y descends in u; all others ascend.
 static inline int rank_in_list(int i, int low, int high, int axis) { return axis == AXIS_Y ? high - 1 - i : i - low; }
 
-// A region's list between its two ends. Regions without points have ends -1.
+// A region's list, which has at least one element, between the two ends of its hull. A set without points has no ends:
+// they are -1, as is all of its list.
 kernel void sequence_of_lists(int n, global const int* restrict offsets, global const int* restrict list,
                               global const int* restrict regions, global const double2* restrict list_projections,
                               global const int* restrict first_end, global const int* restrict last_end,

@@ -31,7 +31,8 @@ INTEGER_CONSTANT(BROKEN_CIRCLE, 4);  // an edge is not Delaunay
 // The account of divide: the places of its numbers.
 INTEGER_CONSTANT(RINGS_UNDECIDED, 0);  // predicates that were evaluated exactly
 INTEGER_CONSTANT(RINGS_TIES, 1);       // how many of them found cocircular points
-INTEGER_CONSTANT(RINGS_NUMBERS, 2);
+INTEGER_CONSTANT(RINGS_BROKEN, 2);     // seams that could not be sewn, which is an error of the program
+INTEGER_CONSTANT(RINGS_NUMBERS, 3);
 
 // The account of all coordinates: the places of its numbers, and what they are before any coordinate is seen.
 INTEGER_CONSTANT(INSPECT_LARGEST, 0);  // the largest exponent of a leading bit

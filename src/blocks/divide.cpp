@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "blocks/stages.hpp"
@@ -152,12 +154,20 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
   return rings;
 }
 
+void check_account(const cl_uint* account) {
+  if (account[kernel::RINGS_BROKEN] == 0) return;
+  throw Error(ErrorKind::internal, fmt::format("the two walks along a seam do not meet, in {} merges; "
+                                               "please report the input",
+                                               account[kernel::RINGS_BROKEN]));
+}
+
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {
   rings.distinct.resize(blocks.count);
   const host::Runtime::Settled settled(work.runtime);
   work.runtime.read_later(rings.device_distinct, 0, blocks.count, rings.distinct.data());
   cl_uint account[kernel::RINGS_NUMBERS];
   work.runtime.read(rings.device_account, 0, kernel::RINGS_NUMBERS, account);
+  check_account(account);
   rings.undecided = account[kernel::RINGS_UNDECIDED];
   rings.ties = account[kernel::RINGS_TIES];
 }

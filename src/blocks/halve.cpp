@@ -10,8 +10,8 @@
 namespace flaunay::blocks {
 namespace {
 
-// A work-item has about so many points of its block.
-constexpr std::size_t kPointsPerItem = 8;
+// So many points of a block for each work-item, or more in the largest groups.
+constexpr std::size_t kPointsPerItem = 4;
 
 std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks, std::size_t groups) {
   // Not less than a warp, which would be there for less, too.
@@ -27,7 +27,8 @@ struct SortedPoints {
   Buffer<cl_uint> scanned{};  ///< how many distinct points large blocks have before each place
 };
 
-// Drops the duplicates of blocks of more than `capacity` points.
+// Sorts blocks of more than `capacity` points and drops their duplicates. Later rounds have none, and no
+// representative is written then, but such blocks are sorted nowhere else.
 void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
                      std::size_t capacity, const Buffer<cl_int>& representatives,
                      const SortedPoints& sorted) {

@@ -61,55 +61,101 @@ Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
   return seams;
 }
 
-void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
-                          const Rings& rings, const Seams& seams, int height,
-                          const Buffer<kernel::solved_block>& parts) {
-  host::Runtime& runtime = work.runtime;
-  const Tuning& tuning = tuning_of(runtime);
+// What merges of halves work on, but for what one height has.
+struct Halves {
+  Workspace& work;
+  const PointBlocks& blocks;
+  const HalvedBlocks& halved;
+  const Rings& rings;
+  Buffer<kernel::solved_block> parts{};
+  Buffer<cl_int> states{};
+  Seams seams{};
+};
+
+// Spreads the work-items of so many merges over warps.
+template <typename Kernel>
+void launch_spread(Workspace& work, std::size_t spread, std::size_t merges, const Kernel& kernel) {
+  work.runtime.note_spread(spread);
+  work.runtime.launch(spread * merges, tuning_of(work.runtime).block_group, merges, kernel);
+}
+
+// kernels::merge_parts or kernels::finish_parts.
+template <typename Kernel>
+void launch_on_parts(const Halves& halves, int height) {
+  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
   const std::size_t cells = cells_of(blocks, height);
-  const std::size_t spread = spread_of(tuning, 2 * cells);
-  runtime.note_spread(spread);
-  runtime.launch(spread * 2 * cells, tuning.block_group, 2 * cells,
-                 kernels::walk_seams{.spread = spread,
-                                     .height = height,
-                                     .places = blocks.points,
-                                     .offsets = blocks.offsets,
-                                     .distinct = rings.device_distinct,
-                                     .block_of_place = halved.block_of_place,
-                                     .axes = halved.axes,
-                                     .bounds = work.bounds,
-                                     .points = blocks.vertices,
-                                     .edges = rings.edges,
-                                     .vertex_edge = rings.vertex_edge,
-                                     .parts = parts,
-                                     .solved = rings.solved,
-                                     .crossings = seams.crossings,
-                                     .removed = seams.removed,
-                                     .walks = seams.walks});
-  if (may_stop(work)) {
-    runtime.launch(2 * cells, tuning.block_group, 2 * cells,
-                   kernels::finish_walks{.height = height,
-                                         .places = blocks.points,
-                                         .offsets = blocks.offsets,
-                                         .distinct = rings.device_distinct,
-                                         .block_of_place = halved.block_of_place,
-                                         .axes = halved.axes,
-                                         .bounds = work.bounds,
-                                         .points = blocks.vertices,
-                                         .edges = rings.edges,
-                                         .vertex_edge = rings.vertex_edge,
-                                         .parts = parts,
-                                         .solved = rings.solved,
-                                         .crossings = seams.crossings,
-                                         .removed = seams.removed,
-                                         .walks = seams.walks,
-                                         .account = rings.device_account});
-  }
-  const std::size_t group = sewing_group_of(tuning, height);
+  const std::size_t spread = spread_of(tuning_of(work.runtime), cells);
+  launch_spread(work, spread, cells,
+                Kernel{.spread = spread,
+                       .height = height,
+                       .places = blocks.points,
+                       .offsets = blocks.offsets,
+                       .distinct = rings.device_distinct,
+                       .block_of_place = halved.block_of_place,
+                       .axes = halved.axes,
+                       .bounds = work.bounds,
+                       .points = blocks.vertices,
+                       .edges = rings.edges,
+                       .vertex_edge = rings.vertex_edge,
+                       .parts = parts,
+                       .solved = rings.solved,
+                       .states = states,
+                       .account = rings.device_account});
+}
+
+// kernels::walk_seams or kernels::finish_walks.
+template <typename Kernel>
+void launch_on_walks(const Halves& halves, int height) {
+  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  const std::size_t walks = 2 * cells_of(blocks, height);
+  const std::size_t spread = spread_of(tuning_of(work.runtime), walks);
+  launch_spread(work, spread, walks,
+                Kernel{.spread = spread,
+                       .height = height,
+                       .places = blocks.points,
+                       .offsets = blocks.offsets,
+                       .distinct = rings.device_distinct,
+                       .block_of_place = halved.block_of_place,
+                       .axes = halved.axes,
+                       .bounds = work.bounds,
+                       .points = blocks.vertices,
+                       .edges = rings.edges,
+                       .vertex_edge = rings.vertex_edge,
+                       .parts = parts,
+                       .solved = rings.solved,
+                       .crossings = seams.crossings,
+                       .removed = seams.removed,
+                       .walks = seams.walks,
+                       .account = rings.device_account});
+}
+
+// kernels::merge_trees or kernels::finish_trees.
+template <typename Kernel>
+void launch_on_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t merges,
+                     const Rings& rings, const Buffer<cl_int>& states) {
+  const std::size_t spread = spread_of(tuning_of(work.runtime), merges);
+  launch_spread(work, spread, merges,
+                Kernel{.spread = spread,
+                       .first_merge = first,
+                       .merges = blocks.device_merges,
+                       .nodes = blocks.device_nodes,
+                       .bounds = work.bounds,
+                       .points = blocks.vertices,
+                       .edges = rings.edges,
+                       .vertex_edge = rings.vertex_edge,
+                       .solved = rings.solved,
+                       .states = states,
+                       .account = rings.device_account});
+}
+
+void sew_seams(const Halves& halves, int height) {
+  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  host::Runtime& runtime = work.runtime;
+  const std::size_t group = sewing_group_of(tuning_of(runtime), height);
   const std::size_t most_pairs =
       kernel::PAIRS_PER_VERTEX * std::min(blocks.largest, 2 * least_vertices(height));
   runtime.note_elements((most_pairs + group - 1) / group);
-  runtime.launch(group * cells, group,
+  runtime.launch(group * cells_of(blocks, height), group,
                  kernels::sew_seams{.height = height,
                                     .places = blocks.points,
                                     .offsets = blocks.offsets,
@@ -124,60 +170,29 @@ void merge_from_both_ends(Workspace& work, const PointBlocks& blocks, const Halv
                                     .parts = parts,
                                     .solved = rings.solved,
                                     .removed = seams.removed,
-                                    .slots = seams.slots});
+                                    .slots = seams.slots,
+                                    .account = rings.device_account});
 }
 
 }  // namespace
 
 void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
                   const Rings& rings) {
-  host::Runtime& runtime = work.runtime;
-  const Tuning& tuning = tuning_of(runtime);
   Arena::Scope scope(work.scratch());
-  const auto parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
-  const auto states = work.scratch().allocate<cl_int>(cells_of(blocks, 0));
+  Halves halves{work, blocks, halved, rings};
+  halves.parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
+  halves.states = work.scratch().allocate<cl_int>(cells_of(blocks, 0));
   const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
-  const int first_seams = first_height_of_seams(tuning, blocks, heights);
-  const Seams seams = first_seams <= heights ? seams_of(work, blocks, first_seams) : Seams{};
-  for (int height = 0; height <= heights; ++height) {
-    if (height >= first_seams) {
-      merge_from_both_ends(work, blocks, halved, rings, seams, height, parts);
-      continue;
-    }
-    const std::size_t cells = cells_of(blocks, height);
-    const std::size_t spread = spread_of(tuning, cells);
-    runtime.note_spread(spread);
-    runtime.launch(spread * cells, tuning.block_group, cells,
-                   kernels::merge_parts{.spread = spread,
-                                        .height = height,
-                                        .places = blocks.points,
-                                        .offsets = blocks.offsets,
-                                        .distinct = rings.device_distinct,
-                                        .block_of_place = halved.block_of_place,
-                                        .axes = halved.axes,
-                                        .bounds = work.bounds,
-                                        .points = blocks.vertices,
-                                        .edges = rings.edges,
-                                        .vertex_edge = rings.vertex_edge,
-                                        .parts = parts,
-                                        .solved = rings.solved,
-                                        .states = states});
-    if (!may_stop(work)) continue;
-    runtime.launch(cells, tuning.block_group, cells,
-                   kernels::finish_parts{.height = height,
-                                         .places = blocks.points,
-                                         .offsets = blocks.offsets,
-                                         .distinct = rings.device_distinct,
-                                         .block_of_place = halved.block_of_place,
-                                         .axes = halved.axes,
-                                         .bounds = work.bounds,
-                                         .points = blocks.vertices,
-                                         .edges = rings.edges,
-                                         .vertex_edge = rings.vertex_edge,
-                                         .parts = parts,
-                                         .solved = rings.solved,
-                                         .states = states,
-                                         .account = rings.device_account});
+  const int first_seams = first_height_of_seams(tuning_of(work.runtime), blocks, heights);
+  for (int height = 0; height < first_seams && height <= heights; ++height) {
+    launch_on_parts<kernels::merge_parts>(halves, height);
+    if (may_stop(work)) launch_on_parts<kernels::finish_parts>(halves, height);
+  }
+  if (first_seams <= heights) halves.seams = seams_of(work, blocks, first_seams);
+  for (int height = first_seams; height <= heights; ++height) {
+    launch_on_walks<kernels::walk_seams>(halves, height);
+    if (may_stop(work)) launch_on_walks<kernels::finish_walks>(halves, height);
+    sew_seams(halves, height);
   }
 }
 
@@ -189,36 +204,10 @@ void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<
 
 void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
                  const Rings& rings) {
-  host::Runtime& runtime = work.runtime;
-  const Tuning& tuning = tuning_of(runtime);
   Arena::Scope scope(work.scratch());
-  const std::size_t merges = end - first;
-  const auto states = work.scratch().allocate<cl_int>(merges);
-  const std::size_t spread = spread_of(tuning, merges);
-  runtime.note_spread(spread);
-  runtime.launch(spread * merges, tuning.block_group, merges,
-                 kernels::merge_trees{.spread = spread,
-                                      .first_merge = first,
-                                      .merges = blocks.device_merges,
-                                      .nodes = blocks.device_nodes,
-                                      .bounds = work.bounds,
-                                      .points = blocks.vertices,
-                                      .edges = rings.edges,
-                                      .vertex_edge = rings.vertex_edge,
-                                      .solved = rings.solved,
-                                      .states = states});
-  if (!may_stop(work)) return;
-  runtime.launch(merges, tuning.block_group, merges,
-                 kernels::finish_trees{.first_merge = first,
-                                       .merges = blocks.device_merges,
-                                       .nodes = blocks.device_nodes,
-                                       .bounds = work.bounds,
-                                       .points = blocks.vertices,
-                                       .edges = rings.edges,
-                                       .vertex_edge = rings.vertex_edge,
-                                       .solved = rings.solved,
-                                       .states = states,
-                                       .account = rings.device_account});
+  const auto states = work.scratch().allocate<cl_int>(end - first);
+  launch_on_trees<kernels::merge_trees>(work, blocks, first, end - first, rings, states);
+  if (may_stop(work)) launch_on_trees<kernels::finish_trees>(work, blocks, first, end - first, rings, states);
 }
 
 }  // namespace flaunay::blocks

@@ -42,6 +42,8 @@ struct Numbers {
     }
     runtime.read_later(rings.device_account, 0, account.size(), account.data());
   }
+  // To be called after that wait, before anything relies on the triangulations.
+  void check() const { check_account(account.data()); }
   std::size_t undecided() const { return account[kernel::RINGS_UNDECIDED]; }
 };
 
@@ -179,7 +181,8 @@ void emit(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& e
 }
 
 // Finds the points around which something is missing after a round. Waits once.
-void find_open(Workspace& work, Arena& persistent, const Round& round, OpenPoints& next) {
+void find_open(Workspace& work, Arena& persistent, const Round& round, const Numbers& numbers,
+               OpenPoints& next) {
   host::Runtime& runtime = work.runtime;
   const Blocks& blocks = round.blocks;
   Arena::Scope scope(work.scratch());
@@ -206,6 +209,7 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, OpenPoint
   runtime.map(sizes.size(),
               kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
   runtime.read(device_sizes, 0, sizes.size(), sizes.data());
+  numbers.check();
   next.offsets.clear();
   for (const cl_uint2& size : sizes) next.offsets.push_back(size.s[0]);
   if (next.count() == 0) return;
@@ -236,8 +240,8 @@ class Results {
     hull_places_ = work.scratch().allocate<cl_uint>(n_ + 1);
   }
 
-  // Waits once, also for the numbers of the distinct points of the first round's blocks.
-  MeshSizes sizes(const std::vector<cl_int>& set_blocks, const std::vector<cl_int>& distinct) {
+  // Waits once, also for the numbers. set_blocks: of the first round.
+  MeshSizes sizes(const std::vector<cl_int>& set_blocks, const Numbers& numbers) {
     host::Runtime& runtime = work_.runtime;
     std::vector<cl_uint2> found(sets_ + 1);
     const host::Runtime::Settled settled(runtime);
@@ -253,13 +257,14 @@ class Results {
                                                     .hull_of_vertex = hull_places_,
                                                     .sizes = device_sizes});
     runtime.read(device_sizes, 0, found.size(), found.data());
+    numbers.check();
     MeshSizes sizes;
     for (std::size_t s = 0; s <= sets_; ++s) {
       sizes.triangle_offsets.push_back(found[s].s[0]);
       sizes.hull_offsets.push_back(found[s].s[1]);
     }
     for (std::size_t s = 0; s < sets_; ++s) {
-      const auto first = distinct.begin();
+      const auto first = numbers.distinct.begin();
       const std::size_t vertices =
           std::accumulate(first + set_blocks[s], first + set_blocks[s + 1], std::size_t{0});
       check_euler(sizes, s, vertices);
@@ -404,7 +409,7 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
     outcome.undecided += numbers.undecided();  // of the round before
     numbers.read_later(runtime, blocks, round.rings, r == 0);
     next.offsets.assign(blocks.sets + 1, 0);
-    if (!round.is_last()) find_open(rounds_work, persistent, round, next);
+    if (!round.is_last()) find_open(rounds_work, persistent, round, numbers, next);
     ++outcome.rounds;
     outcome.round_points += open.count();
     if (is_merged) outcome.merged_points = open.count();
@@ -417,7 +422,7 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
 
   phases.progress("output", kBlocksMerged);
   Results results(work, emitted, offsets);
-  outcome.sizes = results.sizes(first_blocks.set_blocks, numbers.distinct);
+  outcome.sizes = results.sizes(first_blocks.set_blocks, numbers);
   outcome.undecided += numbers.undecided();
   phases.progress("output", kMeshCounted);
   results.write(outcome.sizes, exchange.mesh(outcome.sizes));

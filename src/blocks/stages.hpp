@@ -48,7 +48,10 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones = nullptr);
 /// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
+/// Waits once. Throws as check_account does.
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
+/// Throws Error(internal) if the account of rings says that a merge has failed.
+void check_account(const cl_uint* account);
 
 /// Blocks of points, of which the host knows how many there are at most.
 struct PointBlocks {

@@ -52,15 +52,23 @@ struct Devices {
   std::size_t capacity = std::numeric_limits<std::size_t>::max();
 };
 
-Devices open_devices(const std::vector<std::string>& wanted) {
+void add_device(Devices& devices, const std::shared_ptr<Triangulator>& triangulator) {
+  devices.capacity = std::min(devices.capacity, triangulator->capacity());
+  devices.solvers.push_back(
+      {triangulator->device().name, [triangulator](const double* coordinates, std::size_t n) {
+         return triangulator->triangulate(coordinates, n);
+       }});
+}
+
+Devices open_devices(const ChunkOptions& options) {
   Devices devices;
-  for (const std::string& name : device_names(wanted)) {
-    auto triangulator = std::make_shared<Triangulator>(name);
-    devices.capacity = std::min(devices.capacity, triangulator->capacity());
-    devices.solvers.push_back(
-        {triangulator->device().name, [triangulator](const double* coordinates, std::size_t n) {
-           return triangulator->triangulate(coordinates, n);
-         }});
+  for (Triangulator* const own : options.triangulators) {
+    if (own == nullptr) throw Error(ErrorKind::usage, "a triangulator for chunks is null");
+    add_device(devices, std::shared_ptr<Triangulator>(own, [](Triangulator*) {}));
+  }
+  if (!devices.solvers.empty()) return devices;
+  for (const std::string& name : device_names(options.devices)) {
+    add_device(devices, std::make_shared<Triangulator>(name));
   }
   return devices;
 }
@@ -125,7 +133,7 @@ ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const Ch
   return with_errors([&] {
     if (points.size() == 0) return ChunkStatistics();
     check_count(points.size());
-    const Devices devices = open_devices(options.devices);
+    const Devices devices = open_devices(options);
     return chunks::run(points, sink, make_plan(options, devices), devices.solvers, options);
   });
 }

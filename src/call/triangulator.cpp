@@ -16,6 +16,13 @@
 namespace flaunay {
 namespace {
 
+// The device of which this one is a part, or null.
+cl_device_id parent_of(cl_device_id device) {
+  cl_device_id parent = nullptr;
+  const cl_int code = clGetDeviceInfo(device, CL_DEVICE_PARENT_DEVICE, sizeof(parent), &parent, nullptr);
+  return code == CL_SUCCESS ? parent : nullptr;
+}
+
 boost::compute::device checked_member(cl_context context, cl_device_id device) {
   if (context == nullptr || device == nullptr) {
     throw Error(ErrorKind::usage, "a triangulator needs a context and a device, or neither");
@@ -28,7 +35,13 @@ boost::compute::device checked_member(cl_context context, cl_device_id device) {
   }
   std::vector<cl_device_id> members(bytes / sizeof(cl_device_id));
   FLAUNAY_CL(clGetContextInfo(context, CL_CONTEXT_DEVICES, bytes, members.data(), nullptr));
-  if (std::find(members.begin(), members.end(), device) == members.end()) {
+  // Some implementations name the whole device in the place of a part of it.
+  const auto is_member = [&](cl_device_id id) {
+    return std::find(members.begin(), members.end(), id) != members.end();
+  };
+  cl_device_id parent = device;
+  while (parent != nullptr && !is_member(parent)) parent = parent_of(parent);
+  if (parent == nullptr) {
     throw Error(ErrorKind::usage, "the device is not one of the context");
   }
   return boost::compute::device(device);

@@ -24,11 +24,9 @@ constexpr std::size_t kPart = std::size_t{1} << 14;
 constexpr std::uint64_t kSamplesPerChunk = 512;
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 20;
 
-// The least depth of a tree whose leaves have at most so many points on average.
-int depth_for(std::uint64_t points, std::size_t most) {
-  int depth = 0;
-  while ((points - 1) >> depth >= most) ++depth;
-  return depth;
+// The chunks of so many points.
+std::size_t chunks_for(std::uint64_t points, const Plan& plan) {
+  return static_cast<std::size_t>((points + plan.chunk_points - 1) / plan.chunk_points);
 }
 
 vertex_box no_box() {
@@ -136,7 +134,7 @@ template <typename Visit>
 void take_pieces(ScratchFile& file, const StoredChunk& chunk, const Visit& visit) {
   for (const Extent& extent : chunk.extents) {
     visit(read_chunk(file, {{extent}, extent.bytes / kFirstRoundBytes}, true));
-    file.release(extent);
+    file.release(extent.begin, extent.bytes);
   }
 }
 
@@ -157,8 +155,8 @@ class Splitter {
                                        [&](double2 p) { return p.x == first.x && p.y == first.y; });
     const ChunkTree tree =
         are_equal ? ChunkTree::around(first)
-                  : ChunkTree(std::move(samples), depth_for(chunk.stored.points, plan_.chunk_points),
-                              Cuts::at_medians);
+                  : ChunkTree::of_leaves(std::move(samples), chunks_for(chunk.stored.points, plan_),
+                                         Cuts::at_medians);
     std::vector<StoredChunk> parts = distribute(tree, chunk.stored);
     if (are_equal) parts[ChunkTree::kEqualLeaf] = keep_first(parts[ChunkTree::kEqualLeaf]);
     for (Chunk& part : chunks_of(tree, std::move(parts), chunk.rectangle)) split(std::move(part), to);
@@ -168,7 +166,7 @@ class Splitter {
 
  private:
   std::vector<double2> draw(const StoredChunk& chunk) const {
-    const std::uint64_t wanted = kSamplesPerChunk << depth_for(chunk.points, plan_.chunk_points);
+    const std::uint64_t wanted = kSamplesPerChunk * chunks_for(chunk.points, plan_);
     const std::size_t per_extent =
         static_cast<std::size_t>(std::min(wanted, kMostSamples)) / chunk.extents.size() + 1;
     std::vector<double2> samples;
@@ -230,12 +228,12 @@ void write_own_numbers(MeshSink& sink, const Piece& piece) {
 FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, const Plan& plan,
                       host::Threads& threads, const Progress& progress) {
   const std::uint64_t n = source.size();
-  const int depth = depth_for(n, plan.chunk_points);
-  file.require(n * kFirstRoundBytes);
+  const std::size_t chunks = chunks_for(n, plan);
+  file.require_room(n * kFirstRoundBytes, "the points of chunks");
   progress("sampling", 0);
-  const ChunkTree tree =
-      depth == 0 ? ChunkTree()
-                 : ChunkTree(draw_samples(source, kSamplesPerChunk << depth), depth, Cuts::at_medians);
+  const ChunkTree tree = chunks == 1 ? ChunkTree()
+                                     : ChunkTree::of_leaves(draw_samples(source, kSamplesPerChunk * chunks),
+                                                            chunks, Cuts::at_medians);
 
   ChunkWriters writers(file, tree.leaves(), plan.buffer_bytes);
   Account account;
@@ -294,12 +292,12 @@ ChunkPoints HandedOn::read_all() {
     all.points += batch.points;
   }
   ChunkPoints points = read_chunk(file_, all, false);
-  for (const Extent& extent : all.extents) file_.release(extent);
+  for (const Extent& extent : all.extents) file_.release(extent.begin, extent.bytes);
   return points;
 }
 
 std::vector<Chunk> HandedOn::distribute(const Plan& plan) {
-  const ChunkTree tree(std::move(sample_), depth_for(points_, plan.chunk_points), Cuts::in_gaps);
+  const ChunkTree tree = ChunkTree::of_leaves(std::move(sample_), chunks_for(points_, plan), Cuts::in_gaps);
   ChunkWriters writers(file_, tree.leaves(), plan.buffer_bytes);
   std::vector<std::size_t> leaves;
   for (const StoredChunk& batch : batches_) {
@@ -307,7 +305,7 @@ std::vector<Chunk> HandedOn::distribute(const Plan& plan) {
     leaves.resize(points.size());
     tree.find_leaves(points.coordinates.data(), points.size(), leaves.data());
     for (std::size_t i = 0; i < points.size(); ++i) writers.add(leaves[i], points, i);
-    for (const Extent& extent : batch.extents) file_.release(extent);
+    for (const Extent& extent : batch.extents) file_.release(extent.begin, extent.bytes);
   }
   return chunks_of(tree, writers.take(), whole_plane());
 }

@@ -53,7 +53,12 @@ struct Call {
 class Round {
  public:
   Round(Call& call, std::vector<Chunk> chunks, bool is_first, HandedOn& next, ChunkStatistics& statistics)
-      : call_(call), chunks_(std::move(chunks)), is_first_(is_first), next_(next), statistics_(statistics) {}
+      : call_(call),
+        chunks_(std::move(chunks)),
+        is_first_(is_first),
+        next_(next),
+        statistics_(statistics),
+        paces_(statistics.devices.size()) {}
 
   // The only chunk of the last round, which is not on disk.
   void set_last(ChunkPoints points) { last_ = std::move(points); }
@@ -92,6 +97,13 @@ class Round {
   }
 
  private:
+  // How fast a solver is, in chunks per second; unknown, 0, before its first one and when it is lost.
+  struct Pace {
+    double chunks = 0, seconds = 0;
+
+    double speed() const { return seconds > 0 ? chunks / seconds : 0; }
+  };
+
   bool is_last() const { return last_.has_value(); }
 
   void await(const std::function<void(double done)>& progress) {
@@ -113,18 +125,53 @@ class Round {
     changed_.notify_all();
   }
 
-  // The next chunk: first what a lost solver gave back.
-  std::optional<std::size_t> take() {
+  // The chunk that a solver does after the one that it has. It may not come before that, as those do that a
+  // lost solver gave back: each would wait for the other's turn.
+  std::optional<std::size_t> take_following(std::size_t solver) {
     const std::lock_guard lock(mutex_);
-    if (error_) return std::nullopt;
-    if (!returned_.empty()) return returned_.extract(returned_.begin()).value();
-    if (taken_ == chunks_.size()) return std::nullopt;
+    return error_ ? std::nullopt : take_new(solver, 1);
+  }
+
+  // The next chunk of a solver that has none: first what a lost solver gave back. Waits until there is one,
+  // or all are done.
+  std::optional<std::size_t> await_chunk(std::size_t solver) {
+    std::unique_lock lock(mutex_);
+    std::optional<std::size_t> k;
+    changed_.wait(lock, [&] {
+      if (error_) return true;
+      k = returned_.empty() ? take_new(solver, 0) : take_returned();
+      return k || turn_ == chunks_.size();
+    });
+    return k;
+  }
+
+  // One that nobody had, for a solver that has `held` others.
+  std::optional<std::size_t> take_new(std::size_t solver, std::size_t held) {
+    if (taken_ == chunks_.size() || is_faster_without(solver, held)) return std::nullopt;
     return taken_++;
   }
 
-  // For the other solvers, if there are some. reason: why a solver was lost, null if that is known already.
-  void give_back(std::size_t k, std::exception_ptr reason = nullptr) {
+  std::size_t take_returned() { return returned_.extract(returned_.begin()).value(); }
+
+  // Whether the other solvers would triangulate all chunks that are left before this one is done with one
+  // more. Of the fastest one that has none this is never so, so that no chunk is left to nobody.
+  bool is_faster_without(std::size_t solver, std::size_t held) const {
+    double others = 0, fastest = 0;
+    for (std::size_t s = 0; s < paces_.size(); ++s) {
+      if (s == solver) continue;
+      others += paces_[s].speed();
+      fastest = std::max(fastest, paces_[s].speed());
+    }
+    const double own = paces_[solver].speed();
+    if (own == 0 || others == 0) return false;
+    const auto left = static_cast<double>(chunks_.size() - taken_);
+    return static_cast<double>(held + 1) / own > std::max(left / others, 1 / fastest);
+  }
+
+  // For the other solvers, if there are some. reason: why the solver was lost, null if that is known already.
+  void give_back(std::size_t solver, std::size_t k, std::exception_ptr reason = nullptr) {
     const std::lock_guard lock(mutex_);
+    paces_[solver] = {};
     returned_.insert(k);
     if (reason) lost_ = std::move(reason);
     changed_.notify_all();
@@ -136,7 +183,7 @@ class Round {
     changed_.wait(lock,
                   [&] { return error_ || turn_ == k || (!returned_.empty() && *returned_.begin() < k); });
     if (error_ || turn_ == k) return std::nullopt;
-    return returned_.extract(returned_.begin()).value();
+    return take_returned();
   }
 
   // A solver's thread, and what it writes meanwhile.
@@ -150,23 +197,17 @@ class Round {
   void work(const Solver& solver, std::size_t number, bool& is_lost) {
     Worker worker{solver, number};
     try {
-      std::optional<std::size_t> k = take();
+      std::optional<std::size_t> following;
       std::future<ChunkPoints> loaded;
-      if (k) loaded = load(*k);
-      while (k && !is_lost) {
+      while (!is_lost) {
+        const std::optional<std::size_t> k = following ? following : await_chunk(number);
+        if (!k) break;
+        if (!following) loaded = load(*k);
         ChunkPoints points = loaded.get();
-        const std::optional<std::size_t> following = take();
+        following = take_following(number);
         if (following) loaded = load(*following);
         is_lost = !process(worker, *k, std::move(points));
-        if (is_lost && following) give_back(*following);
-        k = following;
-      }
-      if (worker.writing.valid()) worker.writing.get();
-      // Others may be lost while this one is idle.
-      while (!is_lost) {
-        const std::optional<std::size_t> returned = await_turn(chunks_.size());
-        if (!returned) break;
-        is_lost = !process(worker, *returned, load(*returned).get());
+        if (is_lost && following) give_back(number, *following);
       }
       if (worker.writing.valid()) worker.writing.get();
     } catch (...) {
@@ -183,21 +224,23 @@ class Round {
   // Returns whether the solver can go on; if not, the chunk is given back.
   bool process(Worker& worker, std::size_t k, ChunkPoints points) {
     Triangulation mesh;
+    const double begin = host::now();
     try {
       mesh = worker.solver.triangulate(points.coordinates.data(), points.size());
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::device) throw;
       if (is_last()) last_ = std::move(points);
-      give_back(k, std::current_exception());
+      give_back(worker.number, k, std::current_exception());
       return false;
     }
     const std::size_t duplicates = mesh.statistics.duplicates, undecided = mesh.statistics.undecided;
     auto finished = std::make_shared<FinishedChunk>(worker.threads, std::move(points), std::move(mesh),
                                                     Place{chunks_[k].rectangle, call_.all}, call_.scaling);
+    note_pace(worker.number, host::now() - begin);
     while (const std::optional<std::size_t> before = await_turn(k)) {
       if (!process(worker, *before, load(*before).get())) {
         // This chunk is solved, but the solver is lost: others would wait for its turn.
-        give_back(k);
+        give_back(worker.number, k);
         return false;
       }
     }
@@ -210,6 +253,13 @@ class Round {
       chunk.reset();  // its memory, before anybody asks whether this is done
     });
     return true;
+  }
+
+  void note_pace(std::size_t solver, double seconds) {
+    const std::lock_guard lock(mutex_);
+    ++paces_[solver].chunks;
+    paces_[solver].seconds += seconds;
+    changed_.notify_all();  // who is the fastest may be another now
   }
 
   // Ends the turn of chunk k. Returns the number of its first row.
@@ -232,7 +282,7 @@ class Round {
       const ChunkPoints open = chunk.handed_on(first_row);
       result_.handed_on += open.size();
       next_.add(open);
-      for (const Extent& extent : chunks_[k].stored.extents) call_.file.release(extent);
+      for (const Extent& extent : chunks_[k].stored.extents) call_.file.release(extent.begin, extent.bytes);
     }
     ++turn_;
     changed_.notify_all();
@@ -246,6 +296,7 @@ class Round {
   ChunkStatistics& statistics_;
   std::optional<ChunkPoints> last_;
   ChunkRound result_;
+  std::vector<Pace> paces_;
 
   std::mutex mutex_;
   std::condition_variable changed_;

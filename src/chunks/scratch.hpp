@@ -1,13 +1,12 @@
-// Points of chunks on disk, in a file without a name.
+// Points of chunks on disk.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "chunks/points.hpp"
+#include "io/scratch.hpp"
 #include "shared/language.h"
 
 namespace flaunay::chunks {
@@ -20,34 +19,7 @@ struct Extent {
   std::uint64_t begin, bytes;
 };
 
-/// A file that vanishes with the process. It is made when it is first written. All functions throw
-/// Error(input), which names the folder.
-class ScratchFile {
- public:
-  /// folder: empty for TMPDIR, or /tmp.
-  explicit ScratchFile(std::string folder);
-  ~ScratchFile();
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-
-  /// Throws unless the folder has room for so many bytes.
-  void require(std::uint64_t bytes) const;
-  Extent append(const void* data, std::size_t bytes);
-  /// May be called by several threads.
-  void read(Extent extent, void* to) const;
-  /// Gives the room on the disk back, where the file system can.
-  void release(Extent extent);
-  /// The largest size so far, without what was given back.
-  std::uint64_t largest_bytes() const { return largest_; }
-
- private:
-  void open();
-  [[noreturn]] void fail(const std::string& what, int error_number) const;
-
-  std::string folder_;
-  int descriptor_ = -1;
-  std::uint64_t end_ = 0, held_ = 0, largest_ = 0;
-};
+using io::ScratchFile;
 
 /// Points of one chunk in the scratch file: words of 8 bytes.
 struct StoredChunk {

@@ -16,6 +16,16 @@ using kernel::cut_node;
 using kernel::double2;
 using Sample = std::vector<double2>::iterator;
 
+// The leaves below a node that are on its low side.
+struct LowShare {
+  std::size_t leaves, of;
+
+  double low() const { return static_cast<double>(leaves) / static_cast<double>(of); }
+  double high() const { return static_cast<double>(of - leaves) / static_cast<double>(of); }
+};
+
+LowShare low_share(std::size_t leaves) { return {leaves / 2, leaves}; }
+
 double along(double2 p, int axis) { return axis == 1 ? p.y : p.x; }
 
 bool goes_high(double2 p, const cut_node& cut) {
@@ -47,12 +57,14 @@ cut_node behind(double2 p) {
   return node;
 }
 
-cut_node cut_at_median(Sample begin, Sample end) {
+// share: of the samples, on the low side.
+cut_node cut_at_quantile(Sample begin, Sample end, const LowShare& share) {
   const int axis = spread(begin, end, 1) > spread(begin, end, 0) ? 1 : 0;
   const auto order = [axis](double2 p, double2 q) { return comes_before(p, q, axis); };
-  const Sample median = begin + (end - begin) / 2;
-  std::nth_element(begin, median, end, order);
-  const double2 pivot = *median;
+  const auto size = static_cast<std::size_t>(end - begin);
+  const Sample quantile = begin + static_cast<std::ptrdiff_t>(size * share.leaves / share.of);
+  std::nth_element(begin, quantile, end, order);
+  const double2 pivot = *quantile;
   if (std::any_of(begin, end, [&](double2 p) { return order(p, pivot); }))
     return kernel::node_of(axis, pivot);
   // Of many equal samples that come first, the cut comes behind them.
@@ -64,38 +76,42 @@ cut_node cut_at_median(Sample begin, Sample end) {
 }
 
 // Of all stretches of some sqrt(m) consecutive samples of m the longest is cut in its middle. A cut shall
-// leave each side this share of the samples, and no side more than this many times what it would have if all
-// leaves were equal.
-constexpr double kLeastShare = 0.3;
-constexpr double kMostOfHalf = 1.4;
+// leave each side this part of its share of the samples, and no side more than this many times what it would
+// have if all leaves were equal.
+constexpr double kLeastOfShare = 0.6;
+constexpr double kMostOfEqual = 1.4;
 
 struct Gap {
   double extent = 0, middle = 0;
   int axis = 0;
 };
 
-void widen(Gap& widest, std::vector<double>& values, double half, int axis) {
+void widen(Gap& widest, std::vector<double>& values, const LowShare& share, double per_leaf, int axis) {
   std::sort(values.begin(), values.end());
   const std::size_t size = values.size();
   const auto all = static_cast<double>(size);
   const std::size_t stretch = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(all)));
-  const double least = std::min(std::max(kLeastShare * all, all - kMostOfHalf * half), 0.5 * all);
+  const double equal = per_leaf * static_cast<double>(share.of);
+  const auto least = [&](double own, double other) {
+    return std::min(std::max(kLeastOfShare * own * all, all - kMostOfEqual * other * equal), own * all);
+  };
+  const double least_low = least(share.low(), share.high()), least_high = least(share.high(), share.low());
   for (std::size_t i = 0; i + stretch < size; ++i) {
     const double below = static_cast<double>(i) + 0.5 * static_cast<double>(stretch);
-    if (below < least || below > all - least) continue;
+    if (below < least_low || below > all - least_high) continue;
     const double extent = values[i + stretch] - values[i];
     if (extent > widest.extent) widest = {extent, values[i] + 0.5 * extent, axis};
   }
 }
 
-// half: the samples of each side if all leaves were equal.
-std::optional<cut_node> cut_in_gap(Sample begin, Sample end, double half) {
+// per_leaf: the samples of each leaf if all were equal.
+std::optional<cut_node> cut_in_gap(Sample begin, Sample end, const LowShare& share, double per_leaf) {
   Gap widest;
   std::vector<double> values;
   for (int axis = 0; axis < 2; ++axis) {
     values.clear();
     std::for_each(begin, end, [&](double2 p) { values.push_back(along(p, axis)); });
-    widen(widest, values, half, axis);
+    widen(widest, values, share, per_leaf, axis);
   }
   if (!(widest.extent > 0) || !std::isfinite(widest.middle)) return std::nullopt;
   cut_node node = kernel::node_of(widest.axis, {widest.middle, widest.middle});
@@ -105,32 +121,62 @@ std::optional<cut_node> cut_in_gap(Sample begin, Sample end, double half) {
 
 }  // namespace
 
-ChunkTree::ChunkTree(std::vector<kernel::double2> samples, int depth, Cuts cuts)
-    : depth_(depth), nodes_(std::size_t{1} << depth) {
-  cut(1, samples.begin(), samples.end(), cuts, 0.5 * static_cast<double>(samples.size()));
+ChunkTree::ChunkTree(std::size_t leaves, std::vector<cut_node> nodes)
+    : leaves_(leaves), nodes_(std::move(nodes)) {
+  while (std::size_t{1} << depth_ < leaves) ++depth_;
+  nodes_.resize(std::size_t{1} << depth_);
+  if (leaves == nodes_.size()) return;
+  numbers_.resize(nodes_.size());
+  number(1, 0, leaves);
+}
+
+ChunkTree ChunkTree::of_leaves(std::vector<double2> samples, std::size_t leaves, Cuts cuts) {
+  ChunkTree tree(leaves, {});
+  const double per_leaf = static_cast<double>(samples.size()) / static_cast<double>(leaves);
+  tree.cut(1, leaves, samples.begin(), samples.end(), cuts, per_leaf);
+  return tree;
+}
+
+void ChunkTree::number(std::size_t node, std::size_t first, std::size_t count) {
+  if (node >= nodes_.size()) {
+    numbers_[node - nodes_.size()] = first;
+    return;
+  }
+  const std::size_t low = count == 1 ? 1 : low_share(count).leaves;
+  number(2 * node, first, low);
+  number(2 * node + 1, count == 1 ? first : first + low, count == 1 ? 1 : count - low);
 }
 
 ChunkTree ChunkTree::around(kernel::double2 p) {
   ChunkTree tree;
+  tree.leaves_ = 4;
   tree.depth_ = 2;
   const cut_node before = kernel::node_of(0, p);
   tree.nodes_ = {cut_node{}, before, before, behind(p)};
   return tree;
 }
 
-void ChunkTree::cut(std::size_t node, Sample begin, Sample end, Cuts cuts, double half) {
+void ChunkTree::cut(std::size_t node, std::size_t leaves, Sample begin, Sample end, Cuts cuts,
+                    double per_leaf) {
   if (node >= nodes_.size()) return;
   cut_node& own = nodes_[node];
+  if (leaves == 1) {
+    own = kernel::node_of(0, whole_plane().high);
+    cut(2 * node, 1, begin, end, cuts, per_leaf);
+    cut(2 * node + 1, 1, end, end, cuts, per_leaf);
+    return;
+  }
+  const LowShare share = low_share(leaves);
   if (begin == end) {
     own = kernel::node_of(0, {0, 0});
   } else {
     const std::optional<cut_node> in_gap =
-        cuts == Cuts::in_gaps ? cut_in_gap(begin, end, half) : std::nullopt;
-    own = in_gap ? *in_gap : cut_at_median(begin, end);
+        cuts == Cuts::in_gaps ? cut_in_gap(begin, end, share, per_leaf) : std::nullopt;
+    own = in_gap ? *in_gap : cut_at_quantile(begin, end, share);
   }
   const Sample split = std::partition(begin, end, [&](double2 p) { return !goes_high(p, own); });
-  cut(2 * node, begin, split, cuts, half / 2);
-  cut(2 * node + 1, split, end, cuts, half / 2);
+  cut(2 * node, share.leaves, begin, split, cuts, per_leaf);
+  cut(2 * node + 1, share.of - share.leaves, split, end, cuts, per_leaf);
 }
 
 void ChunkTree::find_leaves(const double* coordinates, std::size_t count, std::size_t* leaves) const {
@@ -138,12 +184,19 @@ void ChunkTree::find_leaves(const double* coordinates, std::size_t count, std::s
   for (std::size_t first = 0; first < count; first += DESCENTS) {
     const std::size_t size = std::min<std::size_t>(DESCENTS, count - first);
     kernel::find_leaves(0, static_cast<int>(size), coordinates + 2 * first, nodes_.data(), depth_, found);
-    std::copy_n(found, size, leaves + first);
+    for (std::size_t k = 0; k < size; ++k) {
+      leaves[first + k] = numbers_.empty() ? static_cast<std::size_t>(found[k]) : numbers_[found[k]];
+    }
   }
 }
 
 kernel::vertex_box ChunkTree::rectangle(std::size_t leaf, kernel::vertex_box whole) const {
-  for (std::size_t node = leaves() + leaf; node > 1; node /= 2) {
+  // Of several leaves of the heap, the first has all points.
+  const std::size_t place =
+      numbers_.empty() ? leaf
+                       : static_cast<std::size_t>(std::lower_bound(numbers_.begin(), numbers_.end(), leaf) -
+                                                  numbers_.begin());
+  for (std::size_t node = (std::size_t{1} << depth_) + place; node > 1; node /= 2) {
     whole = kernel::cut_rectangle(whole, nodes_[node / 2], static_cast<int>(node % 2), kernel::scale_of(0));
   }
   return whole;

@@ -48,19 +48,8 @@ ChunkStatistics triangulate_file(const ChunkRequest& request, PointSource& point
 
 void add_chunk_options(CLI::App* command, ChunkRequest& request) {
   constexpr std::uint64_t kLeast = 1;
-  CLI::Validator size =
-      CLI::AsSizeValue(false) & CLI::Range(kLeast, std::numeric_limits<std::uint64_t>::max());
-  // CLI11 itself would turn negative numbers into large ones.
-  const CLI::Validator not_negative(
-      [](std::string& text) {
-        return text.find('-') == std::string::npos ? "" : fmt::format("{} is below 1", text);
-      },
-      "");
-  command
-      ->add_option("--memory", request.memory_bytes,
-                   "Triangulate in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024")
-      ->transform(size.description("SIZE"))
-      ->transform(not_negative);  // CLI11 calls the last one first
+  add_memory(command, request.memory_bytes,
+             "Triangulate in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024");
   command
       ->add_option("--chunk-points", request.chunk_points,
                    "Triangulate in chunks of about so many points; default: as many as the memory permits")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 namespace flaunay::cli {
 
@@ -52,6 +53,21 @@ CLI::Option* add_device(CLI::App* command, std::string& device) {
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description) {
   constexpr int kMostThreads = 1024;
   return command->add_option("--threads", threads, description)->check(CLI::Range(1, kMostThreads));
+}
+
+CLI::Option* add_memory(CLI::App* command, std::uint64_t& bytes, const std::string& description) {
+  constexpr std::uint64_t kLeast = 1;
+  CLI::Validator size =
+      CLI::AsSizeValue(false) & CLI::Range(kLeast, std::numeric_limits<std::uint64_t>::max());
+  // CLI11 itself would turn negative numbers into large ones.
+  const CLI::Validator not_negative(
+      [](std::string& text) {
+        return text.find('-') == std::string::npos ? "" : fmt::format("{} is below 1", text);
+      },
+      "");
+  return command->add_option("--memory", bytes, description)
+      ->transform(size.description("SIZE"))
+      ->transform(not_negative);  // CLI11 calls the last one first
 }
 
 void add_quiet(CLI::App* command, bool& quiet) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,8 @@ void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>&
                       const std::string& description);
 CLI::Option* add_device(CLI::App* command, std::string& device);
 CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description);
+/// --memory: a number of bytes such as 4G, at least 1.
+CLI::Option* add_memory(CLI::App* command, std::uint64_t& bytes, const std::string& description);
 void add_quiet(CLI::App* command, bool& quiet);
 
 /// Throws Error(usage) with the reason if the option was given on the command line.

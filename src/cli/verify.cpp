@@ -3,15 +3,23 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
+#include "host/system_memory.hpp"
+#include "io/file.hpp"
 #include "io/mesh.hpp"
+#include "io/point_stream.hpp"
 #include "io/points.hpp"
+#include "io/rows.hpp"
+#include "verify/chunks.hpp"
 
 namespace flaunay::cli {
 
@@ -21,24 +29,91 @@ struct VerifyRequest {
   std::string points;
   std::string triangles;
   std::string neighbors;
+  std::uint64_t memory_bytes = 0;  // 0: as much as there is
+  std::string scratch;
 };
 
-int verify(const VerifyRequest& request) {
-  io::check_points_ending(request.points);
-  Progress progress(true);
-  progress.update("reading");
+/// 0 if it is no regular file.
+std::uint64_t size_of_file(const std::string& path) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+/// The memory within which to check in chunks; 0: hold everything. Files that cannot be read in pieces are
+/// held if no limit was asked for.
+std::uint64_t memory_for_chunks(const VerifyRequest& request) {
+  const bool is_asked_for = request.memory_bytes > 0;
+  for (const std::string& path : {request.triangles, request.neighbors}) {
+    if (path.empty() || io::ending_of(path) == ".npy") continue;
+    if (!is_asked_for) return 0;
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: --memory needs an .npy file, which can be read in pieces", path));
+  }
+  if (is_asked_for) return request.memory_bytes;
+  // What the check in memory holds at most, with the points and int32 rows themselves.
+  constexpr std::uint64_t kPointBytes = 64, kRowBytes = 84, kRowBytesOfFile = 3 * sizeof(std::int32_t);
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;  // rows that always fit
+  const std::uint64_t rows = size_of_file(request.triangles) / kRowBytesOfFile;
+  if (rows < kSmall) return 0;
+  const std::uint64_t needed = kPointBytes * io::estimate_points(request.points) + kRowBytes * rows;
+  const std::uint64_t left = host::memory_left().bytes;
+  return needed > left ? left / 2 : 0;
+}
+
+/// The report, and what to add to the final line.
+struct Checked {
+  VerifyReport report;
+  double seconds = 0;
+  std::string how;
+};
+
+Checked verify_in_memory(const VerifyRequest& request, Progress& progress) {
   const io::Points points = io::read_points(request.points);
   const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
   std::vector<std::int32_t> neighbors;
   if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);
-
   progress.update("verifying");
   const Stopwatch stopwatch;
   const VerifyReport report =
       request.neighbors.empty()
           ? flaunay::verify(points.coordinates.data(), points.size(), triangles)
           : flaunay::verify(points.coordinates.data(), points.size(), triangles, neighbors);
-  const double seconds = stopwatch.seconds();
+  return {report, stopwatch.seconds(), ""};
+}
+
+Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Progress& progress) {
+  const auto points = io::open_point_stream(request.points, request.scratch);
+  const auto triangles = io::open_npy_rows(request.triangles);
+  const auto neighbors = request.neighbors.empty() ? nullptr : io::open_npy_rows(request.neighbors);
+  const VerifySizes sizes = verify_sizes(memory, points->size(), triangles->size(), 0);
+  VerifyChunksOptions options;
+  options.scratch = request.scratch;
+  options.progress = [&](const std::string& stage, double done) { progress.update(stage, -1, done); };
+  const Stopwatch stopwatch;
+  VerifyChunksReport report;
+  try {
+    report = verify_chunks(*points, *triangles, neighbors.get(), sizes, options);
+  } catch (const Error& error) {
+    // The check does not know where the points and the triangles come from.
+    const std::string message = error.what();
+    const bool is_point = message.rfind("point ", 0) == 0;
+    if (!is_point && message.rfind("triangle ", 0) != 0) throw;
+    throw Error(error.kind(), fmt::format("{}: {}", is_point ? request.points : request.triangles, message));
+  }
+  const std::string how = fmt::format(
+      "; in chunks within {}: {} windows of rows, {} edges across, {} of scratch", host::mebibytes(memory),
+      report.windows, report.edges_across, host::mebibytes(report.scratch_bytes));
+  return {report, stopwatch.seconds(), how};
+}
+
+int verify(const VerifyRequest& request) {
+  io::check_points_ending(request.points);
+  const std::uint64_t memory = memory_for_chunks(request);
+  Progress progress(true);
+  progress.update("reading");
+  const auto [report, seconds, how] =
+      memory > 0 ? verify_in_chunks(request, memory, progress) : verify_in_memory(request, progress);
   progress.finish();
 
   // The problem goes to standard error first, because standard output may be closed.
@@ -47,9 +122,9 @@ int verify(const VerifyRequest& request) {
   }
   print(
       fmt::format("{}: {} points, {} distinct, {} triangles, {} hull vertices, {} cocircular edges; "
-                  "{} exact evaluations, {:.3f} s\n",
+                  "{} exact evaluations, {:.3f} s{}\n",
                   report.ok ? "right" : "wrong", report.points, report.distinct_points, report.triangles,
-                  report.hull_vertices, report.cocircular_edges, report.exact_evaluations, seconds));
+                  report.hull_vertices, report.cocircular_edges, report.exact_evaluations, seconds, how));
   return report.ok ? kSuccess : kFailure;
 }
 
@@ -64,6 +139,13 @@ void add_verify(CLI::App& app, Action& action) {
   command->add_option("triangles", request->triangles, "The triangles: .npy, .ele, .off, .obj or .ply")
       ->required();
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
+  add_memory(command, request->memory_bytes,
+             "Check in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024; needs .npy "
+             "triangles. Default: hold everything if it fits");
+  add_path(
+      command, "--scratch", request->scratch,
+      "Chunks: the folder for about 24 bytes per point, in files without names; default: TMPDIR, or /tmp")
+      ->check(CLI::ExistingDirectory);
   command->callback([request, &action] { action = [request] { return verify(*request); }; });
   command->footer("The exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not.");
 }

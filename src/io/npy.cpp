@@ -9,6 +9,7 @@
 #include "host/huge_pages.hpp"
 #include "io/file.hpp"
 #include "io/mesh.hpp"
+#include "io/rows.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -189,6 +190,8 @@ class Array {
 
   const Header& header() const { return header_; }
   const std::string& dtype() const { return header_.descr; }
+  std::size_t rows() const { return header_.shape[0]; }
+  std::size_t data_begin() const { return header_.data_begin; }
 
   /// Checks the size of a regular file.
   void check_size() const { check(static_cast<std::size_t>(file_.size()) - header_.data_begin); }
@@ -300,7 +303,46 @@ std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t
   return triangles;
 }
 
+class NpyRows : public RowSource {
+ public:
+  explicit NpyRows(const std::string& path) : path_(path), file_(path, "a NumPy array of shape (m, 3)") {
+    file_.first(1);  // an error if there is none
+    if (file_.size() < 0)
+      fail(path, "is no regular file; expected one, because its rows are not read in order");
+    const Layout layout = {"m", 3, "<i4", "<i8"};
+    const Array array(path_, file_, layout);
+    array.check_size();
+    is_wide_ = array.dtype() == "<i8";
+    size_ = array.header().shape[0];
+    begin_ = array.header().data_begin;
+  }
+
+  std::uint64_t size() const override { return size_; }
+
+  void read(std::uint64_t first, std::size_t count, std::int64_t* values) override {
+    const std::uint64_t value_bytes = is_wide_ ? sizeof(std::int64_t) : sizeof(std::int32_t);
+    const std::size_t bytes = static_cast<std::size_t>(3 * count * value_bytes);
+    // Narrow values are read into the upper half, and then moved down one by one.
+    char* const to = reinterpret_cast<char*>(values + 3 * count) - bytes;
+    file_.read_at(begin_ + 3 * first * value_bytes, bytes, to);
+    for (std::size_t i = 0; !is_wide_ && i < 3 * count; ++i) {
+      std::int32_t value = 0;
+      std::memcpy(&value, to + i * sizeof value, sizeof value);
+      values[i] = value;
+    }
+  }
+
+ private:
+  std::string path_;
+  InputFile file_;
+  bool is_wide_ = false;
+  std::uint64_t size_ = 0;
+  std::uint64_t begin_ = 0;  // of the first row, in bytes
+};
+
 }  // namespace
+
+std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::make_unique<NpyRows>(path); }
 
 std::vector<std::int32_t> read_npy_triangles(const std::string& path) {
   return read_npy_indices(path, 0, "vertex");

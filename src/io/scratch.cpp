@@ -5,6 +5,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <limits>
@@ -52,15 +53,22 @@ ScratchFile::~ScratchFile() {
 }
 
 void ScratchFile::append(const void* data, std::size_t bytes) {
+  write_at(size_, data, bytes);
+  size_ += bytes;
+  held_ += bytes;
+  largest_ = std::max(largest_, held_);
+}
+
+void ScratchFile::write_at(std::uint64_t begin, const void* data, std::size_t bytes) {
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
-    const ssize_t written = ::pwrite(descriptor_, next, bytes, static_cast<off_t>(size_));
+    const ssize_t written = ::pwrite(descriptor_, next, bytes, static_cast<off_t>(begin));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
-      fail(folder_, "the scratch file of {} bytes cannot be written: {}", size_, system_reason(errno));
+      fail(folder_, "the scratch file cannot be written at byte {}: {}", begin, system_reason(errno));
     }
     next += written;
-    size_ += static_cast<std::uint64_t>(written);
+    begin += static_cast<std::uint64_t>(written);
     bytes -= static_cast<std::size_t>(written);
   }
 }
@@ -78,10 +86,19 @@ void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) cons
   }
 }
 
+void ScratchFile::release(std::uint64_t begin, std::uint64_t count) {
+  held_ -= count;
+#ifdef FALLOC_FL_PUNCH_HOLE
+  // If this fails, nothing is wrong but that the room is given back later.
+  static_cast<void>(::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                                static_cast<off_t>(begin), static_cast<off_t>(count)));
+#endif
+}
+
 void ScratchFile::require_room(std::uint64_t bytes, const std::string& what) const {
   const std::uint64_t room = free_bytes(folder_);
   if (bytes > room) {
-    fail(folder_, "has room for {} bytes, but {} need about {}; name another folder by --scratch", room, what,
+    fail(folder_, "has room for {} bytes, but {} need about {}; name another scratch folder", room, what,
          bytes);
   }
 }

@@ -7,8 +7,12 @@
 #include <vector>
 
 #include "launchers/blocks/divide.cl.hpp"
+#include "launchers/blocks/merge.cl.hpp"
+#include "launchers/blocks/seams.cl.hpp"
 #include "shared/bounds.h"
 #include "shared/codes.h"
+#include "shared/halving.h"
+#include "shared/seams.h"
 #include "tests/blocks/support.hpp"
 #include "tests/support/exact_points.hpp"
 
@@ -150,7 +154,9 @@ void compare(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& me
   ASSERT_TRUE(same(found.g.source, expected.g.source));
   ASSERT_TRUE(same(found.representatives, expected.representatives));
   // Which predicates are undecided depends on the order of merges. But ties of the result must be known.
-  if (bounds.circle != 0 && found.account[kernel::RINGS_TIES] == 0) ASSERT_EQ(found.ties(), 0u);
+  if (bounds.circle != 0 && found.account[kernel::RINGS_TIES] == 0) {
+    ASSERT_EQ(found.ties(), 0u);
+  }
   met.ties += found.account[kernel::RINGS_TIES];
   for (std::size_t b = 0; b < points.count(); ++b) {
     ASSERT_EQ(testing::numbers_of(found.solved[b].ends), testing::numbers_of(expected.solved[b].ends)) << b;
@@ -265,6 +271,142 @@ TEST(Merge, SeamsAroundASide) {
     Met met;
     compare(runtime, points, kUsualBounds, met);
     EXPECT_GT(met.triangles, 10000u);
+  });
+}
+
+/// A block whose two halves, of the height below the last one, are still to be merged, and their seam's
+/// walks. The coordinates are so coarse that nothing stops.
+struct WalkedSeam {
+  static constexpr std::size_t kPoints = 60, kPairs = kernel::PAIRS_PER_VERTEX * kPoints;
+
+  explicit WalkedSeam(Call& given) : call(given), points(spread_points()), on_device(given, points) {
+    Runtime& runtime = call.runtime;
+    call.work.bounds = {0, 0, 0};
+    halved = halve(call.work, on_device.blocks, on_device.representatives, on_device.rings);
+    parts = runtime.arena().allocate<kernel::solved_block>(kPoints);
+    const auto states = runtime.arena().allocate<cl_int>(kPoints);
+    const auto& [blocks, representatives, rings] = on_device;
+    for (int height = 0; height < kHeight; ++height) {
+      const std::size_t cells = (kPoints + (2u << height) - 1) / (2u << height);
+      runtime.map(cells, kernels::merge_parts{.spread = 1,
+                                              .height = height,
+                                              .places = kPoints,
+                                              .offsets = blocks.offsets,
+                                              .distinct = rings.device_distinct,
+                                              .block_of_place = halved.block_of_place,
+                                              .axes = halved.axes,
+                                              .bounds = call.work.bounds,
+                                              .points = blocks.vertices,
+                                              .edges = rings.edges,
+                                              .vertex_edge = rings.vertex_edge,
+                                              .parts = parts,
+                                              .solved = rings.solved,
+                                              .states = states,
+                                              .account = rings.device_account});
+    }
+    crossings = runtime.arena().allocate<cl_int2>(2 * kernel::CROSSINGS_PER_VERTEX * kPoints);
+    removed = testing::upload(runtime, std::vector<cl_uchar>(2 * kPairs, 0));
+    walks = testing::guarded<kernel::seam_walk>(runtime, 2);
+    runtime.map(2, kernels::walk_seams{.spread = 1,
+                                       .height = kHeight,
+                                       .places = kPoints,
+                                       .offsets = blocks.offsets,
+                                       .distinct = rings.device_distinct,
+                                       .block_of_place = halved.block_of_place,
+                                       .axes = halved.axes,
+                                       .bounds = call.work.bounds,
+                                       .points = blocks.vertices,
+                                       .edges = rings.edges,
+                                       .vertex_edge = rings.vertex_edge,
+                                       .parts = parts,
+                                       .solved = rings.solved,
+                                       .crossings = crossings,
+                                       .removed = removed,
+                                       .walks = walks,
+                                       .account = rings.device_account});
+  }
+  /// Distinct points of a grid.
+  static BlockPoints spread_points() {
+    Coordinates grid;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      grid.push_back(static_cast<double>(i % 8));
+      grid.push_back(static_cast<double>(i / 8));
+    }
+    BlockPoints points;
+    points.add(grid);
+    return points;
+  }
+  /// With groups as the runtime has them. up: the upward walk.
+  Solution sewn(const kernel::seam_walk& up) {
+    Runtime& runtime = call.runtime;
+    const auto& [blocks, representatives, rings] = on_device;
+    std::vector<kernel::seam_walk> both = download(runtime, walks, 2);
+    both[0] = up;
+    const std::size_t group = tuning_of(runtime).sewing_group;
+    runtime.launch(group, group,
+                   kernels::sew_seams{.height = kHeight,
+                                      .places = kPoints,
+                                      .offsets = blocks.offsets,
+                                      .distinct = rings.device_distinct,
+                                      .block_of_place = halved.block_of_place,
+                                      .axes = halved.axes,
+                                      .points = blocks.vertices,
+                                      .crossings = crossings,
+                                      .walks = testing::upload(runtime, both),
+                                      .edges = rings.edges,
+                                      .vertex_edge = rings.vertex_edge,
+                                      .parts = parts,
+                                      .solved = rings.solved,
+                                      .removed = removed,
+                                      .slots = runtime.arena().allocate<cl_int>(kPairs),
+                                      .account = rings.device_account});
+    return {call, points, on_device};
+  }
+
+  static const int kHeight;
+  Call& call;
+  BlockPoints points;
+  DeviceBlocks on_device;
+  HalvedBlocks halved;
+  Buffer<kernel::solved_block> parts{};
+  Buffer<cl_int2> crossings{};
+  Buffer<cl_uchar> removed{};
+  Buffer<kernel::seam_walk> walks{};
+};
+const int WalkedSeam::kHeight = kernel::halving_depth(kPoints);
+
+/// Halves whose walks do not meet, or have no result, stay as they are, and the account says that there are
+/// some.
+TEST(SmallMerge, WalksThatDoNotMeet) {
+  with_groups(1 << 20, [](Runtime& runtime) {
+    for (const std::string change : {"none", "too short", "without a result"}) {
+      SCOPED_TRACE(change);
+      Call call(runtime);
+      WalkedSeam seam(call);
+      const Solution before(call, seam.points, seam.on_device);
+      kernel::seam_walk up = download(runtime, seam.walks, 2)[0];
+      ASSERT_GT(up.crossings, 2);
+      if (change == "too short") up.crossings = 1;
+      if (change == "without a result") up.outcome = kernel::WALK_HAS_STOPPED;
+      const Solution after = seam.sewn(up);
+      EXPECT_EQ(after.account[kernel::RINGS_BROKEN], change == "none" ? 0u : 1u);
+      EXPECT_EQ(after.broken_free_list(0), "");
+      const std::vector<cl_uchar> marks = download(runtime, seam.removed, 2 * WalkedSeam::kPairs);
+      EXPECT_EQ(std::count(marks.begin(), marks.end(), 0), std::ptrdiff_t{2 * WalkedSeam::kPairs});
+      std::size_t changed = 0;
+      for (cl_int v = 0; v < static_cast<cl_int>(WalkedSeam::kPoints); ++v) {
+        changed += before.ring(v) != after.ring(v);
+      }
+      EXPECT_EQ(changed > 0, change == "none") << changed;
+      Rings rings = seam.on_device.rings;
+      Blocks blocks;
+      blocks.count = 1;
+      if (change == "none") {
+        EXPECT_NO_THROW(await_rings(call.work, blocks, rings));
+      } else {
+        EXPECT_THROW(await_rings(call.work, blocks, rings), Error);
+      }
+    }
   });
 }
 

@@ -18,6 +18,7 @@
 #include "statistics/phases.hpp"
 #include "tests/blocks/support.hpp"
 #include "tests/support/stalling.hpp"
+#include "tests/support/test_kernels.hpp"
 
 namespace flaunay::blocks {
 namespace {
@@ -339,6 +340,37 @@ TEST(Rounds, StatisticsSayWhatTheyDid) {
   EXPECT_EQ(stalled.rounds, 2u);
   EXPECT_EQ(stalled.merged_points, n);
   EXPECT_EQ(stalled.round_points, 2 * n);
+}
+
+/// Walks that end at the first edge of their seam, and so do not meet if it has more.
+std::string with_short_walks(std::string seams) {
+  const std::string test = "if (is_beyond(s, low, high))";
+  const std::size_t at = seams.find(test);
+  EXPECT_NE(at, std::string::npos);
+  return at == std::string::npos ? seams : seams.replace(at, test.size(), "if (1)");
+}
+
+/// An error of ours that the account tells, before anything is made of such triangulations: in rounds, in the
+/// last round, and with merging.
+TEST(Rounds, WalksThatDoNotMeetAreAnError) {
+  if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
+  const testing::ChangedKernels changed("shared/seams.h", with_short_walks);
+  const auto runtime = points::make_runtime("lanes");
+  const Coordinates points = make_fixture("uniform", 900, 61);
+  for (const auto& [block_points, round_points] : {std::pair{100, 50}, {1000, 500}, {100, 0}}) {
+    SCOPED_TRACE("blocks of " + std::to_string(block_points) + ", then " + std::to_string(round_points));
+    Tuning tuning = tuning_of(*runtime);
+    tuning.block_points = block_points;
+    tuning.round_points = round_points;
+    runtime->set_sizes(std::make_shared<Tuning>(tuning));
+    try {
+      run_blocks(*runtime, points, {0, 900});
+      FAIL() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::internal);
+      EXPECT_NE(std::string(error.what()).find("walks along a seam"), std::string::npos) << error.what();
+    }
+  }
 }
 
 // -----------------------------------------------------------------------------------------------------------

@@ -8,18 +8,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
 #include "launchers/call/self_test.cl.hpp"
 #include "tests/points/support.hpp"
 #include "tests/support/fixtures.hpp"
-#include "tests/support/paths.hpp"
 #include "tests/support/runtimes.hpp"
 #include "tests/support/shared_triangulator.hpp"
+#include "tests/support/test_kernels.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
@@ -78,21 +77,10 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   EXPECT_EQ(failed_bits(flushed, right), 4u);
 }
 
-/// For as long as this lives, kernels have an fma that rounds twice, as that of Mesa's rusticl does.
-class InexactFma {
- public:
-  InexactFma() : environment_("FLAUNAY_KERNEL_PATH", folder_.path().c_str()) {
-    namespace fs = std::filesystem;
-    const fs::path kernels = fs::absolute(fs::path(test_data()).parent_path().parent_path() / "kernels");
-    fs::copy(kernels, folder_.path(), fs::copy_options::recursive);
-    std::ofstream language(folder_.path() + "/shared/language.h", std::ios::app);
-    language << "\n#undef fma\n#define fma(a, b, c) ((a) * (b) + (c))\n";
-  }
-
- private:
-  testing::TemporaryFolder folder_;
-  testing::ScopedEnvironment environment_;
-};
+/// An fma that rounds twice, as that of Mesa's rusticl does.
+std::string with_inexact_fma(const std::string& language) {
+  return language + "\n#undef fma\n#define fma(a, b, c) ((a) * (b) + (c))\n";
+}
 
 // Points on lines and circles, and others whose predicates need expansions.
 TEST(SelfTest, ADeviceWhoseFmaRoundsTwiceDoesWithoutIt) {
@@ -106,7 +94,7 @@ TEST(SelfTest, ADeviceWhoseFmaRoundsTwiceDoesWithoutIt) {
     EXPECT_GT(mesh.statistics.undecided, 0u) << fixture;
     expected.push_back(mesh.triangles);
   }
-  const InexactFma inexact;
+  const testing::ChangedKernels inexact("shared/language.h", with_inexact_fma);
   const auto runtime = testing::make_tuned_runtime("own");
   EXPECT_EQ(tuning_of(*runtime).split_products, 0u);
   EXPECT_EQ(self_test_failure(*runtime), "");

@@ -2,6 +2,7 @@
 // and representatives, whatever the chunks and the solvers.
 #include "flaunay/chunks.hpp"
 
+#include <CL/cl.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -185,6 +186,70 @@ TEST(Chunks, AreTakenBySeveralSolvers) {
   const ChunkStatistics statistics = compare(points, small_plan(100), {solver(), solver()});
   EXPECT_EQ(statistics.devices.size(), 2u);
   EXPECT_GT(statistics.device_points[0], 0u);
+}
+
+/// A part of an OpenCL device, with a context of its own; null if the device cannot be divided.
+struct SubDevices {
+  SubDevices() {
+    cl_platform_id platform = nullptr;
+    cl_uint count = 0;
+    if (clGetPlatformIDs(1, &platform, &count) != CL_SUCCESS || count == 0) return;
+    cl_device_id device = nullptr;
+    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, nullptr) != CL_SUCCESS) return;
+    const cl_device_partition_property properties[] = {CL_DEVICE_PARTITION_EQUALLY, 1, 0};
+    cl_uint parts = 0;
+    if (clCreateSubDevices(device, properties, 0, nullptr, &parts) != CL_SUCCESS) return;
+    devices.resize(parts);
+    if (clCreateSubDevices(device, properties, parts, devices.data(), nullptr) != CL_SUCCESS) devices.clear();
+  }
+  ~SubDevices() {
+    for (const cl_device_id device : devices) clReleaseDevice(device);
+  }
+  std::vector<cl_device_id> devices;
+};
+
+TEST(Chunks, AreTakenBySubDevices) {
+  const SubDevices parts;
+  if (parts.devices.size() < 2) GTEST_SKIP() << "no device that can be divided";
+  const Coordinates points = make_fixture("kuzmin", 20000, 8);
+  const std::size_t n = points.size() / 2;
+  std::vector<Triangulator> triangulators;
+  ChunkOptions options;
+  options.chunk_points = 4000;
+  for (const cl_device_id device : {parts.devices[0], parts.devices[1]}) {
+    const cl_context context = clCreateContext(nullptr, 1, &device, nullptr, nullptr, nullptr);
+    triangulators.emplace_back(context, device);
+    clReleaseContext(context);
+  }
+  for (Triangulator& each : triangulators) options.triangulators.push_back(&each);
+  std::vector<std::int32_t> triangles(6 * n), neighbors(6 * n), hull(n);
+  const ChunkStatistics statistics = triangulate_chunks(
+      points.data(), n, MeshArrays<std::int32_t>{triangles.data(), neighbors.data(), hull.data()}, options);
+  const Triangulation expected = triangulator().triangulate(points.data(), n);
+  triangles.resize(3 * statistics.triangles);
+  neighbors.resize(3 * statistics.triangles);
+  EXPECT_TRUE(sorted_rows(triangles, neighbors) == sorted_rows(expected.triangles, expected.neighbors));
+  EXPECT_EQ(statistics.device_points.size(), 2u);
+  EXPECT_GT(statistics.device_points[0], 0u);
+  EXPECT_GT(statistics.device_points[1], 0u);
+}
+
+TEST(Chunks, AreTakenByADeviceAndTheHost) {
+  const Coordinates points = make_fixture("uniform", 20000, 8);
+  const std::size_t n = points.size() / 2;
+  ChunkOptions options;
+  options.chunk_points = 3000;
+  options.devices = {"#0", "host"};
+  std::vector<std::int64_t> triangles(6 * n), neighbors(6 * n);
+  const ChunkStatistics statistics = triangulate_chunks(
+      points.data(), n, MeshArrays<std::int64_t>{triangles.data(), neighbors.data()}, options);
+  const Triangulation expected = triangulator().triangulate(points.data(), n);
+  triangles.resize(3 * statistics.triangles);
+  neighbors.resize(3 * statistics.triangles);
+  EXPECT_TRUE(sorted_rows(triangles, neighbors) ==
+              sorted_rows(wide(expected.triangles), wide(expected.neighbors)));
+  EXPECT_EQ(statistics.devices.size(), 2u);
+  EXPECT_EQ(statistics.devices[1], "host");
 }
 
 TEST(Chunks, OfALostSolverAreDoneByOthers) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "launchers/flattened/chains.cl.hpp"
+#include "shared/codes.h"
+#include "shared/frame.h"
 #include "shared/limits.h"
 #include "tests/flattened/support.hpp"
 
@@ -297,6 +299,294 @@ TEST(Chains, KeptCornersAreSorted) {
       }
     }
   });
+}
+
+/// Lists between the ends of their regions. A set without points has -1 everywhere.
+void check_sequences_of_lists(Runtime& runtime, const std::vector<std::size_t>& sizes,
+                              FixtureRandom& random) {
+  const std::vector<cl_double2> places = places_of(make_fixture("small-integers", 300, 68));
+  const std::vector<Frame> frames = random_frames(places, sizes.size(), random);
+  const auto any_id = [&] {
+    return static_cast<cl_int>(random.integer(0, static_cast<std::int64_t>(places.size()) - 1));
+  };
+  std::vector<cl_int> offsets{0}, list, regions, first_end, last_end, begins, ids;
+  std::vector<cl_double2> list_projections, projections;
+  for (std::size_t r = 0; r < sizes.size(); ++r) {
+    const bool is_empty = sizes[r] == 0;
+    const std::size_t size = is_empty ? 1 : sizes[r];
+    std::vector<std::pair<cl_int, cl_double2>> own;
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto h = static_cast<double>(random.integer(0, 9));
+      own.emplace_back(is_empty ? -1 : any_id(), is_empty ? cl_double2{{0, 0}} : cl_double2{{h, 1.0 * i}});
+    }
+    for (const cl_int end : {is_empty ? -1 : any_id(), is_empty ? -1 : any_id()}) {
+      (first_end.size() == r ? first_end : last_end).push_back(end);
+    }
+    for (const auto& [id, p] : own) {
+      list.push_back(id);
+      list_projections.push_back(p);
+      regions.push_back(static_cast<cl_int>(r));
+    }
+    offsets.push_back(static_cast<cl_int>(list.size()));
+    const auto end = [&](cl_int id) {
+      return std::pair(id, id < 0 ? cl_double2{{0, 0}} : projected(frames[r], places[id]));
+    };
+    if (frames[r].axis == kernel::AXIS_Y) std::reverse(own.begin(), own.end());
+    own.insert(own.begin(), end(first_end[r]));
+    own.push_back(end(last_end[r]));
+    begins.push_back(static_cast<cl_int>(ids.size()));
+    for (const auto& [id, p] : own) {
+      ids.push_back(id);
+      projections.push_back(p);
+    }
+  }
+  begins.push_back(static_cast<cl_int>(ids.size()));
+  for (const std::size_t group : kGroups) {
+    SCOPED_TRACE("groups of " + std::to_string(group));
+    Call call(runtime);
+    const Level level = level_of_frames(runtime, frames);
+    const auto found_begins = testing::guarded<cl_int>(runtime, begins.size());
+    const auto found_ids = testing::guarded<cl_int>(runtime, ids.size());
+    const auto found_projections = testing::guarded<cl_double2>(runtime, ids.size());
+    runtime.launch(list.size(), group, list.size(),
+                   kernels::sequence_of_lists{.offsets = testing::upload(runtime, offsets),
+                                              .list = testing::upload(runtime, list),
+                                              .regions = testing::upload(runtime, regions),
+                                              .list_projections = testing::upload(runtime, list_projections),
+                                              .first_end = testing::upload(runtime, first_end),
+                                              .last_end = testing::upload(runtime, last_end),
+                                              .axis = level.axis,
+                                              .cut = level.cut,
+                                              .points = testing::upload(runtime, places),
+                                              .begins = found_begins,
+                                              .ids = found_ids,
+                                              .projections = found_projections});
+    ASSERT_TRUE(same(testing::download(runtime, found_begins, begins.size()), begins));
+    ASSERT_TRUE(same(testing::download(runtime, found_ids, ids.size()), ids));
+    ASSERT_TRUE(same(testing::download(runtime, found_projections, ids.size()), projections));
+  }
+}
+
+/// Regions' internal points, corners and path vertices. Of the first two, prune has kept some.
+struct KeptElements {
+  KeptElements(const std::vector<std::size_t>& sizes, std::int64_t percent, FixtureRandom& random)
+      : regions(sizes.size()) {
+    for (std::size_t r = 0; r < regions; ++r) {
+      // All three kinds of elements have empty and huge segments, but of different regions.
+      const std::size_t corners = sizes[regions - 1 - r], vertices = sizes[(r + 1) % regions] / 2;
+      point_offsets.push_back(point_offsets.back() + static_cast<cl_int>(sizes[r]));
+      corner_offsets.push_back(corner_offsets.back() + static_cast<cl_int>(corners));
+      path_offsets.push_back(path_offsets.back() + static_cast<cl_int>(vertices));
+      point_regions.insert(point_regions.end(), sizes[r], static_cast<cl_int>(r));
+      corner_regions.insert(corner_regions.end(), corners, static_cast<cl_int>(r));
+    }
+    for (cl_int i = 0; i < points() + corner_offsets.back(); ++i) {
+      if (random.integer(0, 99) < percent) positions.push_back(i);
+    }
+    for (std::size_t r = 0; r <= regions; ++r) {
+      before.push_back({{kept_in(0, point_offsets[r]), kept_in(points(), points() + corner_offsets[r])}});
+      begins.push_back(path_offsets[r] + before[r].s[0] + before[r].s[1]);
+    }
+  }
+  cl_int points() const { return point_offsets.back(); }
+  cl_int kept_points() const { return before.back().s[0]; }
+  cl_int kept_corners() const { return before.back().s[1]; }
+  cl_int kept_in(cl_int first, cl_int end) const {
+    return static_cast<cl_int>(
+        std::count_if(positions.begin(), positions.end(), [=](cl_int i) { return first <= i && i < end; }));
+  }
+
+  std::size_t regions;
+  std::vector<cl_int> point_offsets{0}, corner_offsets{0}, path_offsets{0};
+  std::vector<cl_int> point_regions, corner_regions;
+  std::vector<cl_int> positions;
+  std::vector<cl_int2> before;
+  std::vector<cl_int> begins;
+};
+
+void check_keep_bounds(Runtime& runtime, const KeptElements& kept) {
+  std::vector<cl_int> facts(kernel::KEPT_FACTS, 0);
+  facts[kernel::KEPT_ALL] = kept.begins.back();
+  facts[kernel::KEPT_CORNERS] = kept.kept_corners();
+  for (std::size_t r = 0; r < kept.regions; ++r) {
+    facts[kernel::KEPT_CORNERS_MOST] =
+        std::max(facts[kernel::KEPT_CORNERS_MOST], kept.before[r + 1].s[1] - kept.before[r].s[1]);
+  }
+  for (const std::size_t group : kGroups) {
+    SCOPED_TRACE("groups of " + std::to_string(group));
+    Call call(runtime);
+    const auto before = testing::guarded<cl_int2>(runtime, kept.regions + 1);
+    const auto begins = testing::guarded<cl_int>(runtime, kept.regions + 1);
+    const auto found = testing::upload(runtime, std::vector<cl_int>(kernel::KEPT_FACTS, 0));
+    const std::vector<cl_uint> count{static_cast<cl_uint>(kept.positions.size())};
+    runtime.launch(kept.regions + 1, group, kept.regions,
+                   kernels::keep_bounds{.points_count = kept.points(),
+                                        .kept_count = testing::upload(runtime, count),
+                                        .positions = testing::upload(runtime, kept.positions),
+                                        .point_offsets = testing::upload(runtime, kept.point_offsets),
+                                        .corner_offsets = testing::upload(runtime, kept.corner_offsets),
+                                        .path_offsets = testing::upload(runtime, kept.path_offsets),
+                                        .before = before,
+                                        .begins = begins,
+                                        .facts = found});
+    ASSERT_TRUE(same(testing::download(runtime, before, kept.regions + 1), kept.before));
+    ASSERT_TRUE(same(testing::download(runtime, begins, kept.regions + 1), kept.begins));
+    ASSERT_TRUE(same(testing::download(runtime, found, facts.size()), facts));
+  }
+}
+
+void check_gathered_corners(Runtime& runtime, const KeptElements& kept, FixtureRandom& random) {
+  const std::vector<cl_double2> places = places_of(make_fixture("small-integers", 300, 69));
+  const std::vector<Frame> frames = random_frames(places, kept.regions, random);
+  std::vector<cl_int> corners, ids, owners;
+  for (std::size_t k = 0; k < 3 * kept.corner_regions.size(); ++k) {
+    corners.push_back(static_cast<cl_int>(random.integer(0, static_cast<std::int64_t>(places.size()) - 1)));
+  }
+  std::vector<cl_double2> projections;
+  for (const cl_int i : kept.positions) {
+    if (i < kept.points()) continue;
+    const auto corner = static_cast<std::size_t>(i - kept.points());
+    owners.push_back(kept.corner_regions[corner]);
+    ids.push_back(corners[3 * corner + 1]);
+    projections.push_back(projected(frames[owners.back()], places[ids.back()]));
+  }
+  if (ids.empty()) return;
+  for (const std::size_t group : kGroups) {
+    SCOPED_TRACE("groups of " + std::to_string(group));
+    Call call(runtime);
+    const Level level = level_of_frames(runtime, frames);
+    const auto found_ids = testing::guarded<cl_int>(runtime, ids.size());
+    const auto found_owners = testing::guarded<cl_int>(runtime, ids.size());
+    const auto found_projections = testing::guarded<cl_double2>(runtime, ids.size());
+    runtime.launch(
+        ids.size(), group, ids.size(),
+        kernels::gather_kept_corners{.regions = kept.regions,
+                                     .points_count = kept.points(),
+                                     .before = testing::upload(runtime, kept.before),
+                                     .positions = testing::upload(runtime, kept.positions),
+                                     .corner_regions = testing::upload(runtime, kept.corner_regions),
+                                     .corners = testing::upload(runtime, corners),
+                                     .axis = level.axis,
+                                     .cut = level.cut,
+                                     .points = testing::upload(runtime, places),
+                                     .ids = found_ids,
+                                     .owners = found_owners,
+                                     .projections = found_projections});
+    ASSERT_TRUE(same(testing::download(runtime, found_ids, ids.size()), ids));
+    ASSERT_TRUE(same(testing::download(runtime, found_owners, ids.size()), owners));
+    ASSERT_TRUE(same(testing::download(runtime, found_projections, ids.size()), projections));
+  }
+}
+
+/// Ascending random coordinates along the cut line, many of them equal.
+std::vector<double> random_us(std::size_t count, FixtureRandom& random) {
+  std::vector<double> us;
+  for (std::size_t i = 0; i < count; ++i) us.push_back(static_cast<double>(random.integer(-9, 9)) / 2);
+  std::sort(us.begin(), us.end());
+  return us;
+}
+
+/// Path vertices, kept points and kept corners of each region, merged stably by u.
+void check_joined(Runtime& runtime, const KeptElements& kept, FixtureRandom& random) {
+  cl_int fresh = 0;
+  std::vector<cl_int> axis, x_list, y_list, path, path_regions, corner_ids, corner_owners, ids;
+  std::vector<cl_double2> point_projections, path_projections, corner_projections, projections;
+  const auto heighten = [&](double u) { return cl_double2{{static_cast<double>(random.integer(0, 99)), u}}; };
+  for (std::size_t r = 0; r < kept.regions; ++r) {
+    axis.push_back(static_cast<cl_int>(r % 4));
+    const bool descends = axis[r] == kernel::AXIS_Y;
+    const cl_int low = kept.point_offsets[r], high = kept.point_offsets[r + 1];
+    std::vector<double> us = random_us(static_cast<std::size_t>(high - low), random);
+    if (descends) std::reverse(us.begin(), us.end());
+    for (const double u : us) {
+      x_list.push_back(fresh++);
+      y_list.push_back(fresh++);
+      point_projections.push_back(heighten(u));
+    }
+    std::vector<std::pair<cl_int, cl_double2>> own;
+    const auto vertices = static_cast<std::size_t>(kept.path_offsets[r + 1] - kept.path_offsets[r]);
+    for (const double u : random_us(vertices, random)) {
+      path.push_back(fresh++);
+      path_regions.push_back(static_cast<cl_int>(r));
+      path_projections.push_back(heighten(u));
+      own.emplace_back(path.back(), path_projections.back());
+    }
+    std::vector<std::pair<cl_int, cl_double2>> kept_points;
+    for (const cl_int i : kept.positions) {
+      if (i < low || i >= high) continue;
+      kept_points.emplace_back(descends ? x_list[i] : y_list[i], point_projections[i]);
+    }
+    if (descends) std::reverse(kept_points.begin(), kept_points.end());
+    own.insert(own.end(), kept_points.begin(), kept_points.end());
+    const auto corners = static_cast<std::size_t>(kept.before[r + 1].s[1] - kept.before[r].s[1]);
+    for (const double u : random_us(corners, random)) {
+      corner_ids.push_back(fresh++);
+      corner_owners.push_back(static_cast<cl_int>(r));
+      corner_projections.push_back(heighten(u));
+      own.emplace_back(corner_ids.back(), corner_projections.back());
+    }
+    std::stable_sort(own.begin(), own.end(),
+                     [](const auto& a, const auto& b) { return a.second.s[1] < b.second.s[1]; });
+    for (const auto& [id, p] : own) {
+      ids.push_back(id);
+      projections.push_back(p);
+    }
+  }
+  for (const std::size_t group : kGroups) {
+    SCOPED_TRACE("groups of " + std::to_string(group));
+    Call call(runtime);
+    const auto found_ids = testing::guarded<cl_int>(runtime, ids.size());
+    const auto found_projections = testing::guarded<cl_double2>(runtime, ids.size());
+    // Fewer work-items than elements, or more.
+    runtime.launch(3 * group, group,
+                   kernels::join_sequences{.regions_count = kept.regions,
+                                           .before = testing::upload(runtime, kept.before),
+                                           .begins = testing::upload(runtime, kept.begins),
+                                           .positions = testing::upload(runtime, kept.positions),
+                                           .regions = testing::upload(runtime, kept.point_regions),
+                                           .x_list = testing::upload(runtime, x_list),
+                                           .y_list = testing::upload(runtime, y_list),
+                                           .point_projections = testing::upload(runtime, point_projections),
+                                           .axis = testing::upload(runtime, axis),
+                                           .path_offsets = testing::upload(runtime, kept.path_offsets),
+                                           .path = testing::upload(runtime, path),
+                                           .path_regions = testing::upload(runtime, path_regions),
+                                           .path_projections = testing::upload(runtime, path_projections),
+                                           .corner_ids = testing::upload(runtime, corner_ids),
+                                           .corner_owners = testing::upload(runtime, corner_owners),
+                                           .corner_projections = testing::upload(runtime, corner_projections),
+                                           .ids = found_ids,
+                                           .projections = found_projections});
+    ASSERT_TRUE(same(testing::download(runtime, found_ids, ids.size()), ids));
+    ASSERT_TRUE(same(testing::download(runtime, found_projections, ids.size()), projections));
+  }
+}
+
+/// All of these, for segments of all sizes up to `huge`, of which prune has kept nothing, some, or
+/// everything.
+void check_steps_of_sequences(std::size_t huge, FixtureRandom& random) {
+  Runtime& runtime = Runtimes::get(false);
+  for (const auto& sizes : sizes_of_regions(huge)) {
+    SCOPED_TRACE(std::to_string(sizes.size()) + " regions");
+    check_sequences_of_lists(runtime, sizes, random);
+    for (const std::int64_t percent : {0, 30, 100}) {
+      SCOPED_TRACE(std::to_string(percent) + " % kept");
+      const KeptElements kept(sizes, percent, random);
+      check_keep_bounds(runtime, kept);
+      check_gathered_corners(runtime, kept, random);
+      check_joined(runtime, kept, random);
+    }
+  }
+}
+
+TEST(SmallChains, StepsOfSequences) {
+  FixtureRandom random(70);
+  check_steps_of_sequences(12, random);
+}
+
+TEST(Chains, StepsOfSequences) {
+  FixtureRandom random(71);
+  for (const std::size_t huge : {300, 4000}) check_steps_of_sequences(huge, random);
 }
 
 TEST(Chains, ManyKeptCorners) {

@@ -17,6 +17,9 @@ inline bool equal_elements(const cl_double2& a, const cl_double2& b) {
 inline bool equal_elements(const cl_uint2& a, const cl_uint2& b) {
   return a.s[0] == b.s[0] && a.s[1] == b.s[1];
 }
+inline bool equal_elements(const cl_int2& a, const cl_int2& b) {
+  return a.s[0] == b.s[0] && a.s[1] == b.s[1];
+}
 template <typename T>
 bool equal_elements(const T& a, const T& b) {
   return a == b;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -25,6 +27,27 @@ class TestKernels {
         fs::create_symlink(entry.path(), fs::path(folder_.path()) / entry.path().filename());
       }
     }
+  }
+
+ private:
+  TemporaryFolder folder_;
+  ScopedEnvironment environment_;
+};
+
+/// For as long as this lives, runtimes find the product's kernels with another text of one file: what
+/// `change` makes of it.
+class ChangedKernels {
+ public:
+  template <typename Change>
+  ChangedKernels(const std::string& file, const Change& change)
+      : environment_("FLAUNAY_KERNEL_PATH", folder_.path().c_str()) {
+    namespace fs = std::filesystem;
+    const fs::path kernels = fs::absolute(fs::path(test_data()).parent_path().parent_path() / "kernels");
+    fs::copy(kernels, folder_.path(), fs::copy_options::recursive);
+    const fs::path path = fs::path(folder_.path()) / file;
+    std::stringstream text;
+    text << std::ifstream(path).rdbuf();
+    std::ofstream(path) << change(text.str());
   }
 
  private:

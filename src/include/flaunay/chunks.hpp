@@ -50,6 +50,9 @@ struct ChunkOptions {
   /// The devices, each named as for Triangulator; "all": every usable device. They take chunks from one
   /// queue. Empty: flaunay's own choice of one.
   std::vector<std::string> devices;
+  /// Instead of devices: triangulators of the caller's, such as those of sub-devices. They take chunks from
+  /// one queue and must not be used meanwhile.
+  std::vector<Triangulator*> triangulators;
   /// Points of a chunk. 0: as many as the memory permits.
   std::size_t chunk_points = 0;
   /// If not empty, called from time to time on the calling thread. stage: "sampling", "distributing" or
