@@ -3,6 +3,7 @@
 // compile. If a file uses more of fmt than fmt::format, what it needs must be added here.
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <string>
 
 namespace flaunay::host {
@@ -12,5 +13,16 @@ namespace flaunay::host {
 using Format = std::string (*)(fmt::string_view text, fmt::format_args values);
 extern const Format format;
 const Format format = &fmt::vformat;
+
+// What formatting into a buffer calls, as files that are written do.
+using IsPrintable = bool (*)(std::uint32_t character);
+extern const IsPrintable is_printable;
+const IsPrintable is_printable = &fmt::detail::is_printable;
+using DecimalPoint = char (*)(fmt::detail::locale_ref locale);
+extern const DecimalPoint decimal_point;
+const DecimalPoint decimal_point = &fmt::detail::decimal_point_impl<char>;
+using ThousandsSeparator = fmt::detail::thousands_sep_result<char> (*)(fmt::detail::locale_ref locale);
+extern const ThousandsSeparator thousands_separator;
+const ThousandsSeparator thousands_separator = &fmt::detail::thousands_sep_impl<char>;
 
 }  // namespace flaunay::host

@@ -957,6 +957,303 @@ static void test_derived_on_device(void) {
   clReleaseMemObject(near);
 }
 
+// ---- Chunks
+
+// So few that there are several rounds.
+enum { kChunkPoints = 400 };
+
+static int32_t* make_indices(size_t count) {
+  int32_t* made = malloc(count * sizeof *made);
+  REQUIRE(made != NULL);
+  return made;
+}
+
+// Cheap and independent of the order of rows; equal triangles with equal sides to their neighbours have equal
+// sums.
+static uint64_t row_sum(const int32_t* triangles, const int32_t* neighbors, size_t count) {
+  uint64_t sum = 0;
+  for (size_t t = 0; t < count; ++t) {
+    uint64_t hash = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      const int32_t other = neighbors[3 * t + k];
+      hash = hash * 1000003 + (uint64_t)triangles[3 * t + k];
+      for (size_t c = 0; c < 3; ++c) {
+        hash = hash * 1000003 + (other < 0 ? 77 : (uint64_t)triangles[3 * (size_t)other + c]);
+      }
+    }
+    sum += hash * hash;
+  }
+  return sum;
+}
+
+static void check_chunk_statistics(const flaunay_chunk_statistics* statistics,
+                                   const flaunay_triangulation* expected) {
+  CHECK(statistics->points == kPoints && statistics->chunk_points == kChunkPoints);
+  CHECK(statistics->triangles == flaunay_triangulation_triangle_count(expected));
+  CHECK(statistics->hull_vertices == flaunay_triangulation_hull_count(expected));
+  CHECK(statistics->duplicates == flaunay_triangulation_statistics(expected)->duplicates);
+  CHECK(statistics->seconds > 0 && statistics->scratch_bytes >= 24 * kPoints);
+  REQUIRE(statistics->round_count >= 2 && statistics->device_count == 1 && statistics->phase_count >= 3);
+  CHECK(statistics->rounds[0].points == kPoints && statistics->rounds[0].chunks >= kPoints / kChunkPoints);
+  CHECK(statistics->rounds[0].handed_on == statistics->rounds[1].points);
+  CHECK(statistics->rounds[statistics->round_count - 1].handed_on == 0);
+  CHECK(statistics->rounds[0].triangles < statistics->triangles);
+  CHECK(strcmp(statistics->devices[0].name, "host") == 0 && statistics->devices[0].points >= kPoints);
+  CHECK(strcmp(statistics->phases[0].name, "distribute") == 0 && statistics->phases[0].seconds >= 0);
+}
+
+static const char* const kHostAlone[] = {"host"};
+static const flaunay_chunk_options kSmallChunks = {
+    .devices = kHostAlone, .device_count = 1, .chunk_points = kChunkPoints};
+
+static void check_same_mesh(const int32_t* triangles, const int32_t* neighbors, const int32_t* hull,
+                            const int32_t* representatives, const flaunay_triangulation* expected) {
+  const size_t count = flaunay_triangulation_triangle_count(expected);
+  CHECK(row_sum(triangles, neighbors, count) ==
+        row_sum(flaunay_triangulation_triangles(expected), flaunay_triangulation_neighbors(expected), count));
+  CHECK(same(hull, flaunay_triangulation_hull(expected), flaunay_triangulation_hull_count(expected)));
+  CHECK(same(representatives, flaunay_triangulation_representatives(expected), kPoints));
+}
+
+static void test_chunks_in_arrays(void) {
+  flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, 0);
+  flaunay_mesh_arrays arrays = {.triangles = make_indices(6 * kPoints),
+                                .neighbors = make_indices(6 * kPoints),
+                                .hull = make_indices(kPoints),
+                                .representatives = make_indices(kPoints)};
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_triangulate_chunks(points, kPoints, &arrays, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
+  check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
+  check_same_mesh(arrays.triangles, arrays.neighbors, arrays.hull, arrays.representatives, expected);
+  flaunay_chunk_report_destroy(report);
+
+  // The same hull in 64 bits, and nothing else.
+  int64_t* wide = malloc(kPoints * sizeof *wide);
+  REQUIRE(wide != NULL);
+  const flaunay_mesh_arrays hull_alone = {.index_type = FLAUNAY_INT64, .hull = wide};
+  REQUIRE(flaunay_triangulate_chunks(points, kPoints, &hull_alone, NULL, &report) == FLAUNAY_SUCCESS);
+  const size_t hull_count = flaunay_chunk_report_statistics(report)->hull_vertices;
+  CHECK(flaunay_chunk_report_statistics(report)->round_count == 1);
+  REQUIRE(hull_count == flaunay_triangulation_hull_count(expected));
+  for (size_t k = 0; k < hull_count; ++k) CHECK(wide[k] == flaunay_triangulation_hull(expected)[k]);
+  flaunay_chunk_report_destroy(report);
+  flaunay_triangulation_destroy(expected);
+  free(wide);
+  free(arrays.triangles);
+  free(arrays.neighbors);
+  free(arrays.hull);
+  free(arrays.representatives);
+}
+
+static int read_file(uint64_t first, size_t count, double* coordinates, void* file) {
+  const size_t bytes = 2 * sizeof *coordinates;
+  if (fseek(file, (long)(first * bytes), SEEK_SET) != 0) return 1;
+  return fread(coordinates, bytes, count, file) == count ? 0 : 2;
+}
+
+static int read_nothing(uint64_t first, size_t count, double* coordinates, void* calls) {
+  (void)first, (void)count, (void)coordinates;
+  ++*(int*)calls;
+  return 7;
+}
+
+// What a sink has got: triangles in a file, the other parts in arrays.
+typedef struct {
+  FILE* triangles;
+  int32_t *neighbors, *hull, *representatives;
+  unsigned parts, fails_at;
+} stored_mesh;
+
+static int write_part(unsigned part, uint64_t first, const int64_t* values, size_t count, void* data) {
+  stored_mesh* mesh = data;
+  mesh->parts |= part;
+  if (part == mesh->fails_at) return -3;
+  int32_t* to = part == FLAUNAY_PART_NEIGHBORS ? mesh->neighbors
+                : part == FLAUNAY_PART_HULL    ? mesh->hull
+                                               : mesh->representatives;
+  for (size_t k = 0; k < count; ++k) {
+    const int32_t narrow = (int32_t)values[k];
+    if (part != FLAUNAY_PART_TRIANGLES) {
+      to[first + k] = narrow;
+    } else if (fseek(mesh->triangles, (long)((first + k) * sizeof narrow), SEEK_SET) != 0 ||
+               fwrite(&narrow, sizeof narrow, 1, mesh->triangles) != 1) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static void test_chunks_in_files(void) {
+  FILE* file = tmpfile();
+  stored_mesh mesh = {.triangles = tmpfile(),
+                      .neighbors = make_indices(6 * kPoints),
+                      .hull = make_indices(kPoints),
+                      .representatives = make_indices(kPoints)};
+  REQUIRE(file != NULL && mesh.triangles != NULL);
+  REQUIRE(fwrite(points, sizeof points, 1, file) == 1);
+  const flaunay_point_source source = {.count = kPoints, .read = read_file, .data = file};
+  flaunay_mesh_sink sink = {.write = write_part, .data = &mesh};
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_triangulate_streams(&source, &sink, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
+  CHECK(mesh.parts == FLAUNAY_PART_TRIANGLES);  // the default
+  flaunay_chunk_report_destroy(report);
+
+  sink.parts =
+      FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+  REQUIRE(flaunay_triangulate_streams(&source, &sink, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
+  CHECK(mesh.parts == sink.parts);
+  flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, 0);
+  check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
+  const size_t entries = 3 * flaunay_triangulation_triangle_count(expected);
+  int32_t* triangles = make_indices(entries);
+  rewind(mesh.triangles);
+  REQUIRE(fread(triangles, sizeof *triangles, entries, mesh.triangles) == entries);
+  check_same_mesh(triangles, mesh.neighbors, mesh.hull, mesh.representatives, expected);
+  flaunay_chunk_report_destroy(report);
+  flaunay_triangulation_destroy(expected);
+
+  // A function of the caller's ends the call.
+  const flaunay_status stopped = FLAUNAY_ERROR_STOPPED;
+  CHECK(strcmp(flaunay_status_string(stopped), "stopped by the caller") == 0);
+  for (unsigned part = FLAUNAY_PART_TRIANGLES; part <= FLAUNAY_PART_REPRESENTATIVES; part *= 2) {
+    if (part == FLAUNAY_PART_HALFEDGES) continue;
+    mesh.fails_at = part;
+    CHECK(fails(flaunay_triangulate_streams(&source, &sink, &kSmallChunks, &report), stopped,
+                "write returned -3"));
+    CHECK(report == NULL);
+  }
+  mesh.fails_at = 0;
+  int calls = 0;
+  const flaunay_point_source broken = {.count = kPoints, .read = read_nothing, .data = &calls};
+  CHECK(fails(flaunay_triangulate_streams(&broken, &sink, NULL, &report), stopped, "read returned 7"));
+  CHECK(calls == 1 && report == NULL);
+  fclose(file);
+  fclose(mesh.triangles);
+  free(triangles);
+  free(mesh.neighbors);
+  free(mesh.hull);
+  free(mesh.representatives);
+}
+
+typedef struct {
+  const char* stops_at;
+  double last;
+  int rounds;
+} chunk_progress;
+
+static int follow(const char* stage, int round, double done, void* data) {
+  chunk_progress* progress = data;
+  CHECK(done >= progress->last && done <= 1 && round >= 0);
+  progress->last = done;
+  if (round >= progress->rounds) progress->rounds = round + 1;
+  return strcmp(stage, progress->stops_at) == 0;
+}
+
+static void test_progress_of_chunks(void) {
+  const flaunay_mesh_arrays nothing = {0};
+  chunk_progress progress = {.stops_at = "never"};
+  flaunay_chunk_options options = kSmallChunks;
+  options.progress = follow;
+  options.progress_data = &progress;
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_triangulate_chunks(points, kPoints, &nothing, &options, &report) == FLAUNAY_SUCCESS);
+  CHECK(progress.last == 1);
+  CHECK(progress.rounds == (int)flaunay_chunk_report_statistics(report)->round_count);
+  flaunay_chunk_report_destroy(report);
+  const char* const stages[] = {"sampling", "distributing", "triangulating"};
+  for (int k = 0; k < 3; ++k) {
+    progress = (chunk_progress){.stops_at = stages[k]};
+    CHECK(fails(flaunay_triangulate_chunks(points, kPoints, &nothing, &options, &report),
+                FLAUNAY_ERROR_STOPPED, "progress returned 1"));
+    CHECK(report == NULL && progress.last < 1);
+  }
+}
+
+static void test_chunks_of_no_points(void) {
+  const flaunay_mesh_arrays nothing = {0};
+  const flaunay_point_source none = {0};
+  stored_mesh mesh = {0};
+  const flaunay_mesh_sink sink = {.write = write_part, .data = &mesh};
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_triangulate_chunks(NULL, 0, &nothing, NULL, &report) == FLAUNAY_SUCCESS);
+  const flaunay_chunk_statistics* statistics = flaunay_chunk_report_statistics(report);
+  CHECK(statistics->points == 0 && statistics->triangles == 0 && statistics->hull_vertices == 0);
+  CHECK(statistics->rounds == NULL && statistics->round_count == 0 && statistics->devices == NULL);
+  flaunay_chunk_report_destroy(report);
+  REQUIRE(flaunay_triangulate_streams(&none, &sink, NULL, &report) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_chunk_report_statistics(report)->triangles == 0 && mesh.parts == 0);
+  flaunay_chunk_report_destroy(report);
+}
+
+static flaunay_status chunks_with(flaunay_chunk_options options) {
+  const flaunay_mesh_arrays nothing = {0};
+  flaunay_chunk_report* report = NULL;
+  const flaunay_status status = flaunay_triangulate_chunks(kSquare, 4, &nothing, &options, &report);
+  CHECK((report != NULL) == (status == FLAUNAY_SUCCESS));
+  flaunay_chunk_report_destroy(report);
+  return status;
+}
+
+static void test_bad_chunk_options(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const char* const names[] = {NULL, "no such device"};
+  CHECK(chunks_with((flaunay_chunk_options){0}) == FLAUNAY_SUCCESS);
+  // A name that is NULL stands for flaunay's own choice, as when a triangulator is made.
+  CHECK(chunks_with((flaunay_chunk_options){.devices = names, .device_count = 1}) == FLAUNAY_SUCCESS);
+  CHECK(fails(chunks_with((flaunay_chunk_options){.devices = names, .device_count = 2}), FLAUNAY_ERROR_DEVICE,
+              "no such device"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.device_count = 1}), usage, "list of devices"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.memory_bytes = 1000}), usage, "too little"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.reserved = {[7] = 1}}), usage, "flaunay_chunk_options"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.scratch = "/nowhere/at/all"}), FLAUNAY_ERROR_INPUT,
+              "/nowhere/at/all"));
+}
+
+static void test_bad_chunks(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE, input = FLAUNAY_ERROR_INPUT;
+  const flaunay_mesh_arrays nothing = {0}, of_bytes = {.index_type = 2}, unknown = {.reserved = {1}};
+  flaunay_chunk_report* report = NULL;
+  CHECK(fails(flaunay_triangulate_chunks(kSquare, 4, NULL, NULL, &report), usage, "results"));
+  CHECK(fails(flaunay_triangulate_chunks(kSquare, 4, &nothing, NULL, NULL), usage, "handle"));
+  CHECK(fails(flaunay_triangulate_chunks(NULL, 4, &nothing, NULL, &report), usage, "4 points"));
+  CHECK(fails(flaunay_triangulate_chunks(kSquare, 4, &of_bytes, NULL, &report), usage, "indices 2"));
+  CHECK(fails(flaunay_triangulate_chunks(kSquare, 4, &unknown, NULL, &report), usage, "flaunay_mesh_arrays"));
+  const double bad[] = {0, 0, 1, 0, 1, INFINITY};
+  CHECK(fails(flaunay_triangulate_chunks(bad, 3, &nothing, NULL, &report), input, "point 2"));
+  CHECK(report == NULL && flaunay_chunk_report_statistics(NULL) == NULL);
+  flaunay_chunk_report_destroy(NULL);
+  // Points are not read before their number is checked.
+  const uint64_t counts[] = {(uint64_t)1 << 30, (uint64_t)1 << 63, UINT64_MAX};
+  const flaunay_mesh_arrays wide = {.index_type = FLAUNAY_INT64};
+  for (int k = 0; k < 3; ++k) {
+    CHECK(fails(flaunay_triangulate_chunks(kSquare, counts[k], &nothing, NULL, &report), input, "too many"));
+    if (k == 0) continue;
+    CHECK(fails(flaunay_triangulate_chunks(kSquare, counts[k], &wide, NULL, &report), input, "too many"));
+  }
+}
+
+static void test_bad_streams(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  int calls = 0;
+  const flaunay_point_source source = {.count = 1, .read = read_nothing, .data = &calls};
+  const flaunay_mesh_sink sink = {.write = write_part};
+  flaunay_chunk_report* report = NULL;
+  CHECK(fails(flaunay_triangulate_streams(NULL, &sink, NULL, &report), usage, "points"));
+  CHECK(fails(flaunay_triangulate_streams(&source, NULL, NULL, &report), usage, "results"));
+  CHECK(fails(flaunay_triangulate_streams(&source, &sink, NULL, NULL), usage, "handle"));
+  const flaunay_point_source unread = {.count = 1}, unknown = {.reserved = {1}};
+  CHECK(fails(flaunay_triangulate_streams(&unread, &sink, NULL, &report), usage, "reads points"));
+  CHECK(fails(flaunay_triangulate_streams(&unknown, &sink, NULL, &report), usage, "flaunay_point_source"));
+  const flaunay_mesh_sink unwritten = {0}, strange = {.write = write_part, .reserved = {1}},
+                          halfedges = {.write = write_part, .parts = FLAUNAY_PART_HALFEDGES};
+  CHECK(fails(flaunay_triangulate_streams(&source, &unwritten, NULL, &report), usage, "writes results"));
+  CHECK(fails(flaunay_triangulate_streams(&source, &strange, NULL, &report), usage, "flaunay_mesh_sink"));
+  CHECK(fails(flaunay_triangulate_streams(&source, &halfedges, NULL, &report), usage, "0x4"));
+  const flaunay_point_source many = {.count = UINT64_MAX, .read = read_nothing, .data = &calls};
+  CHECK(fails(flaunay_triangulate_streams(&many, &sink, NULL, &report), FLAUNAY_ERROR_INPUT, "too many"));
+  CHECK(calls == 0 && report == NULL);
+}
+
 // ---- Without double precision
 
 static void test_no_fp64(void) {
@@ -1017,6 +1314,13 @@ static void test_all(void) {
   test_voronoi();
   test_locator();
   test_derived_on_device();
+  test_chunks_in_arrays();
+  test_chunks_in_files();
+  test_progress_of_chunks();
+  test_chunks_of_no_points();
+  test_bad_chunk_options();
+  test_bad_chunks();
+  test_bad_streams();
   tear_down();
 }
 

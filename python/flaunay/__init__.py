@@ -2,7 +2,8 @@
 
 ``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``triangulate`` is the plain call,
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
-memory, as ``pyopencl.array.Array``.
+memory, as ``pyopencl.array.Array``. ``triangulate_chunks`` is for more points than fit memory: it reads
+arrays that are mapped from files, and writes files.
 
 Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
 call builds its kernels, which takes some seconds; they are kept on disk for later processes, and
@@ -13,6 +14,7 @@ device does one call after the other. OpenCL does not survive a fork: in a child
 used it, calls run on the host, and calls that name a device raise ``DeviceError``.
 """
 
+from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._flaunay import __version__
@@ -22,6 +24,7 @@ from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 
 __all__ = [
+    "ChunkedTriangulation",
     "Delaunay",
     "DeviceError",
     "DeviceTriangulation",
@@ -35,5 +38,6 @@ __all__ = [
     "devices",
     "modes",
     "triangulate",
+    "triangulate_chunks",
     "triangulate_device",
 ]

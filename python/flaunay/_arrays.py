@@ -63,13 +63,18 @@ def as_floats(given: npt.ArrayLike, name: str) -> FloatArray:
     return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
 
 
-def as_points(given: npt.ArrayLike) -> FloatArray:
-    """Points of shape (n, 2); UsageError for any other shape."""
-    points = as_floats(given, "points")
+def check_points_shape(points: FloatArray) -> None:
+    """UsageError unless the shape is (n, 2)."""
     if points.ndim != 2:
         raise UsageError(f"points must have the shape (n, 2), not {points.shape}")
     if points.shape[1] != 2:
         raise UsageError(f"points must be two-dimensional, but have {points.shape[1]} coordinates")
+
+
+def as_points(given: npt.ArrayLike) -> FloatArray:
+    """Points of shape (n, 2); UsageError for any other shape."""
+    points = as_floats(given, "points")
+    check_points_shape(points)
     return points
 
 

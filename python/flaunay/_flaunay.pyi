@@ -1,3 +1,4 @@
+from collections.abc import Callable
 from typing import Any, Optional
 
 import numpy as np
@@ -19,6 +20,16 @@ def triangulate_without_device(
     wanted: set[str],
 ) -> dict[str, Any]: ...
 def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indices, _Indices]: ...
+def triangulate_chunks(
+    points: FloatArray,
+    wanted: dict[str, Optional[bytes]],
+    wide: bool,
+    memory: int,
+    scratch: bytes,
+    devices: list[str],
+    chunk_points: int,
+    progress: Optional[Callable[[str, int, float], object]],
+) -> tuple[dict[str, Any], dict[str, Any]]: ...
 def first_triangles(triangles: _Indices, n: int) -> _Indices: ...
 
 class Triangulator:

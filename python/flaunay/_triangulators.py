@@ -6,7 +6,8 @@ import logging
 import os
 import threading
 from collections import OrderedDict
-from typing import TYPE_CHECKING, Any, Optional
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from flaunay import _flaunay
 from flaunay._errors import DeviceError
@@ -83,6 +84,18 @@ def of_device(device: Optional[str]) -> _flaunay.Triangulator:
                     break
             _by_name[name] = found
         return found
+
+
+def names_for_chunks(devices: Union[None, str, Sequence[str]]) -> list[str]:
+    """The devices of a triangulation in chunks, which opens its own; none if flaunay may choose."""
+    given = [devices] if devices is None or isinstance(devices, str) else list(devices)
+    names = [_name_of(device) for device in given]
+    if _forked and not any(names):
+        return [_HOST]
+    if set(names) != {_HOST}:
+        check_process()
+    # The environment is left to the library, which names it in its errors.
+    return names if devices else []
 
 
 def keep(inherited: Any) -> None:

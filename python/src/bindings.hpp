@@ -102,10 +102,13 @@ std::vector<std::int32_t> copy_of(const Indices& array);
 void check_indices(const std::vector<std::int32_t>& indices, std::int32_t lowest, std::size_t n,
                    const char* name, const char* what);
 
+/// The seconds of each phase by its name.
+py::dict phases_to_dict(const std::vector<PhaseStatistics>& phases);
 py::dict to_dict(const Statistics& statistics);
 
 void bind_host(py::module_& module);
 void bind_device(py::module_& module);
 void bind_queries(py::module_& module);
+void bind_chunks(py::module_& module);
 
 }  // namespace flaunay::python

@@ -104,9 +104,13 @@ void check_indices(const std::vector<std::int32_t>& indices, std::int32_t lowest
   }
 }
 
+py::dict phases_to_dict(const std::vector<PhaseStatistics>& phases) {
+  py::dict result;
+  for (const PhaseStatistics& phase : phases) result[py::str(phase.name)] = phase.seconds;
+  return result;
+}
+
 py::dict to_dict(const Statistics& statistics) {
-  py::dict phases;
-  for (const PhaseStatistics& phase : statistics.phases) phases[py::str(phase.name)] = phase.seconds;
   py::dict result;
   result["device"] = statistics.device;
   result["points"] = statistics.points;
@@ -125,7 +129,7 @@ py::dict to_dict(const Statistics& statistics) {
   result["rounds"] = statistics.rounds;
   result["round_points"] = statistics.round_points;
   result["merged_points"] = statistics.merged_points;
-  result["phases"] = phases;
+  result["phases"] = phases_to_dict(statistics.phases);
   return result;
 }
 
@@ -139,4 +143,5 @@ PYBIND11_MODULE(_flaunay, module) {
   bind_host(module);
   bind_device(module);
   bind_queries(module);
+  bind_chunks(module);
 }

@@ -55,6 +55,9 @@ flaunay_status remember_exception() noexcept {
     last.call.clear();
     last.message = kOutOfMemory;
     return FLAUNAY_ERROR_MEMORY;
+  } catch (const Stopped& error) {
+    remember(error.what());
+    return FLAUNAY_ERROR_STOPPED;
   } catch (const std::exception& error) {
     remember(error.what());
   } catch (...) {
@@ -83,6 +86,8 @@ const char* flaunay_status_string(int status) {
       return "device error";
     case FLAUNAY_ERROR_MEMORY:
       return "out of host memory";
+    case FLAUNAY_ERROR_STOPPED:
+      return "stopped by the caller";
   }
   return "unknown status";
 }

@@ -3,10 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "flaunay/flaunay.h"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::c {
+
+/// A function that the caller passed ended the call.
+class Stopped : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Returns the status for the exception that is being handled and keeps its message as this thread's last
 /// error. To be called in a catch block.

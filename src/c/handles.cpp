@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <iterator>
 
 #include "call/handles.hpp"
 #include "geometry/magnitudes.hpp"
@@ -20,17 +19,6 @@ using research::Mode;
 
 using call::kMostCountable;
 using call::kResultArrays;
-
-template <typename Struct>
-void check_reserved(const Struct& given, const char* name) {
-  const auto is_set = [](std::uintptr_t member) { return member != 0; };
-  if (std::any_of(std::begin(given.reserved), std::end(given.reserved), is_set)) {
-    throw_usage(
-        fmt::format("{} has members that flaunay {} does not know: initialise it with {{0}}, or take "
-                    "a later version",
-                    name, version()));
-  }
-}
 
 // Enumerators of C and C++ have the same values, so a mode is found by its value.
 static_assert(FLAUNAY_MODE_BLOCKS == static_cast<int>(Mode::blocks) &&

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,6 +16,18 @@
 #include "flaunay/research.hpp"
 
 namespace flaunay::c {
+
+/// Throws Error(usage) unless all reserved members of a C struct are 0.
+template <typename Struct>
+void check_reserved(const Struct& given, const char* name) {
+  const auto is_set = [](std::uintptr_t member) { return member != 0; };
+  if (std::any_of(std::begin(given.reserved), std::end(given.reserved), is_set)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{} has members that flaunay {} does not know: initialise it with {{0}}, or take "
+                            "a later version",
+                            name, version()));
+  }
+}
 
 /// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.
 class StatisticsView {

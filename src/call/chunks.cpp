@@ -11,6 +11,7 @@
 
 #include "call/errors.hpp"
 #include "call/implementation.hpp"
+#include "chunks/array_sink.hpp"
 #include "chunks/run.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/system_memory.hpp"
@@ -28,6 +29,9 @@ constexpr std::uint64_t kBytesPerPoint = 480;
 // Chunks differ: those of more than one and a half times the points that they should have are cut again.
 constexpr double kMostUnequal = 1.6;
 constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
+
+// So that their numbers of bytes are 64-bit numbers, on disk and in the results.
+constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 56;
 
 constexpr const char* kAllDevices = "all";
 
@@ -93,9 +97,15 @@ chunks::Plan make_plan(const ChunkOptions& options, const Devices& devices) {
   return plan;
 }
 
+void check_count(std::uint64_t n) {
+  if (n <= kMostPoints) return;
+  throw Error(ErrorKind::input,
+              fmt::format("{} points are too many; at most {} are possible", n, kMostPoints));
+}
+
 // Points that rows and their number can refer to.
 void check_indices(std::uint64_t n, std::uint64_t most_index) {
-  if (2 * n <= most_index) return;
+  if (n <= most_index / 2) return;
   throw Error(
       ErrorKind::input,
       fmt::format(
@@ -105,40 +115,13 @@ void check_indices(std::uint64_t n, std::uint64_t most_index) {
 }
 
 template <typename Index>
-class ArraySink : public MeshSink {
- public:
-  explicit ArraySink(const MeshArrays<Index>& arrays) : arrays_(arrays) {}
-  bool wants(MeshArray array) const override { return place(array) != nullptr; }
-  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
-    Index* const to = place(array) + first;
-    for (std::size_t k = 0; k < count; ++k) to[k] = static_cast<Index>(values[k]);
-  }
-
- private:
-  Index* place(MeshArray array) const {
-    switch (array) {
-      case MeshArray::triangles:
-        return arrays_.triangles;
-      case MeshArray::neighbors:
-        return arrays_.neighbors;
-      case MeshArray::hull:
-        return arrays_.hull;
-      case MeshArray::representatives:
-        return arrays_.representatives;
-    }
-    return nullptr;
-  }
-
-  const MeshArrays<Index>& arrays_;
-};
-
-template <typename Index>
 ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
                                    const MeshArrays<Index>& results, const ChunkOptions& options) {
   geometry::check_coordinates(coordinates, n);
+  check_count(n);
   check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
   ArrayPoints points(coordinates, n);
-  ArraySink<Index> sink(results);
+  chunks::ArraySink<Index> sink(results);
   return triangulate_chunks(points, sink, options);
 }
 
@@ -154,6 +137,7 @@ void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinat
 ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {
   return with_errors([&] {
     if (points.size() == 0) return ChunkStatistics();
+    check_count(points.size());
     const Devices devices = open_devices(options);
     return chunks::run(points, sink, make_plan(options, devices), devices.solvers, options);
   });

@@ -24,19 +24,6 @@ namespace {
 constexpr std::uint64_t kMostPoints32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kMostPointsWithRows32 = kMostPoints32 / 2;
 
-/// Fails unless the results fit the disks: n points have at most 2 n triangles. The hull is not counted,
-/// since it is long for few inputs.
-void check_room(const ResultPaths& results, std::uint64_t points, io::IndexType type) {
-  const std::uint64_t index_bytes = type == io::IndexType::int32 ? 4 : 8;
-  std::vector<SizedOutput> files;
-  for (const MeshArray array : {MeshArray::triangles, MeshArray::neighbors, MeshArray::representatives}) {
-    const std::uint64_t entries =
-        array == MeshArray::representatives ? points : 2 * points * io::columns_of(array);
-    files.push_back({results.arrays[static_cast<std::size_t>(array)], entries * index_bytes});
-  }
-  check_disk_space(files);
-}
-
 ChunkStatistics triangulate_file(const ChunkRequest& request, PointSource& points, MeshSink& files,
                                  Progress& progress) {
   ChunkOptions options;
@@ -159,7 +146,7 @@ int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) 
   facts.reading_seconds = stopwatch.restart();
 
   const io::IndexType type = index_type(request.index, points->size(), request.results);
-  check_room(request.results, points->size(), type);
+  io::check_room(request.results.arrays, points->size(), type);
   io::MeshFiles files(outputs.files(), request.results.arrays, type);
   const ChunkStatistics statistics = triangulate_file(request, *points, files, progress);
 

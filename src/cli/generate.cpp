@@ -14,6 +14,7 @@
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "flaunay/flaunay.hpp"
+#include "io/disk_space.hpp"
 #include "io/file.hpp"
 #include "io/points.hpp"
 
@@ -43,7 +44,7 @@ int generate(const GenerateRequest& request) {
   }
   OutputFiles outputs("-");
   outputs.add_points(request.output);
-  check_disk_space({{request.output, least_bytes(request.output, request.count)}});
+  io::check_disk_space({{request.output, least_bytes(request.output, request.count)}});
   io::PointWriter writer(outputs.files(), request.output, request.count);
   io::generate(request.distribution, request.count, request.seed,
                [&writer](const double* coordinates, std::size_t count) { writer.write(coordinates, count); });

@@ -1,7 +1,6 @@
 // Where the command's results go: standard output, and files that are all written or none.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,14 +12,6 @@ namespace flaunay::cli {
 /// output or the pipe is closed, which is not an error; throws Error(input) for any other failure, such as a
 /// full disk.
 bool print(const std::string& text);
-
-/// A file, none if the path is empty, and about how many bytes it will have.
-struct SizedOutput {
-  std::string path;
-  std::uint64_t bytes;
-};
-/// Throws Error(input) that names a file if a disk has no room for the files that go there.
-void check_disk_space(const std::vector<SizedOutput>& files);
 
 /// The files that one run writes: first all are announced, to find errors before the work begins; in the end
 /// they are written, and committed together.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "io/disk_space.hpp"
 #include "io/file.hpp"
 #include "io/npy.hpp"
 
@@ -24,6 +25,15 @@ void check_stream_output(const std::string& path) {
                             "written in order",
                             path));
   }
+}
+
+void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type) {
+  std::vector<SizedOutput> files;
+  for (const MeshArray array : {MeshArray::triangles, MeshArray::neighbors, MeshArray::representatives}) {
+    const std::uint64_t entries = array == MeshArray::representatives ? n : 2 * n * columns_of(array);
+    files.push_back({paths[static_cast<std::size_t>(array)], entries * bytes_of(type)});
+  }
+  check_disk_space(files);
 }
 
 MeshFiles::MeshFiles(Outputs& outputs, const std::array<std::string, kMeshArrays>& paths, IndexType type)

@@ -166,7 +166,7 @@ case "$1" in
     mkdir -p "$WORK/header"
     cd "$WORK/header"
     warnings=(-Wall -Wextra -Wpedantic -Werror -I "$prefix/include")
-    for header in flaunay device_memory research; do
+    for header in flaunay device_memory research chunks; do
       echo "#include <flaunay/$header.hpp>" >"$header.cpp"
       "$CXX" -std=c++17 "${warnings[@]}" -c "$header.cpp" -MD -MF "$header.d"
       "$CXX" -std=c++17 "${warnings[@]}" -c "$header.cpp" -DFLAUNAY_STATIC

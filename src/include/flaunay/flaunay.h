@@ -36,14 +36,15 @@
 extern "C" {
 #endif
 
-/// The result of a call. All but FLAUNAY_ERROR_MEMORY are also the exit codes of the command.
+/// The result of a call. Those before FLAUNAY_ERROR_MEMORY are also the exit codes of the command.
 typedef enum flaunay_status {
   FLAUNAY_SUCCESS = 0,
   FLAUNAY_ERROR_INTERNAL = 1,  ///< a broken invariant of flaunay itself; please report it
   FLAUNAY_ERROR_USAGE = 2,     ///< the request makes no sense
   FLAUNAY_ERROR_INPUT = 3,     ///< bad points: not finite, out of range, too many
   FLAUNAY_ERROR_DEVICE = 4,    ///< no device, device too small, an OpenCL call failed
-  FLAUNAY_ERROR_MEMORY = 5     ///< the host is out of memory
+  FLAUNAY_ERROR_MEMORY = 5,    ///< the host is out of memory
+  FLAUNAY_ERROR_STOPPED = 6    ///< a function that the caller passed ended the call
 } flaunay_status;
 
 /// The algorithm that computes the triangulation. All modes give the same set of triangles.
@@ -80,7 +81,10 @@ typedef enum flaunay_finish {
 /// The type of coordinates in device memory: double or float.
 typedef enum flaunay_precision { FLAUNAY_FLOAT64 = 0, FLAUNAY_FLOAT32 = 1 } flaunay_precision;
 
-/// The arrays of a triangulation, as bits. All are int32.
+/// The type of the indices in arrays that the caller passes: int32_t or int64_t.
+typedef enum flaunay_index_type { FLAUNAY_INT32 = 0, FLAUNAY_INT64 = 1 } flaunay_index_type;
+
+/// The arrays of a triangulation, as bits. All are int32; triangulations in chunks have int64, too.
 typedef enum flaunay_part {
   /// 3 per triangle, counter-clockwise, smallest index first.
   FLAUNAY_PART_TRIANGLES = 1,
@@ -119,6 +123,8 @@ typedef struct flaunay_device_voronoi flaunay_device_voronoi;
 typedef struct flaunay_locator flaunay_locator;
 /// The OpenCL devices of the machine.
 typedef struct flaunay_device_list flaunay_device_list;
+/// What a triangulation in chunks did.
+typedef struct flaunay_chunk_report flaunay_chunk_report;
 
 /// Options for triangulating points in host memory. {0} sets the defaults.
 typedef struct flaunay_options {
@@ -171,6 +177,63 @@ typedef struct flaunay_enqueue {
   uintptr_t reserved[4];  ///< 0
 } flaunay_enqueue;
 
+/// Options for triangulating points in chunks. {0} sets the defaults.
+typedef struct flaunay_chunk_options {
+  /// Bytes that the call may use on the host, devices that share its memory included, but not what the system
+  /// keeps of files. 0: half of what is free.
+  uint64_t memory_bytes;
+  /// The folder for the points of chunks, 24 bytes per point, in a file without a name. NULL or "": TMPDIR,
+  /// or /tmp.
+  const char* scratch;
+  /// The devices, each named as for flaunay_triangulator_create; "all": every usable device. They take chunks
+  /// from one queue.
+  const char* const* devices;
+  size_t device_count;  ///< number of names in devices; 0: flaunay's own choice of one device
+  size_t chunk_points;  ///< points of a chunk; 0: as many as the memory permits
+  /// If not NULL, called from time to time on the calling thread. stage: "sampling", "distributing" or
+  /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. If it
+  /// returns anything but 0, the call ends with FLAUNAY_ERROR_STOPPED.
+  int (*progress)(const char* stage, int round, double done, void* progress_data);
+  void* progress_data;    ///< passed to progress unchanged
+  uintptr_t reserved[8];  ///< 0
+} flaunay_chunk_options;
+
+/// Arrays of the caller's for the results of n points, such as memory-mapped files. There are at most 2 n
+/// triangles and n hull vertices. What is beyond the results is not written. {0}: no array is wanted.
+typedef struct flaunay_mesh_arrays {
+  int index_type;         ///< a flaunay_index_type, of all arrays
+  void* triangles;        ///< room for 6 n indices; NULL: not wanted
+  void* neighbors;        ///< room for 6 n indices; NULL: not wanted
+  void* hull;             ///< room for n indices; NULL: not wanted
+  void* representatives;  ///< room for n indices; NULL: not wanted
+  uintptr_t reserved[4];  ///< 0
+} flaunay_mesh_arrays;
+
+/// Points that a function of the caller's reads in pieces. {0}: no points.
+typedef struct flaunay_point_source {
+  uint64_t count;  ///< number of points
+  /// Reads the points [first, first + count): 2 count coordinates, x0 y0 x1 y1 ... Returns 0; if it returns
+  /// anything else, the call ends with FLAUNAY_ERROR_STOPPED. Every point is read twice, and some more often;
+  /// they must be the same each time. It may be called on any thread, once at a time. NULL: no points.
+  int (*read)(uint64_t first, size_t count, double* coordinates, void* data);
+  void* data;             ///< passed to read unchanged
+  uintptr_t reserved[4];  ///< 0
+} flaunay_point_source;
+
+/// Where a function of the caller's writes a triangulation in pieces.
+typedef struct flaunay_mesh_sink {
+  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES. Other arrays are not computed. 0: the triangles
+  /// alone.
+  unsigned parts;
+  /// Stores `count` values as the entries [first, first + count) of one part, where a triangle has three
+  /// entries. Returns 0; if it returns anything else, the call ends with FLAUNAY_ERROR_STOPPED. Entries may
+  /// be written in any order. Some neighbours are written twice, and the later value counts. It may be called
+  /// on any thread, once at a time.
+  int (*write)(unsigned part, uint64_t first, const int64_t* values, size_t count, void* data);
+  void* data;             ///< passed to write unchanged
+  uintptr_t reserved[4];  ///< 0
+} flaunay_mesh_sink;
+
 /// A phase of a call and its wall time.
 typedef struct flaunay_phase {
   const char* name;  ///< "blocks", "triangulate", "output" and others, by mode
@@ -208,6 +271,38 @@ typedef struct flaunay_statistics {
   const flaunay_kernel* kernels;  ///< the slowest first; none without profile
   size_t kernel_count;            ///< number of kernels
 } flaunay_statistics;
+
+/// A round of chunks.
+typedef struct flaunay_chunk_round {
+  uint64_t points;     ///< distinct points of the round; of the first one, with duplicates
+  uint64_t chunks;     ///< chunks into which they were cut
+  uint64_t triangles;  ///< triangles that became final
+  uint64_t handed_on;  ///< points that went on to the next round
+} flaunay_chunk_round;
+
+/// A device that triangulated chunks.
+typedef struct flaunay_chunk_device {
+  const char* name;  ///< as in flaunay_device_info; "host" for the host without OpenCL
+  uint64_t points;   ///< points of the chunks that it triangulated
+} flaunay_chunk_device;
+
+/// What a triangulation in chunks did and how long it took.
+typedef struct flaunay_chunk_statistics {
+  uint64_t points;                      ///< input points
+  uint64_t duplicates;                  ///< input points that are not their own representative
+  uint64_t triangles;                   ///< number of triangles
+  uint64_t hull_vertices;               ///< number of hull vertices
+  uint64_t undecided;                   ///< predicates that needed exact evaluation
+  uint64_t scratch_bytes;               ///< the largest size of the scratch file
+  size_t chunk_points;                  ///< points of a chunk, at most about
+  double seconds;                       ///< wall time
+  const flaunay_chunk_round* rounds;    ///< in the order in which they ran
+  size_t round_count;                   ///< number of rounds
+  const flaunay_chunk_device* devices;  ///< in the order in which they were named
+  size_t device_count;                  ///< number of devices
+  const flaunay_phase* phases;          ///< in the order in which they ran
+  size_t phase_count;                   ///< number of phases
+} flaunay_chunk_statistics;
 
 /// An OpenCL device.
 typedef struct flaunay_device_info {
@@ -415,6 +510,36 @@ FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* tria
                                                       const flaunay_device_points* points, unsigned parts,
                                                       const flaunay_enqueue* enqueue,
                                                       flaunay_device_triangulation* result);
+
+// ---- More points than fit memory
+
+/// Triangulates n points in chunks. What is final in a chunk is written; points around which something is
+/// missing, some hundredths of a chunk's, go on to chunks that are cut otherwise, until one chunk has them
+/// all. The points and the results may be files that are mapped into memory. coordinates: x0 y0 x1 y1 ...;
+/// may be NULL if n is 0. results: where to write; the report has their numbers. options: NULL for the
+/// defaults. The caller destroys the report. The set of triangles with their neighbours, the hull and the
+/// representatives are those of flaunay_triangulate; the order of rows depends on the options, too.
+///
+/// The errors are those of flaunay_triangulate, and: FLAUNAY_ERROR_INPUT if there are more than 2^30 - 1
+/// points for 32-bit indices, if the scratch folder has too little room or writing there fails, or if the
+/// points that are left to the last chunk do not fit memory_bytes, as of points that are all on one circle;
+/// FLAUNAY_ERROR_USAGE if memory_bytes is too small for any work; FLAUNAY_ERROR_STOPPED. After an error the
+/// results are unspecified. A device that fails in the middle of the call leaves its chunk to the others; the
+/// call fails if none is left. O(n log n) work.
+FLAUNAY_API flaunay_status flaunay_triangulate_chunks(const double* coordinates, uint64_t n,
+                                                      const flaunay_mesh_arrays* results,
+                                                      const flaunay_chunk_options* options,
+                                                      flaunay_chunk_report** report);
+/// flaunay_triangulate_chunks for points and results that are nowhere in memory as a whole.
+FLAUNAY_API flaunay_status flaunay_triangulate_streams(const flaunay_point_source* points,
+                                                       const flaunay_mesh_sink* results,
+                                                       const flaunay_chunk_options* options,
+                                                       flaunay_chunk_report** report);
+/// Frees the report.
+FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);
+/// What the call did and how long it took.
+FLAUNAY_API const flaunay_chunk_statistics* flaunay_chunk_report_statistics(
+    const flaunay_chunk_report* report);
 
 // ---- Voronoi diagrams
 

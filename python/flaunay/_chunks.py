@@ -1,0 +1,276 @@
+"""Triangulations of more points than fit memory."""
+
+from __future__ import annotations
+
+import operator
+import os
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _flaunay, _triangulators
+from flaunay._arrays import FloatArray, as_points, check_points_shape, summary
+from flaunay._errors import UsageError
+
+Indices = Union[npt.NDArray[np.int32], npt.NDArray[np.int64]]
+Result = Union[None, bool, str, "os.PathLike[str]"]
+
+_COORDINATES = (np.dtype(np.float64), np.dtype(np.float32))
+
+# The largest numbers that int32 can count; there may be twice as many triangles as points.
+_MOST_32 = 2**31 - 1
+_MOST_POINTS_32 = _MOST_32 // 2
+
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+_SIZE = re.compile(r"\s*(\d+)\s*([KMGT]?)(?:I?B)?\s*", re.IGNORECASE | re.ASCII)
+_MOST_BYTES = 2**64 - 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ChunkedTriangulation:
+    """The triangulation that `triangulate_chunks` made.
+
+    Arrays that were written to files are mapped into memory, and cannot be written to. The indices are
+    int32 or int64, of the same type in all arrays.
+
+    Attributes
+    ----------
+    triangles : ndarray or memmap of int, shape (m, 3), or None
+        Three points each, counter-clockwise, the smallest index first; None if not asked for.
+    neighbors : ndarray or memmap of int, shape (m, 3), or None
+        The triangle opposite to each corner, -1 beyond the hull; None if not asked for.
+    hull : ndarray or memmap of int, shape (h,), or None
+        The convex hull with the points on its edges, counter-clockwise from the lexicographically
+        smallest point. Of collinear points all distinct ones, in lexicographic order. None if not asked
+        for.
+    representatives : ndarray or memmap of int, shape (n,), or None
+        For each point the smallest index of an equal point. Only those are in triangles. None if not
+        asked for.
+    statistics : dict
+        The numbers of ``points``, ``duplicates``, ``triangles`` and ``hull_vertices``; the ``rounds``,
+        each with its ``points``, ``chunks``, final ``triangles`` and points ``handed_on``; the
+        ``devices``, each with the ``points`` of its chunks; ``phases``, ``seconds`` and others.
+    """
+
+    triangles: Optional[Indices]
+    neighbors: Optional[Indices]
+    hull: Optional[Indices]
+    representatives: Optional[Indices]
+    statistics: dict[str, Any]
+
+    def __repr__(self) -> str:
+        return summary(
+            self,
+            points=self.statistics["points"],
+            triangles=self.statistics["triangles"],
+            hull_vertices=self.statistics["hull_vertices"],
+        )
+
+
+def _as_source(points: npt.ArrayLike) -> FloatArray:
+    """An array of float64 or float32 as it is, whatever its strides; anything else as `triangulate` takes it."""
+    is_masked = isinstance(points, np.ma.MaskedArray)
+    if isinstance(points, np.ndarray) and points.dtype in _COORDINATES and not is_masked:
+        check_points_shape(points)
+        return points
+    return as_points(points)
+
+
+def _as_wanted(results: dict[str, Result], points: object) -> dict[str, Optional[str]]:
+    """For each array that is wanted its path, or None if it goes to memory."""
+    wanted: dict[str, Optional[str]] = {}
+    taken: dict[str, str] = {}
+    if isinstance(points, np.memmap) and isinstance(points.filename, (str, os.PathLike)):
+        taken[os.path.realpath(points.filename)] = "the points"
+    for name, result in results.items():
+        if result is None or result is False:
+            continue
+        if result is True:
+            wanted[name] = None
+            continue
+        if not isinstance(result, (str, os.PathLike)):
+            raise UsageError(f"{name} must be a path, True or None, not {type(result).__name__}")
+        path = os.fspath(result)
+        if not isinstance(path, str) or not path.endswith(".npy"):
+            raise UsageError(f"{name}: {path!r} must end in .npy")
+        place = os.path.realpath(path)
+        if place in taken:
+            raise UsageError(f"{name}: {path!r} is the file of {taken[place]}")
+        taken[place] = name
+        wanted[name] = path
+    return wanted
+
+
+def _as_bytes(memory: Union[None, int, str]) -> int:
+    """A number of bytes; 0 if it is left to the library."""
+    if memory is None:
+        return 0
+    if isinstance(memory, str):
+        match = _SIZE.fullmatch(memory)
+        if match is None:
+            raise UsageError(
+                f"memory {memory!r} is no size such as 4G; K, M, G and T are powers of 1024"
+            )
+        size = int(match[1]) * _UNITS[match[2].upper()]
+    else:
+        size = _as_count(memory, "memory")
+    if not 0 < size <= _MOST_BYTES:
+        raise UsageError(f"memory must be from 1 to {_MOST_BYTES} bytes, not {size}")
+    return size
+
+
+def _as_count(given: object, name: str) -> int:
+    if isinstance(given, bool) or not isinstance(given, (int, np.integer)):
+        raise UsageError(f"{name} must be an integer, not {given!r}")
+    return operator.index(given)
+
+
+def _is_wide(index: Optional[int], n: int, wanted: dict[str, Optional[str]]) -> bool:
+    """Whether the indices are int64."""
+    if index is None:
+        return n > _MOST_POINTS_32
+    if index not in (32, 64):
+        raise UsageError(f"index must be 32, 64 or None, not {index!r}")
+    most = _MOST_POINTS_32 if "neighbors" in wanted else _MOST_32
+    if index == 32 and n > most:
+        raise UsageError(f"{n} points are too many for index=32; at most {most} are possible")
+    return index == 64
+
+
+def triangulate_chunks(
+    points: npt.ArrayLike,
+    *,
+    triangles: Result = None,
+    neighbors: Result = None,
+    hull: Result = None,
+    representatives: Result = None,
+    memory: Union[None, int, str] = None,
+    scratch: Union[None, str, os.PathLike[str]] = None,
+    devices: Union[None, str, Sequence[str]] = None,
+    chunk_points: Optional[int] = None,
+    index: Optional[int] = None,
+    progress: Optional[Callable[[str, int, float], object]] = None,
+) -> ChunkedTriangulation:
+    """Triangulates one set of points in chunks, so that neither it nor the result must fit memory.
+
+    What is final in a chunk is written; points around which something is missing, some hundredths of a
+    chunk's, go on to chunks that are cut otherwise, until one chunk has them all. The set of triangles
+    with their neighbours, the hull and the representatives are those of `triangulate`.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Coordinates. Arrays of float64 and float32 are read in pieces and never copied as a whole,
+        whatever their strides: give ``numpy.load(path, mmap_mode="r")`` or a ``numpy.memmap``. Other
+        numbers become float64 in memory, and must be one exactly. They must not change during the
+        call.
+    triangles, neighbors, hull, representatives : path, bool or None
+        Where each array goes: to a file whose path ends in ``.npy``, or with True to an array in
+        memory. None and False: it is not wanted. Either all files are written, or after an error none:
+        what was there before stays. Without any, the call finds the numbers alone.
+    memory : int or str, optional
+        Bytes that the call may use on the host, such as ``"4G"``; K, M, G and T are powers of 1024.
+        What the system keeps of files, and arrays in memory, do not count. Without it, half of what is
+        free.
+    scratch : path, optional
+        The folder for the points of chunks, 24 bytes per point, in a file without a name. Without it,
+        TMPDIR, or /tmp.
+    devices : str or sequence of str, optional
+        The devices, each named as for `triangulate`; ``"all"``: every usable one. They take chunks from
+        one queue. Without it, flaunay chooses one.
+    chunk_points : int, optional
+        Points of a chunk. Without it, as many as the memory permits.
+    index : 32 or 64, optional
+        Bits of the indices. Without it, 64 if there are more than 2^30 - 1 points, since there may be
+        twice as many triangles.
+    progress : callable, optional
+        Called from time to time, on the calling thread, as ``progress(stage, round, done)``, with
+        ``"sampling"``, ``"distributing"`` or ``"triangulating"``, the round of chunks, from 0, and the
+        finished share of the call, 0 to 1. An exception that it raises ends the call.
+
+    Returns
+    -------
+    ChunkedTriangulation
+
+    Raises
+    ------
+    UsageError
+        For a wrong shape, what is no number, a path that does not end in ``.npy``, options that make no
+        sense, and too little memory for any work.
+    InputError
+        For a point that is not finite, magnitudes too different to be exact, or too many points; if a
+        disk has no room for the chunks or the results, or a file cannot be written; if the points that
+        are left to the last chunk do not fit the memory, as of points that are all on one circle.
+    DeviceError
+        If there is no such device, or calls of OpenCL failed on all devices.
+    KeyboardInterrupt
+        After Ctrl-C, when the chunks in work are done. Nothing is left behind.
+
+    Notes
+    -----
+    O(n log n) work. The interpreter's lock is released meanwhile. The order of the rows is that of rounds,
+    then of chunks, so it depends on the options, too.
+
+    Examples
+    --------
+    >>> import flaunay, numpy as np, os, tempfile
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> path = os.path.join(folder.name, "points.npy")
+    >>> np.save(path, np.random.default_rng(1).random((5000, 2)))
+    >>> mesh = flaunay.triangulate_chunks(
+    ...     np.load(path, mmap_mode="r"),
+    ...     triangles=os.path.join(folder.name, "triangles.npy"),
+    ...     hull=True,
+    ...     chunk_points=1000,
+    ... )
+    >>> mesh
+    <flaunay.ChunkedTriangulation: 5000 points, 9976 triangles, 22 hull vertices>
+    >>> mesh.triangles.shape, mesh.triangles.dtype
+    ((9976, 3), dtype('int32'))
+    >>> type(mesh.triangles).__name__, type(mesh.hull).__name__, mesh.neighbors
+    ('memmap', 'ndarray', None)
+    >>> folder.cleanup()
+    """
+    source = _as_source(points)
+    wanted = _as_wanted(
+        {
+            "triangles": triangles,
+            "neighbors": neighbors,
+            "hull": hull,
+            "representatives": representatives,
+        },
+        points,
+    )
+    if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
+        raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
+    in_memory, statistics = _flaunay.triangulate_chunks(
+        source,
+        {name: None if path is None else os.fsencode(path) for name, path in wanted.items()},
+        _is_wide(index, len(source), wanted),
+        _as_bytes(memory),
+        b"" if scratch is None else os.fsencode(scratch),
+        _triangulators.names_for_chunks(devices),
+        0 if chunk_points is None else min(int(chunk_points), _MOST_BYTES),
+        progress,
+    )
+    lengths = {
+        "triangles": statistics["triangles"],
+        "neighbors": statistics["triangles"],
+        "hull": statistics["hull_vertices"],
+        "representatives": statistics["points"],
+    }
+    arrays: dict[str, Optional[Indices]] = {}
+    for name, length in lengths.items():
+        path = wanted.get(name)
+        if path is not None:
+            arrays[name] = np.load(path, mmap_mode="r")
+        else:
+            arrays[name] = in_memory[name][:length] if name in wanted else None
+    if "hull" in in_memory:
+        # It had room for all points.
+        arrays["hull"] = in_memory["hull"][: lengths["hull"]].copy()
+    return ChunkedTriangulation(**arrays, statistics=statistics)

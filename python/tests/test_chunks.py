@@ -1,0 +1,412 @@
+"""Triangulations in chunks: from and to files that are mapped into memory."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import flaunay
+from conftest import check_neighbors
+
+SMALL = {"chunk_points": 500, "devices": "host"}
+
+
+def rows_with_neighbors(triangles, neighbors):
+    """Each triangle with the triangles beyond its sides, whatever the order of rows."""
+    rows = [tuple(row) for row in triangles.tolist()]
+    return {
+        row: tuple(rows[t] if t >= 0 else None for t in beyond)
+        for row, beyond in zip(rows, neighbors.tolist())
+    }
+
+
+def check_same(mesh, points):
+    """The result is that of one call."""
+    expected = flaunay.triangulate(points)
+    assert mesh.triangles.shape == expected.triangles.shape
+    assert rows_with_neighbors(mesh.triangles, mesh.neighbors) == rows_with_neighbors(
+        expected.triangles, expected.neighbors
+    )
+    assert np.array_equal(mesh.hull, expected.hull)
+    assert np.array_equal(mesh.representatives, expected.representatives)
+    assert mesh.statistics["triangles"] == len(expected.triangles)
+    assert mesh.statistics["hull_vertices"] == len(expected.hull)
+
+
+def paths_in(folder):
+    return {
+        name: folder / f"{name}.npy"
+        for name in ("triangles", "neighbors", "hull", "representatives")
+    }
+
+
+IN_MEMORY = dict.fromkeys(("triangles", "neighbors", "hull", "representatives"), True)
+
+
+@pytest.fixture
+def points(random):
+    given = random.random((6000, 2))
+    given[100:200] = given[:100]
+    return given
+
+
+@pytest.fixture
+def file(points, tmp_path):
+    path = tmp_path / "points.npy"
+    np.save(path, points)
+    return path
+
+
+def test_from_a_file_to_files(file, points, tmp_path):
+    paths = paths_in(tmp_path)
+    mesh = flaunay.triangulate_chunks(np.load(file, mmap_mode="r"), **paths, **SMALL)
+    check_same(mesh, points)
+    for name, path in paths.items():
+        array = getattr(mesh, name)
+        assert isinstance(array, np.memmap) and not array.flags.writeable
+        stored = np.load(path)
+        assert stored.dtype == np.int32 and np.array_equal(stored, array)
+        assert os.path.getsize(path) == 128 + stored.nbytes
+    assert sorted(os.listdir(tmp_path)) == sorted(
+        [file.name, *(path.name for path in paths.values())]
+    )
+
+
+def test_to_memory(points):
+    mesh = flaunay.triangulate_chunks(points, **IN_MEMORY, **SMALL)
+    check_same(mesh, points)
+    check_neighbors(mesh.triangles, mesh.neighbors)
+    assert mesh.triangles.dtype == np.int32
+    # It was written to an array for all points, which is not kept.
+    assert mesh.hull.base is None
+    assert repr(mesh) == (
+        f"<flaunay.ChunkedTriangulation: 6000 points, {len(mesh.triangles)} triangles, "
+        f"{len(mesh.hull)} hull vertices>"
+    )
+
+
+def test_statistics(points):
+    statistics = flaunay.triangulate_chunks(points, **SMALL).statistics
+    assert statistics["points"] == 6000 and statistics["duplicates"] == 100
+    assert statistics["chunk_points"] == 500 and statistics["scratch_bytes"] >= 24 * 6000
+    rounds = statistics["rounds"]
+    assert len(rounds) >= 2 and rounds[0]["chunks"] >= 12
+    assert sum(one["triangles"] for one in rounds) == statistics["triangles"]
+    assert [one["points"] for one in rounds[1:]] == [one["handed_on"] for one in rounds[:-1]]
+    assert [one["device"] for one in statistics["devices"]] == ["host"]
+    assert statistics["seconds"] > 0 and "distribute" in statistics["phases"]
+
+
+def test_what_is_not_wanted_is_none(points, tmp_path):
+    mesh = flaunay.triangulate_chunks(points, hull=tmp_path / "h.npy", neighbors=False, **SMALL)
+    assert mesh.triangles is None and mesh.neighbors is None and mesh.representatives is None
+    assert np.array_equal(mesh.hull, flaunay.triangulate(points).hull)
+    assert os.listdir(tmp_path) == ["h.npy"]
+
+
+def test_64_bits(points, tmp_path):
+    paths = paths_in(tmp_path)
+    del paths["hull"]
+    mesh = flaunay.triangulate_chunks(points, hull=True, index=64, **paths, **SMALL)
+    check_same(mesh, points)
+    for name in IN_MEMORY:
+        assert getattr(mesh, name).dtype == np.int64
+    narrow = flaunay.triangulate_chunks(points, hull=True, index=32, **SMALL)
+    assert narrow.hull.dtype == np.int32
+
+
+def test_float32(points, tmp_path):
+    path = tmp_path / "points.raw"
+    points.astype(np.float32).tofile(path)
+    mapped = np.memmap(path, np.float32, "r", shape=(6000, 2))
+    mesh = flaunay.triangulate_chunks(mapped, **IN_MEMORY, **SMALL)
+    check_same(mesh, points.astype(np.float32))
+
+
+def test_any_strides(points, random):
+    wide = random.random((6000, 5))
+    wide[:, 3:0:-2] = points
+    records = np.zeros(6000, np.dtype([("id", "u1"), ("xy", "f8", 2)]))  # not aligned
+    records["xy"] = points
+    for view in (
+        wide[:, 3:0:-2],
+        records["xy"],
+        np.asfortranarray(points),
+        np.broadcast_to(points[7], (50, 2)),
+        points[::-3],
+    ):
+        assert not view.flags.c_contiguous or not view.flags.aligned
+        check_same(flaunay.triangulate_chunks(view, **IN_MEMORY, **SMALL), view)
+
+
+def private_bytes():
+    """The memory of the process without mapped files."""
+    with open("/proc/self/status") as status:
+        return 1024 * next(int(line.split()[1]) for line in status if line.startswith("RssAnon"))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_points_are_not_copied(tmp_path, dtype):
+    path = tmp_path / "zeros.npy"
+    np.lib.format.open_memmap(path, "w+", dtype, (5 * 10**7, 2))  # a file with a hole
+    points = np.load(path, mmap_mode="r")
+    used = []
+
+    def stop(stage, round, done):
+        used.append(private_bytes())
+        raise ZeroDivisionError
+
+    before = private_bytes()
+    with pytest.raises(ZeroDivisionError):
+        flaunay.triangulate_chunks(points, memory="128M", progress=stop)
+    assert used[0] - before < points.nbytes / 2
+
+
+def test_lists_and_other_numbers():
+    mesh = flaunay.triangulate_chunks([[0, 0], [4, 0], [4, 3], [0, 4]], **IN_MEMORY)
+    assert sorted(mesh.triangles.tolist()) == [[0, 1, 2], [0, 2, 3]]
+    big_endian = np.array([[0, 0], [4, 0], [0, 4]], ">f8")
+    assert flaunay.triangulate_chunks(big_endian, triangles=True).triangles.tolist() == [[0, 1, 2]]
+
+
+@pytest.mark.parametrize(
+    "given", [np.empty((0, 2)), np.ones((1, 2)), np.ones((9, 2)), [[0, 0], [1, 1]]]
+)
+def test_few_points_and_equal_ones(given, tmp_path):
+    for results in (IN_MEMORY, paths_in(tmp_path)):
+        mesh = flaunay.triangulate_chunks(given, **results)
+        assert mesh.triangles.shape == (0, 3) and mesh.neighbors.shape == (0, 3)
+        expected = flaunay.triangulate(given)
+        assert np.array_equal(mesh.hull, expected.hull)
+        assert np.array_equal(mesh.representatives, expected.representatives)
+
+
+def test_no_arrays():
+    assert flaunay.triangulate_chunks(np.empty((0, 2))).statistics["triangles"] == 0
+
+
+def test_several_devices(points):
+    mesh = flaunay.triangulate_chunks(
+        points, **IN_MEMORY, chunk_points=500, devices=["host", "host"]
+    )
+    check_same(mesh, points)
+    assert len(mesh.statistics["devices"]) == 2
+
+
+@pytest.mark.parametrize("memory", ["256M", "256 mb", 256 * 2**20, np.int64(2**28), "268435456"])
+def test_memory(points, memory):
+    sizes = flaunay.triangulate_chunks(points, memory=memory).statistics["chunk_points"]
+    assert sizes == flaunay.triangulate_chunks(points, memory="262144K").statistics["chunk_points"]
+
+
+def test_progress(points):
+    calls = []
+    flaunay.triangulate_chunks(points, progress=lambda *call: calls.append(call), **SMALL)
+    assert {stage for stage, _, _ in calls} == {"sampling", "distributing", "triangulating"}
+    shares = [done for _, _, done in calls]
+    assert shares == sorted(shares) and shares[-1] == 1
+    assert calls[-1][1] >= 1
+
+
+@pytest.mark.parametrize("at", ["sampling", "distributing", "triangulating"])
+def test_an_exception_of_progress_ends_the_call(points, tmp_path, at):
+    def stop(stage, round, done):
+        if stage == at:
+            raise KeyError("enough")
+
+    old = tmp_path / "triangles.npy"
+    old.write_bytes(b"old")
+    with pytest.raises(KeyError, match="enough"):
+        flaunay.triangulate_chunks(points, **paths_in(tmp_path), progress=stop, **SMALL)
+    assert os.listdir(tmp_path) == ["triangles.npy"] and old.read_bytes() == b"old"
+
+
+def test_control_c_ends_the_call(points, tmp_path):
+    def interrupt(stage, round, done):
+        if stage == "triangulating":
+            signal.raise_signal(signal.SIGINT)
+            time.sleep(0)  # where Python handles it
+
+    with pytest.raises(KeyboardInterrupt):
+        flaunay.triangulate_chunks(points, **paths_in(tmp_path), progress=interrupt, **SMALL)
+    assert os.listdir(tmp_path) == []
+
+
+def test_control_c_without_progress(tmp_path):
+    np.save(tmp_path / "points.npy", np.random.default_rng(1).random((400000, 2)))
+    program = """
+import flaunay, numpy, sys
+points = numpy.load("points.npy", mmap_mode="r")
+print("begins", flush=True)
+try:
+    while True:
+        flaunay.triangulate_chunks(points, triangles="t.npy", chunk_points=2000, devices="host")
+except KeyboardInterrupt:
+    print("ended")
+"""
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "begins\n"
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=60)
+    assert output == "ended\n" and process.returncode == 0
+    assert set(os.listdir(tmp_path)) <= {"points.npy", "t.npy"}
+
+
+def test_other_threads_go_on(points):
+    counted = 0
+    done = threading.Event()
+
+    def count():
+        nonlocal counted
+        while not done.wait(0.001):
+            counted += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    flaunay.triangulate_chunks(np.tile(points, (30, 1)) + np.arange(180000)[:, None], **SMALL)
+    done.set()
+    thread.join()
+    assert counted > 10
+
+
+def test_two_threads(points, tmp_path):
+    results = [None, None]
+
+    def work(k):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        results[k] = flaunay.triangulate_chunks(points + k, **paths_in(folder), **SMALL)
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for k in range(2):
+        check_same(results[k], points + k)
+
+
+def _in_child(points, queue):
+    try:
+        flaunay.triangulate_chunks(points, devices="#0")
+        refused = False
+    except flaunay.DeviceError as error:
+        refused = "forked" in str(error)
+    queue.put((refused, flaunay.triangulate_chunks(points, hull=True, chunk_points=500).hull))
+
+
+def test_in_a_forked_child(points):
+    flaunay.devices()  # uses OpenCL
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_in_child, args=(points, queue))
+    child.start()
+    refused, hull = queue.get(timeout=60)
+    child.join()
+    assert refused and np.array_equal(hull, flaunay.triangulate(points).hull)
+
+
+@pytest.mark.parametrize(
+    "options, text",
+    [
+        ({"triangles": "t.bin"}, "triangles: 't.bin' must end in .npy"),
+        ({"triangles": b"t.npy"}, "triangles must be a path, True or None, not bytes"),
+        ({"hull": 3}, "hull must be a path, True or None, not int"),
+        ({"triangles": "t.npy", "hull": "./t.npy"}, "hull: './t.npy' is the file of triangles"),
+        ({"memory": "much"}, "no size such as 4G"),
+        ({"memory": "-1G"}, "no size such as 4G"),
+        ({"memory": "0.25G"}, "no size such as 4G"),
+        ({"memory": 0}, "memory must be from 1"),
+        ({"memory": "99999999999T"}, "memory must be from 1"),
+        ({"memory": 1.5}, "memory must be an integer, not 1.5"),
+        ({"memory": 1000}, "too little for chunks"),
+        ({"chunk_points": 0}, "chunk_points must be 1 at least"),
+        ({"chunk_points": "9"}, "chunk_points must be an integer"),
+        ({"index": 16}, "index must be 32, 64 or None, not 16"),
+    ],
+)
+def test_bad_options(points, options, text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(flaunay.UsageError) as raised:
+        flaunay.triangulate_chunks(points, **options)
+    assert text in str(raised.value)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "options, kind, text",
+    [
+        ({"devices": "no such device"}, flaunay.DeviceError, "no such device"),
+        ({"devices": 3}, TypeError, ""),
+        ({"devices": [3]}, TypeError, "device must be a string"),
+        ({"progress": 3}, TypeError, "callable"),
+        ({"scratch": "nowhere/at/all"}, flaunay.InputError, "nowhere/at/all"),
+        ({"triangles": "nowhere/t.npy"}, flaunay.InputError, "nowhere/t.npy"),
+    ],
+)
+def test_what_cannot_be_used(points, options, kind, text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(kind) as raised:
+        flaunay.triangulate_chunks(points, **options)
+    assert text in str(raised.value)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "given", [np.zeros(4), np.zeros((3, 3)), [["a", "b"]], np.ma.zeros((3, 2)), [[2**60 + 1, 0]]]
+)
+def test_bad_points(given):
+    with pytest.raises(flaunay.UsageError):
+        flaunay.triangulate_chunks(given)
+
+
+def test_a_point_that_is_not_finite(points, tmp_path):
+    points[5999, 1] = np.nan
+    for given in (points, points.astype(np.float32)):
+        with pytest.raises(flaunay.InputError, match="point 5999 is not finite"):
+            flaunay.triangulate_chunks(given, **paths_in(tmp_path), **SMALL)
+        assert os.listdir(tmp_path) == []
+
+
+def test_the_points_are_not_overwritten(file, points):
+    mapped = np.load(file, mmap_mode="r")
+    with pytest.raises(flaunay.UsageError, match="is the file of the points"):
+        flaunay.triangulate_chunks(mapped[:100], triangles=file)
+    assert np.array_equal(np.load(file), points)
+
+
+def test_too_many_for_32_bits(tmp_path):
+    def of(n):
+        return np.broadcast_to(np.zeros(2), (n, 2))
+
+    def stop(stage, round, done):
+        raise ZeroDivisionError
+
+    for n, results in ((2**30, {"neighbors": True}), (2**31, {"hull": True})):
+        with pytest.raises(flaunay.UsageError, match="too many for index=32"):
+            flaunay.triangulate_chunks(of(n), index=32, **results)
+    with pytest.raises(ZeroDivisionError):
+        flaunay.triangulate_chunks(of(2**30), index=32, hull=tmp_path / "h.npy", progress=stop)
+
+
+def test_a_pipe_is_no_place_for_results(points, tmp_path):
+    os.mkfifo(tmp_path / "t.npy")
+    with pytest.raises(flaunay.UsageError, match="no regular file"):
+        flaunay.triangulate_chunks(points, triangles=tmp_path / "t.npy")
+
+
+def test_a_full_disk(tmp_path):
+    free = os.statvfs(tmp_path).f_bavail * os.statvfs(tmp_path).f_frsize
+    many = np.broadcast_to(np.zeros(2), (free // 24, 2))
+    with pytest.raises(flaunay.InputError, match="has room for"):
+        flaunay.triangulate_chunks(many, triangles=tmp_path / "t.npy", neighbors=tmp_path / "n.npy")
+    assert os.listdir(tmp_path) == []

@@ -1,0 +1,180 @@
+// The C interface to triangulations in chunks.
+#include "flaunay/chunks.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::read;
+using c::required;
+
+struct flaunay_chunk_report {
+  explicit flaunay_chunk_report(ChunkStatistics done) : cpp(std::move(done)) {
+    for (const ChunkRound& round : cpp.rounds) {
+      rounds.push_back({round.points, round.chunks, round.triangles, round.handed_on});
+    }
+    for (std::size_t k = 0; k < cpp.devices.size(); ++k) {
+      devices.push_back({cpp.devices[k].c_str(), cpp.device_points[k]});
+    }
+    for (const PhaseStatistics& phase : cpp.phases) phases.push_back({phase.name.c_str(), phase.seconds});
+    view.points = cpp.points;
+    view.duplicates = cpp.duplicates;
+    view.triangles = cpp.triangles;
+    view.hull_vertices = cpp.hull_vertices;
+    view.undecided = cpp.undecided;
+    view.scratch_bytes = cpp.scratch_bytes;
+    view.chunk_points = cpp.chunk_points;
+    view.seconds = cpp.seconds;
+    view.rounds = c::elements(rounds);
+    view.round_count = rounds.size();
+    view.devices = c::elements(devices);
+    view.device_count = devices.size();
+    view.phases = c::elements(phases);
+    view.phase_count = phases.size();
+  }
+  // The view refers to the other members.
+  flaunay_chunk_report(const flaunay_chunk_report&) = delete;
+  flaunay_chunk_report& operator=(const flaunay_chunk_report&) = delete;
+
+  ChunkStatistics cpp;
+  std::vector<flaunay_chunk_round> rounds;
+  std::vector<flaunay_chunk_device> devices;
+  std::vector<flaunay_phase> phases;
+  flaunay_chunk_statistics view{};
+};
+
+namespace {
+
+void stop_unless_zero(int returned, const char* function) {
+  if (returned != 0)
+    throw c::Stopped(fmt::format("the caller's function {} returned {}", function, returned));
+}
+
+ChunkOptions to_options(const flaunay_chunk_options* options) {
+  ChunkOptions result;
+  if (options == nullptr) return result;
+  c::check_reserved(*options, "flaunay_chunk_options");
+  result.memory_bytes = options->memory_bytes;
+  if (options->scratch != nullptr) result.scratch = options->scratch;
+  if (options->device_count > 0) required(options->devices, "a list of devices that is not empty");
+  for (std::size_t k = 0; k < options->device_count; ++k) {
+    result.devices.emplace_back(options->devices[k] != nullptr ? options->devices[k] : "");
+  }
+  result.chunk_points = options->chunk_points;
+  if (options->progress != nullptr) {
+    result.progress = [call = options->progress, data = options->progress_data](const std::string& stage,
+                                                                                int round, double done) {
+      stop_unless_zero(call(stage.c_str(), round, done, data), "progress");
+    };
+  }
+  return result;
+}
+
+template <typename Index>
+MeshArrays<Index> to_arrays(const flaunay_mesh_arrays& given) {
+  return {static_cast<Index*>(given.triangles), static_cast<Index*>(given.neighbors),
+          static_cast<Index*>(given.hull), static_cast<Index*>(given.representatives)};
+}
+
+ChunkStatistics triangulate(const double* coordinates, std::uint64_t n, const flaunay_mesh_arrays& results,
+                            const ChunkOptions& options) {
+  c::check_reserved(results, "flaunay_mesh_arrays");
+  switch (results.index_type) {
+    case FLAUNAY_INT32:
+      return triangulate_chunks(coordinates, n, to_arrays<std::int32_t>(results), options);
+    case FLAUNAY_INT64:
+      return triangulate_chunks(coordinates, n, to_arrays<std::int64_t>(results), options);
+  }
+  throw Error(ErrorKind::usage, fmt::format("there is no type of indices {}", results.index_type));
+}
+
+class CallersPoints : public PointSource {
+ public:
+  explicit CallersPoints(const flaunay_point_source& given) : given_(given) {
+    c::check_reserved(given, "flaunay_point_source");
+    if (given.count > 0) required(given.read, "the function that reads points");
+  }
+  std::uint64_t size() const override { return given_.count; }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    stop_unless_zero(given_.read(first, count, coordinates, given_.data), "read");
+  }
+
+ private:
+  const flaunay_point_source& given_;
+};
+
+unsigned part_of(MeshArray array) {
+  switch (array) {
+    case MeshArray::triangles:
+      return FLAUNAY_PART_TRIANGLES;
+    case MeshArray::neighbors:
+      return FLAUNAY_PART_NEIGHBORS;
+    case MeshArray::hull:
+      return FLAUNAY_PART_HULL;
+    case MeshArray::representatives:
+      return FLAUNAY_PART_REPRESENTATIVES;
+  }
+  throw Error(ErrorKind::internal, "an array that is no part");
+}
+
+class CallersSink : public MeshSink {
+ public:
+  explicit CallersSink(const flaunay_mesh_sink& given) : given_(given) {
+    c::check_reserved(given, "flaunay_mesh_sink");
+    constexpr unsigned kPossible =
+        FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+    if ((given.parts & ~kPossible) != 0) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("triangulations in chunks have no parts {:#x}", given.parts & ~kPossible));
+    }
+    required(given.write, "the function that writes results");
+    if (given.parts != 0) parts_ = given.parts;
+  }
+  bool wants(MeshArray array) const override { return (parts_ & part_of(array)) != 0; }
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
+    stop_unless_zero(given_.write(part_of(array), first, values, count, given_.data), "write");
+  }
+
+ private:
+  const flaunay_mesh_sink& given_;
+  unsigned parts_ = FLAUNAY_PART_TRIANGLES;
+};
+
+}  // namespace
+
+flaunay_status flaunay_triangulate_chunks(const double* coordinates, uint64_t n,
+                                          const flaunay_mesh_arrays* results,
+                                          const flaunay_chunk_options* options,
+                                          flaunay_chunk_report** report) {
+  return create(report, [&] {
+    return std::make_unique<flaunay_chunk_report>(
+        triangulate(coordinates, n, required(results, "the results"), to_options(options)));
+  });
+}
+
+flaunay_status flaunay_triangulate_streams(const flaunay_point_source* points,
+                                           const flaunay_mesh_sink* results,
+                                           const flaunay_chunk_options* options,
+                                           flaunay_chunk_report** report) {
+  return create(report, [&] {
+    CallersPoints source(required(points, "the points"));
+    CallersSink sink(required(results, "the results"));
+    return std::make_unique<flaunay_chunk_report>(triangulate_chunks(source, sink, to_options(options)));
+  });
+}
+
+void flaunay_chunk_report_destroy(flaunay_chunk_report* report) { delete report; }
+
+const flaunay_chunk_statistics* flaunay_chunk_report_statistics(const flaunay_chunk_report* report) {
+  return read(report, [](const auto& handle) { return &handle.view; });
+}
