@@ -71,14 +71,14 @@ struct ChunkRound {
 
 /// What triangulate_chunks did.
 struct ChunkStatistics {
-  std::uint64_t points = 0;         ///< input points
-  std::uint64_t duplicates = 0;     ///< input points that are not their own representative
-  std::uint64_t triangles = 0;      ///< number of rows of `triangles` and `neighbors`
-  std::uint64_t hull_vertices = 0;  ///< number of entries of `hull`
-  std::uint64_t undecided = 0;      ///< predicates that needed exact evaluation
-  std::uint64_t scratch_bytes = 0;  ///< the largest size of the scratch file
-  std::size_t chunk_points = 0;     ///< points of a chunk, at most about
-  std::vector<ChunkRound> rounds;
+  std::uint64_t points = 0;                  ///< input points
+  std::uint64_t duplicates = 0;              ///< input points that are not their own representative
+  std::uint64_t triangles = 0;               ///< number of rows of `triangles` and `neighbors`
+  std::uint64_t hull_vertices = 0;           ///< number of entries of `hull`
+  std::uint64_t undecided = 0;               ///< predicates that needed exact evaluation
+  std::uint64_t scratch_bytes = 0;           ///< the largest size of the scratch file
+  std::size_t chunk_points = 0;              ///< points of a chunk, at most about
+  std::vector<ChunkRound> rounds;            ///< the first has all points
   std::vector<std::string> devices;          ///< their names
   std::vector<std::uint64_t> device_points;  ///< points of the chunks that each device triangulated
   std::vector<PhaseStatistics> phases;       ///< in the order in which they ran
@@ -127,6 +127,7 @@ struct MeshArrays {
 FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
                                                const MeshArrays<std::int32_t>& results,
                                                const ChunkOptions& options = {});
+/// The same with 64-bit indices.
 FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
                                                const MeshArrays<std::int64_t>& results,
                                                const ChunkOptions& options = {});
