@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "call/errors.hpp"
+#include "call/implementation.hpp"
 #include "chunks/array_sink.hpp"
 #include "chunks/run.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/system_memory.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay {
 namespace {
@@ -50,10 +52,13 @@ std::vector<std::string> device_names(const std::vector<std::string>& wanted) {
 struct Devices {
   std::vector<chunks::Solver> solvers;
   std::size_t capacity = std::numeric_limits<std::size_t>::max();
+  std::size_t chunk_points = std::numeric_limits<std::size_t>::max();  // that suit all of them
 };
 
 void add_device(Devices& devices, const std::shared_ptr<Triangulator>& triangulator) {
   devices.capacity = std::min(devices.capacity, triangulator->capacity());
+  call::Engine& engine = TriangulatorAccess::implementation(*triangulator).for_host_memory();
+  devices.chunk_points = std::min(devices.chunk_points, tuning_of(engine.runtime).chunk_points);
   devices.solvers.push_back(
       {triangulator->device().name, [triangulator](const double* coordinates, std::size_t n) {
          return triangulator->triangulate(coordinates, n);
@@ -86,9 +91,9 @@ chunks::Plan make_plan(const ChunkOptions& options, const Devices& devices) {
   const std::size_t at_once = for_chunks / kBytesPerPoint;
   plan.largest_chunk = std::min(at_once, devices.capacity);
   const std::size_t most = std::min(at_once / devices.solvers.size(), devices.capacity);
-  plan.chunk_points =
-      std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(most) / kMostUnequal));
-  if (options.chunk_points != 0) plan.chunk_points = std::min(plan.chunk_points, options.chunk_points);
+  const auto on_average = static_cast<std::size_t>(static_cast<double>(most) / kMostUnequal);
+  const std::size_t wanted = options.chunk_points != 0 ? options.chunk_points : devices.chunk_points;
+  plan.chunk_points = std::max<std::size_t>(1, std::min(on_average, wanted));
   return plan;
 }
 

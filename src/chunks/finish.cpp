@@ -1,8 +1,8 @@
 #include "chunks/finish.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <mutex>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -124,16 +124,14 @@ void FinishedChunk::find_border(host::Threads& threads) {
   });
 }
 
-ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
-  struct Open {
-    std::int32_t at;
-    OpenEdge edge;
-  };
-  std::vector<Open> open;
+// The edges that are open after this chunk, by point: those of its border, and those before that it did not
+// close.
+std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first_row) const {
+  std::vector<OpenAt> open;
   std::vector<char> is_closed(points_.edges.size(), 0);
-  const auto add = [&](std::int32_t at, std::int32_t to, std::int64_t corner, std::int64_t begins) {
+  const auto add = [&](std::int32_t at, std::int32_t to, std::int64_t waiting, std::int64_t begins) {
     const kernel::double2 end = points_.point(to);
-    open.push_back({at, {points_.ids[to], end.x, end.y, corner, begins}});
+    open.push_back({at, {points_.ids[to], end.x, end.y, waiting, begins}});
   };
   for (const Border& border : border_) {
     const std::int32_t from = corner(border.triangle, after(border.corner));
@@ -149,32 +147,43 @@ ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
       add(to, from, waiting, 1);
     }
   }
-  // Of a point that has a triangle which is not final, or lies on the hull of the chunk, something is
-  // missing, unless all that was missing has been found.
-  std::vector<char> goes_on(points_.size(), 0);
-  for (std::size_t t = 0; t < rows_.size(); ++t) {
-    for (int k = 0; k < 3 && rows_[t] < 0; ++k) goes_on[corner(t, k)] = 1;
-  }
-  for (const std::int32_t v : mesh_.hull) goes_on[v] = 1;
   for (std::size_t v = 0; v < points_.size(); ++v) {
     if (points_.edge_count(v) == 0) continue;
-    goes_on[v] = 0;
     for (std::size_t e = points_.edge_offsets[v]; e < points_.edge_offsets[v + 1]; ++e) {
       if (is_closed[e] == 0) open.push_back({static_cast<std::int32_t>(v), points_.edges[e]});
     }
   }
-  std::sort(open.begin(), open.end(), [](const Open& a, const Open& b) {
+  std::sort(open.begin(), open.end(), [](const OpenAt& a, const OpenAt& b) {
     return std::tuple(a.at, a.edge.to, a.edge.begins) < std::tuple(b.at, b.edge.to, b.edge.begins);
   });
-  for (const Open& each : open) goes_on[each.at] = 1;
+  return open;
+}
 
+// Points that had no open edge before, with a triangle that is not final, or on the hull of the chunk.
+std::vector<char> FinishedChunk::unfinished() const {
+  std::vector<char> unfinished(points_.size(), 0);
+  for (std::size_t t = 0; t < rows_.size(); ++t) {
+    for (int k = 0; k < 3 && rows_[t] < 0; ++k) unfinished[corner(t, k)] = 1;
+  }
+  for (const std::int32_t v : mesh_.hull) unfinished[v] = 1;
+  for (std::size_t v = 0; v < points_.size(); ++v) {
+    if (points_.edge_count(v) > 0) unfinished[v] = 0;
+  }
+  return unfinished;
+}
+
+// A point goes on if it has an open edge, or if nothing around it is final. Of one with both final triangles
+// and others, an edge between them is open.
+ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
+  const std::vector<OpenAt> open = open_edges(first_row);
+  const std::vector<char> goes_on = unfinished();
   ChunkPoints next;
   next.edge_offsets.push_back(0);
   std::vector<OpenEdge> own;
   for (std::size_t v = 0, e = 0; v < points_.size(); ++v) {
     own.clear();
     for (; e < open.size() && open[e].at == static_cast<std::int32_t>(v); ++e) own.push_back(open[e].edge);
-    if (goes_on[v] != 0) next.add(points_.point(v), points_.ids[v], own.data(), own.size());
+    if (goes_on[v] != 0 || !own.empty()) next.add(points_.point(v), points_.ids[v], own.data(), own.size());
   }
   return next;
 }

@@ -52,11 +52,19 @@ class FinishedChunk {
     std::int64_t closed;  // the open edge that it closes, or -1
   };
 
+  // An edge that is open at a point of the chunk.
+  struct OpenAt {
+    std::int32_t at;
+    OpenEdge edge;
+  };
+
   std::int32_t corner(std::size_t t, int k) const { return mesh_.triangles[3 * t + k]; }
   bool is_missing(std::size_t t) const;
   void find_final(host::Threads& threads, const kernel::block_frame& frame);
   void number_edge_ends(kernel::scaling scale);
   void find_border(host::Threads& threads);
+  std::vector<OpenAt> open_edges(std::uint64_t first_row) const;
+  std::vector<char> unfinished() const;
   std::int64_t open_edge(std::int32_t from, std::int32_t to, int begins) const;
 
   ChunkPoints points_;

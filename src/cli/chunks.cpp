@@ -52,7 +52,7 @@ void add_chunk_options(CLI::App* command, ChunkRequest& request) {
              "Triangulate in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024");
   command
       ->add_option("--chunk-points", request.chunk_points,
-                   "Triangulate in chunks of about so many points; default: as many as the memory permits")
+                   "Triangulate in chunks of about so many points; default: as many as suit the device")
       ->check(CLI::Range(kLeast, kMostPoints32));
   add_path(command, "--scratch", request.scratch,
            "Chunks: the folder for 24 bytes per point, in a file without a name; default: TMPDIR, or /tmp")

@@ -61,6 +61,9 @@ struct Tuning : host::Sizes {
   /// calling thread if no device is named; 0: none.
   std::size_t host_points = 0;
 
+  /// The largest number of points of a chunk, of those that do not fit memory, as a rule.
+  std::size_t chunk_points = 1;
+
   /// The largest number of points of a block in rounds after the first, as a rule; 0: blocks are merged
   /// instead of rounds.
   std::size_t round_points = 0;

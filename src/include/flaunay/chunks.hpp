@@ -53,7 +53,7 @@ struct ChunkOptions {
   /// Instead of devices: triangulators of the caller's, such as those of sub-devices. They take chunks from
   /// one queue and must not be used meanwhile.
   std::vector<Triangulator*> triangulators;
-  /// Points of a chunk. 0: as many as the memory permits.
+  /// Points of a chunk. 0: as many as suit the devices. In any case no more than the memory permits.
   std::size_t chunk_points = 0;
   /// If not empty, called from time to time on the calling thread. stage: "sampling", "distributing" or
   /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. An
