@@ -160,8 +160,6 @@ static void test_devices_that_are_none(void) {
   CHECK(fails(flaunay_triangulator_create("#1000", &none), FLAUNAY_ERROR_DEVICE, "#1000"));
   CHECK(fails(flaunay_triangulator_create_in_context(NULL, device, &none), FLAUNAY_ERROR_USAGE, "context"));
   CHECK(fails(flaunay_triangulator_create_in_context(context, NULL, &none), FLAUNAY_ERROR_USAGE, "device"));
-  CHECK(fails(flaunay_triangulator_create_in_context(context, (cl_device_id)&none, &none),
-              FLAUNAY_ERROR_USAGE, "not one of the context"));
 }
 
 // ---- Host memory
@@ -1027,11 +1025,14 @@ static void test_chunks_in_arrays(void) {
   check_same_mesh(arrays.triangles, arrays.neighbors, arrays.hull, arrays.representatives, expected);
   flaunay_chunk_report_destroy(report);
 
-  // The same hull in 64 bits, and nothing else.
+  // The same hull in 64 bits, and nothing else, on a device that is in use by this program.
   int64_t* wide = malloc(kPoints * sizeof *wide);
   REQUIRE(wide != NULL);
   const flaunay_mesh_arrays hull_alone = {.index_type = FLAUNAY_INT64, .hull = wide};
-  REQUIRE(flaunay_triangulate_chunks(points, kPoints, &hull_alone, NULL, &report) == FLAUNAY_SUCCESS);
+  flaunay_chunk_options own = {.triangulators = &triangulator, .triangulator_count = 1};
+  REQUIRE(flaunay_triangulate_chunks(points, kPoints, &hull_alone, &own, &report) == FLAUNAY_SUCCESS);
+  CHECK(strcmp(flaunay_chunk_report_statistics(report)->devices[0].name,
+               flaunay_triangulator_device(triangulator)->name) == 0);
   const size_t hull_count = flaunay_chunk_report_statistics(report)->hull_vertices;
   CHECK(flaunay_chunk_report_statistics(report)->round_count == 1);
   REQUIRE(hull_count == flaunay_triangulation_hull_count(expected));
@@ -1203,6 +1204,12 @@ static void test_bad_chunk_options(void) {
   CHECK(fails(chunks_with((flaunay_chunk_options){.devices = names, .device_count = 2}), FLAUNAY_ERROR_DEVICE,
               "no such device"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.device_count = 1}), usage, "list of devices"));
+  flaunay_triangulator* const own[] = {triangulator, NULL};
+  CHECK(chunks_with((flaunay_chunk_options){.triangulators = own, .triangulator_count = 1}) ==
+        FLAUNAY_SUCCESS);
+  CHECK(fails(chunks_with((flaunay_chunk_options){.triangulators = own, .triangulator_count = 2}), usage,
+              "a triangulator for chunks"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.triangulator_count = 1}), usage, "list of triangulators"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.memory_bytes = 1000}), usage, "too little"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.reserved = {[7] = 1}}), usage, "flaunay_chunk_options"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.scratch = "/nowhere/at/all"}), FLAUNAY_ERROR_INPUT,

@@ -228,9 +228,9 @@ def triangulate_chunks(
     ...     chunk_points=1000,
     ... )
     >>> mesh
-    <flaunay.ChunkedTriangulation: 5000 points, 9976 triangles, 22 hull vertices>
+    <flaunay.ChunkedTriangulation: 5000 points, 9972 triangles, 26 hull vertices>
     >>> mesh.triangles.shape, mesh.triangles.dtype
-    ((9976, 3), dtype('int32'))
+    ((9972, 3), dtype('int32'))
     >>> type(mesh.triangles).__name__, type(mesh.hull).__name__, mesh.neighbors
     ('memmap', 'ndarray', None)
     >>> folder.cleanup()

@@ -70,6 +70,10 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
   for (std::size_t k = 0; k < options->device_count; ++k) {
     result.devices.emplace_back(options->devices[k] != nullptr ? options->devices[k] : "");
   }
+  if (options->triangulator_count > 0) required(options->triangulators, "a list of triangulators");
+  for (std::size_t k = 0; k < options->triangulator_count; ++k) {
+    result.triangulators.push_back(&required(options->triangulators[k], "a triangulator for chunks").cpp);
+  }
   result.chunk_points = options->chunk_points;
   if (options->progress != nullptr) {
     result.progress = [call = options->progress, data = options->progress_data](const std::string& stage,

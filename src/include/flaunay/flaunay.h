@@ -189,7 +189,11 @@ typedef struct flaunay_chunk_options {
   /// from one queue.
   const char* const* devices;
   size_t device_count;  ///< number of names in devices; 0: flaunay's own choice of one device
-  size_t chunk_points;  ///< points of a chunk; 0: as many as the memory permits
+  /// Instead of devices: triangulators of the caller's, such as those of sub-devices. They take chunks from
+  /// one queue and must not be used meanwhile.
+  flaunay_triangulator* const* triangulators;
+  size_t triangulator_count;  ///< number of triangulators; 0: the devices above
+  size_t chunk_points;        ///< points of a chunk; 0: as many as the memory permits
   /// If not NULL, called from time to time on the calling thread. stage: "sampling", "distributing" or
   /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. If it
   /// returns anything but 0, the call ends with FLAUNAY_ERROR_STOPPED.
