@@ -325,8 +325,7 @@ TEST_F(BenchTest, WholeProcessesAreTimed) {
 }
 
 TEST_F(BenchTest, ChunksAreTimed) {
-  const auto record =
-      run_well("chunks --sizes 3000 --in-memory 3000 --memory 256M --distributions uniform");
+  const auto record = run_well("chunks --sizes 3000 --in-memory 3000 --memory 256M --distributions uniform");
   ASSERT_EQ(record["results"].size(), 2u);
   EXPECT_TRUE(record["results"][0]["rounds"].is_null());
   EXPECT_EQ(record["results"][1].value("rounds", 0), 1);

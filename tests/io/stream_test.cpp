@@ -313,7 +313,8 @@ TEST_F(PointStreamTest, ScratchThatCannotBeWritten) {
                [&] { open_point_stream(file, path("nowhere")); });
   const ScratchFile scratch(folder_);
   scratch.require_room(1, "a byte");
-  expect_error(ErrorKind::input, folder_ + ": ", {"has room for", "the points of x", "another scratch folder"},
+  expect_error(ErrorKind::input, folder_ + ": ",
+               {"has room for", "the points of x", "another scratch folder"},
                [&] { scratch.require_room(std::uint64_t{1} << 62, "the points of x"); });
 }
 
