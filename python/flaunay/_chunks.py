@@ -183,7 +183,7 @@ def triangulate_chunks(
         The devices, each named as for `triangulate`; ``"all"``: every usable one. They take chunks from
         one queue. Without it, flaunay chooses one.
     chunk_points : int, optional
-        Points of a chunk. Without it, as many as the memory permits.
+        Points of a chunk. Without it, as many as suit the devices.
     index : 32 or 64, optional
         Bits of the indices. Without it, 64 if there are more than 2^30 - 1 points, since there may be
         twice as many triangles.

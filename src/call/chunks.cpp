@@ -78,7 +78,7 @@ Devices open_devices(const ChunkOptions& options) {
   return devices;
 }
 
-chunks::Plan make_plan(const ChunkOptions& options, const Devices& devices) {
+chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devices& devices) {
   const std::uint64_t memory =
       options.memory_bytes != 0 ? options.memory_bytes : host::memory_left().bytes / 2;
   if (memory < kLeastBytes) {
@@ -90,10 +90,13 @@ chunks::Plan make_plan(const ChunkOptions& options, const Devices& devices) {
   const std::uint64_t for_chunks = memory - kFixedBytes - plan.buffer_bytes;
   const std::size_t at_once = for_chunks / kBytesPerPoint;
   plan.largest_chunk = std::min(at_once, devices.capacity);
+  if (devices.capacity < at_once) plan.limit = "the smallest device";
   const std::size_t most = std::min(at_once / devices.solvers.size(), devices.capacity);
   const auto on_average = static_cast<std::size_t>(static_cast<double>(most) / kMostUnequal);
   const std::size_t wanted = options.chunk_points != 0 ? options.chunk_points : devices.chunk_points;
-  plan.chunk_points = std::max<std::size_t>(1, std::min(on_average, wanted));
+  // Each chunk has a buffer.
+  const std::uint64_t most_chunks = plan.buffer_bytes / chunks::kBufferUnit;
+  plan.chunk_points = std::max<std::size_t>(std::min(on_average, wanted), n / most_chunks + 1);
   return plan;
 }
 
@@ -139,7 +142,7 @@ ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const Ch
     if (points.size() == 0) return ChunkStatistics();
     check_count(points.size());
     const Devices devices = open_devices(options);
-    return chunks::run(points, sink, make_plan(options, devices), devices.solvers, options);
+    return chunks::run(points, sink, make_plan(points.size(), options, devices), devices.solvers, options);
   });
 }
 

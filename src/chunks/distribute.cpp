@@ -24,11 +24,6 @@ constexpr std::size_t kPart = std::size_t{1} << 14;
 constexpr std::uint64_t kSamplesPerChunk = 512;
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 20;
 
-// The chunks of so many points.
-std::size_t chunks_for(std::uint64_t points, const Plan& plan) {
-  return static_cast<std::size_t>((points + plan.chunk_points - 1) / plan.chunk_points);
-}
-
 vertex_box no_box() {
   const vertex_box plane = whole_plane();
   return {plane.high, plane.low};
@@ -39,14 +34,27 @@ vertex_box joined(const vertex_box& a, const vertex_box& b) {
           {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
 }
 
-std::vector<double2> draw_samples(PointSource& source, std::uint64_t wanted) {
-  const std::uint64_t n = source.size(), count = std::min({wanted, n, kMostSamples});
-  std::vector<double2> samples(count);
-  for (std::uint64_t k = 0; k < count; ++k) {
-    // One of as many equal parts as there are samples.
-    const std::uint64_t part = n / count, begin = k * part + std::min(k, n % count);
-    const std::uint64_t size = part + (k < n % count ? 1 : 0);
-    source.read(begin + kernel::mixed(k) % size, 1, &samples[k].x);
+// Samples are drawn from runs of points, each of which is read at once: from a disk a run takes as long as a
+// point.
+constexpr std::uint64_t kRun = 64;
+constexpr std::uint64_t kSamplesPerRun = 8;
+
+std::vector<double2> draw_samples(PointSource& source, std::uint64_t wanted, const Progress& progress) {
+  const std::uint64_t n = source.size(), runs = std::min(wanted, kMostSamples) / kSamplesPerRun;
+  std::vector<double2> samples, run(kRun);
+  if (n <= runs * kRun) {
+    samples.resize(n);
+    for (std::uint64_t first = 0; first < n; first += kPiece) {
+      source.read(first, std::min<std::uint64_t>(kPiece, n - first), &samples[first].x);
+    }
+    return samples;
+  }
+  for (std::uint64_t k = 0; k < runs; ++k) {
+    if (k % kPart == 0) progress("sampling", 0);
+    // One of as many equal parts as there are runs.
+    const std::uint64_t part = n / runs, begin = k * part + std::min(k, n % runs);
+    source.read(begin + kernel::mixed(k) % (part - kRun + 1), kRun, &run.front().x);
+    for (std::uint64_t i = 0; i < kRun; i += kRun / kSamplesPerRun) samples.push_back(run[i]);
   }
   return samples;
 }
@@ -225,17 +233,22 @@ void write_own_numbers(MeshSink& sink, const Piece& piece) {
 
 }  // namespace
 
+std::size_t chunks_for(std::uint64_t points, const Plan& plan) {
+  return static_cast<std::size_t>((points + plan.chunk_points - 1) / plan.chunk_points);
+}
+
 FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, const Plan& plan,
                       host::Threads& threads, const Progress& progress) {
   const std::uint64_t n = source.size();
   const std::size_t chunks = chunks_for(n, plan);
   file.require_room(n * kFirstRoundBytes, "the points of chunks");
   progress("sampling", 0);
-  const ChunkTree tree = chunks == 1 ? ChunkTree()
-                                     : ChunkTree::of_leaves(draw_samples(source, kSamplesPerChunk * chunks),
-                                                            chunks, Cuts::at_medians);
+  const ChunkTree tree = chunks == 1
+                             ? ChunkTree()
+                             : ChunkTree::of_leaves(draw_samples(source, kSamplesPerChunk * chunks, progress),
+                                                    chunks, Cuts::at_medians);
 
-  ChunkWriters writers(file, tree.leaves(), plan.buffer_bytes);
+  std::optional<ChunkWriters> writers(std::in_place, file, tree.leaves(), plan.buffer_bytes);
   Account account;
   const auto read = [&](std::uint64_t first) {
     Piece piece;
@@ -254,7 +267,7 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
     find_leaves(threads, tree, piece);
     for (std::size_t i = 0; i < piece.size(); ++i) {
       const double2 p = {piece.coordinates[2 * i], piece.coordinates[2 * i + 1]};
-      writers.add(piece.leaves[i], p, static_cast<std::int64_t>(first + i));
+      writers->add(piece.leaves[i], p, static_cast<std::int64_t>(first + i));
     }
     write_own_numbers(sink, piece);
   }
@@ -263,7 +276,9 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
   round.scaling = account.scaling(source);
   round.all = account.box();
   Splitter splitter(sink, file, plan);
-  for (Chunk& chunk : chunks_of(tree, writers.take(), whole_plane()))
+  std::vector<StoredChunk> stored = writers->take();
+  writers.reset();
+  for (Chunk& chunk : chunks_of(tree, std::move(stored), whole_plane()))
     splitter.split(std::move(chunk), round.chunks);
   round.equal_points = splitter.equal_points();
   return round;

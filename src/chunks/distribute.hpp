@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "chunks/finish.hpp"
@@ -18,9 +19,10 @@ namespace flaunay::chunks {
 
 /// Sizes that follow from the memory of a call.
 struct Plan {
-  std::size_t chunk_points = 0;   ///< chunks are made to have at most so many
-  std::size_t largest_chunk = 0;  ///< points that the memory permits at once
-  std::size_t buffer_bytes = 0;   ///< of all buffers to the scratch file
+  std::size_t chunk_points = 0;      ///< chunks are made to have at most so many
+  std::size_t largest_chunk = 0;     ///< points that the memory permits at once
+  std::string limit = "the memory";  ///< what does not permit more, for messages
+  std::size_t buffer_bytes = 0;      ///< of all buffers to the scratch file
   /// If more than this share of a round's points is handed on, they all go to one last chunk.
   int most_handed_on_percent = 70;
 };
@@ -30,6 +32,9 @@ struct Chunk {
   StoredChunk stored;
   kernel::vertex_box rectangle;
 };
+
+/// The chunks of so many points.
+std::size_t chunks_for(std::uint64_t points, const Plan& plan);
 
 /// Called with the share of a step that is done.
 using Progress = std::function<void(const char* step, double done)>;

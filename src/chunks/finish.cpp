@@ -138,8 +138,10 @@ std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first
     const std::int32_t to = corner(border.triangle, after(after(border.corner)));
     if (border.closed >= 0) {
       // The same edge as its two ends see it.
-      is_closed[border.closed] = 1;
-      is_closed[open_edge(to, from, 0)] = 1;
+      const std::int64_t there = open_edge(to, from, 0);
+      if (there < 0)
+        throw Error(ErrorKind::internal, "an edge is open at one of its ends alone; please report the input");
+      is_closed[border.closed] = is_closed[there] = 1;
     } else {
       const auto waiting =
           static_cast<std::int64_t>(3 * (first_row + rows_[border.triangle]) + border.corner);
@@ -189,12 +191,14 @@ ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
 }
 
 void FinishedChunk::write(MeshSink& sink, std::uint64_t first_row) const {
+  write_rows(sink, first_row);
+  if (sink.wants(MeshArray::neighbors)) write_links(sink, first_row);
+}
+
+void FinishedChunk::write_rows(MeshSink& sink, std::uint64_t first_row) const {
   const bool with_triangles = sink.wants(MeshArray::triangles),
              with_neighbors = sink.wants(MeshArray::neighbors);
   std::vector<std::int64_t> corners, neighbors;
-  const auto row_of = [&](std::int32_t t) {
-    return t < 0 || rows_[t] < 0 ? -1 : static_cast<std::int64_t>(first_row) + rows_[t];
-  };
   std::uint64_t written = first_row;
   const auto flush = [&] {
     if (with_triangles) sink.write(MeshArray::triangles, 3 * written, corners.data(), corners.size());
@@ -203,23 +207,36 @@ void FinishedChunk::write(MeshSink& sink, std::uint64_t first_row) const {
     corners.clear();
     neighbors.clear();
   };
+  auto border = border_.begin();
   for (std::size_t t = 0; t < rows_.size(); ++t) {
     if (rows_[t] < 0) continue;
     for (int k = 0; k < 3; ++k) {
       corners.push_back(points_.ids[corner(t, k)]);
-      if (with_neighbors) neighbors.push_back(row_of(mesh_.neighbors[3 * t + k]));
+      if (border == border_.end() || border->triangle != static_cast<std::int32_t>(t) ||
+          border->corner != k) {
+        neighbors.push_back(static_cast<std::int64_t>(first_row) + rows_[mesh_.neighbors[3 * t + k]]);
+      } else {
+        neighbors.push_back(border->closed < 0 ? -1 : points_.edges[border->closed].corner / 3);
+        ++border;
+      }
     }
     if (corners.size() == 3 * kRowsPerPiece) flush();
   }
   if (!corners.empty()) flush();
-  if (!with_neighbors) return;
+}
+
+// Tells triangles of rounds before who their neighbours are.
+void FinishedChunk::write_links(MeshSink& sink, std::uint64_t first_row) const {
+  std::vector<std::pair<std::int64_t, std::int64_t>> links;
   for (const Border& border : border_) {
     if (border.closed < 0) continue;
-    const std::int64_t own = row_of(border.triangle), waiting = points_.edges[border.closed].corner;
-    const std::int64_t other = waiting / 3;
-    sink.write(MeshArray::neighbors, static_cast<std::uint64_t>(3 * own + border.corner), &other, 1);
-    sink.write(MeshArray::neighbors, static_cast<std::uint64_t>(waiting), &own, 1);
+    links.emplace_back(points_.edges[border.closed].corner,
+                       static_cast<std::int64_t>(first_row) + rows_[border.triangle]);
   }
+  std::sort(links.begin(), links.end());
+  RunWriter neighbors(sink, MeshArray::neighbors);
+  for (const auto& [waiting, row] : links) neighbors.add(static_cast<std::uint64_t>(waiting), row);
+  neighbors.flush();
 }
 
 void FinishedChunk::write_duplicates(MeshSink& sink) const {

@@ -59,6 +59,8 @@ class FinishedChunk {
   };
 
   std::int32_t corner(std::size_t t, int k) const { return mesh_.triangles[3 * t + k]; }
+  void write_rows(MeshSink& sink, std::uint64_t first_row) const;
+  void write_links(MeshSink& sink, std::uint64_t first_row) const;
   bool is_missing(std::size_t t) const;
   void find_final(host::Threads& threads, const kernel::block_frame& frame);
   void number_edge_ends(kernel::scaling scale);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <exception>
 #include <future>
@@ -22,24 +23,42 @@ namespace {
 // The share of a call's time that is over when all points are in chunks, for progress.
 constexpr double kDistributed = 0.25;
 
-// A sink that several threads write to.
+// A sink that several threads write to. After an error nothing more is written.
 class SharedSink : public MeshSink {
  public:
-  explicit SharedSink(MeshSink& sink) : sink_(sink) {}
-  bool wants(MeshArray array) const override { return sink_.wants(array); }
+  explicit SharedSink(MeshSink& sink) : sink_(sink) {
+    for (const MeshArray array : kArrays) wanted_[static_cast<std::size_t>(array)] = sink.wants(array);
+  }
+  bool wants(MeshArray array) const override { return wanted_[static_cast<std::size_t>(array)]; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
     const std::lock_guard lock(mutex_);
-    sink_.write(array, first, values, count);
+    if (failure_) std::rethrow_exception(failure_);
+    try {
+      sink_.write(array, first, values, count);
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+  // Writes nothing any more, because of this error.
+  void close(const std::exception_ptr& error) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = error;
   }
 
  private:
+  static constexpr std::array kArrays{MeshArray::triangles, MeshArray::neighbors, MeshArray::hull,
+                                      MeshArray::representatives};
+
   MeshSink& sink_;
+  std::array<bool, kArrays.size()> wanted_{};
   std::mutex mutex_;
+  std::exception_ptr failure_;
 };
 
 // What all rounds share.
 struct Call {
-  MeshSink& sink;
+  SharedSink& sink;
   ScratchFile& file;
   geometry::Scaling scaling;
   kernel::vertex_box all;
@@ -119,10 +138,13 @@ class Round {
     }
   }
 
-  void stop(std::exception_ptr error) {
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = std::move(error);
-    changed_.notify_all();
+  void stop(const std::exception_ptr& error) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = error;
+      changed_.notify_all();
+    }
+    call_.sink.close(error);
   }
 
   // The chunk that a solver does after the one that it has. It may not come before that, as those do that a
@@ -234,8 +256,9 @@ class Round {
       return false;
     }
     const std::size_t duplicates = mesh.statistics.duplicates, undecided = mesh.statistics.undecided;
-    auto finished = std::make_shared<FinishedChunk>(worker.threads, std::move(points), std::move(mesh),
-                                                    Place{chunks_[k].rectangle, call_.all}, call_.scaling);
+    auto finished = std::make_shared<FinishedChunk>(
+        worker.threads, std::move(points), std::move(mesh),
+        Place{is_last() ? whole_plane() : chunks_[k].rectangle, call_.all}, call_.scaling);
     note_pace(worker.number, host::now() - begin);
     while (const std::optional<std::size_t> before = await_turn(k)) {
       if (!process(worker, *before, load(*before).get())) {
@@ -244,14 +267,21 @@ class Round {
         return false;
       }
     }
-    const std::uint64_t first_row = publish(k, worker.number, *finished, duplicates, undecided);
+    const std::optional<std::uint64_t> first_row =
+        publish(k, worker.number, *finished, duplicates, undecided);
+    if (!first_row) return true;  // another one failed
     if (worker.writing.valid()) worker.writing.get();
-    worker.writing = std::async(std::launch::async, [this, chunk = std::move(finished), first_row]() mutable {
-      chunk->write(call_.sink, first_row);
-      if (is_first_) chunk->write_duplicates(call_.sink);
-      if (is_last()) chunk->write_hull(call_.sink);
-      chunk.reset();  // its memory, before anybody asks whether this is done
-    });
+    worker.writing =
+        std::async(std::launch::async, [this, chunk = std::move(finished), row = *first_row]() mutable {
+          try {
+            chunk->write(call_.sink, row);
+            if (is_first_) chunk->write_duplicates(call_.sink);
+            if (is_last()) chunk->write_hull(call_.sink);
+          } catch (...) {
+            stop(std::current_exception());
+          }
+          chunk.reset();  // its memory, before anybody asks whether this is done
+        });
     return true;
   }
 
@@ -262,11 +292,11 @@ class Round {
     changed_.notify_all();  // who is the fastest may be another now
   }
 
-  // Ends the turn of chunk k. Returns the number of its first row.
-  std::uint64_t publish(std::size_t k, std::size_t solver, const FinishedChunk& chunk, std::size_t duplicates,
-                        std::size_t undecided) {
+  // Ends the turn of chunk k. Returns the number of its first row, unless the round has failed.
+  std::optional<std::uint64_t> publish(std::size_t k, std::size_t solver, const FinishedChunk& chunk,
+                                       std::size_t duplicates, std::size_t undecided) {
     const std::lock_guard lock(mutex_);
-    if (error_) return 0;
+    if (error_) return std::nullopt;
     const std::uint64_t first_row = call_.rows;
     call_.rows += chunk.triangles();
     if (is_first_) call_.vertices += chunk.points().size() - duplicates;
@@ -319,9 +349,8 @@ void require_memory(std::uint64_t points, const Plan& plan) {
   throw Error(
       ErrorKind::input,
       fmt::format("{} points are left to one last chunk, because too little is final in smaller ones (as of "
-                  "points on one circle), but the memory permits {}; give about {} times as much memory",
-                  points, plan.largest_chunk,
-                  (points + plan.largest_chunk - 1) / std::max<std::size_t>(1, plan.largest_chunk)));
+                  "points on one circle), but {} permits {}",
+                  points, plan.limit, plan.largest_chunk));
 }
 
 }  // namespace

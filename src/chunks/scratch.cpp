@@ -11,18 +11,15 @@ constexpr std::size_t kWord = sizeof(std::uint64_t);
 constexpr std::size_t kWordsPerPoint = kFirstRoundBytes / kWord;
 constexpr std::size_t kWordsPerEdge = sizeof(OpenEdge) / kWord;
 static_assert(sizeof(OpenEdge) == kWordsPerEdge * kWord);
-// A buffer for one chunk; smaller ones would be slow to read.
-constexpr std::size_t kLeastBufferBytes = std::size_t{1} << 12;
-constexpr std::size_t kMostBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kMostBufferBytes = 96 * kBufferUnit;
 
 }  // namespace
 
 ChunkWriters::ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes)
-    : file_(file),
-      most_words_(
-          std::clamp(buffer_bytes / std::max<std::size_t>(1, chunks), kLeastBufferBytes, kMostBufferBytes) /
-          kWord),
-      writers_(chunks) {}
+    : file_(file), writers_(chunks) {
+  const std::size_t own_bytes = buffer_bytes / std::max<std::size_t>(1, chunks);
+  most_words_ = std::clamp(own_bytes / kBufferUnit * kBufferUnit, kBufferUnit, kMostBufferBytes) / kWord;
+}
 
 void ChunkWriters::add(std::size_t chunk, const ChunkPoints& from, std::size_t i) {
   Writer& writer = writers_[chunk];

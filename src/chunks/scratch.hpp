@@ -14,6 +14,10 @@ namespace flaunay::chunks {
 /// The bytes of a point of the first round in the scratch file.
 constexpr std::size_t kFirstRoundBytes = 24;
 
+/// Buffers for a chunk have a multiple of this many bytes: whole points, and whole blocks of the disk, so
+/// that these can be given back. Smaller ones would be slow to read.
+constexpr std::size_t kBufferUnit = 512 * kFirstRoundBytes;
+
 /// A part of the scratch file.
 struct Extent {
   std::uint64_t begin, bytes;
@@ -48,7 +52,8 @@ class ChunkWriters {
     std::vector<std::uint64_t> words;
     StoredChunk stored;
   };
-  static void push(Writer& writer, kernel::double2 p, std::int64_t id) {
+  void push(Writer& writer, kernel::double2 p, std::int64_t id) const {
+    if (writer.words.empty()) writer.words.reserve(most_words_);
     writer.words.push_back(kernel::as_ulong(p.x));
     writer.words.push_back(kernel::as_ulong(p.y));
     writer.words.push_back(static_cast<std::uint64_t>(id));
@@ -61,7 +66,7 @@ class ChunkWriters {
   void flush(Writer& writer);
 
   ScratchFile& file_;
-  std::size_t most_words_;
+  std::size_t most_words_ = 0;
   std::vector<Writer> writers_;
 };
 

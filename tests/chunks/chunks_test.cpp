@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -171,6 +172,16 @@ TEST(Chunks, WithMoreEqualPointsThanAChunkHas) {
   compare(with_copies(make_fixture("grid", 400, 4), 2000, 5), small_plan(30));
 }
 
+TEST(Chunks, OfASampleWithoutOtherPoints) {
+  // All samples are equal, all others come before them, and there are too few to cut the chunk again.
+  Coordinates points(2 * 140000, 1.0);
+  for (std::size_t k = 0; k < 6; ++k) {
+    points[2 * (7 + 21001 * k)] = 0.1 * static_cast<double>(k);
+    points[2 * (7 + 21001 * k) + 1] = 0.07 * static_cast<double>(k * k);
+  }
+  EXPECT_EQ(compare(points, small_plan(100000)).rounds.size(), 1u);
+}
+
 /// Fails at its calls from `first` on.
 Solver failing(std::size_t first, std::atomic<std::size_t>& calls) {
   return {"failing", [first, &calls](const double* coordinates, std::size_t n) {
@@ -300,7 +311,31 @@ TEST(Chunks, ThatAreWrongAreRefused) {
   expect_error(points, ErrorKind::input, "point 999 has y = 1.07");
   Plan plan = small_plan(50);
   plan.largest_chunk = 200;
-  expect_error(make_fixture("integer-circle", 1000, 1), ErrorKind::input, "give about", plan);
+  expect_error(make_fixture("integer-circle", 1000, 1), ErrorKind::input, "but the memory permits 200", plan);
+}
+
+/// Fails at its n-th call and at all later ones.
+class FailingSink : public VectorSink {
+ public:
+  explicit FailingSink(std::size_t first) : first_(first) {}
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
+    if (++calls >= first_) throw std::runtime_error("full");
+    VectorSink::write(array, first, values, count);
+  }
+  std::size_t calls = 0;
+
+ private:
+  std::size_t first_;
+};
+
+TEST(Chunks, WriteNothingAfterAnError) {
+  const Coordinates points = make_fixture("uniform", 5000, 1);
+  ArrayPoints source(points.data(), points.size() / 2);
+  for (const std::size_t first : {1, 2, 20, 60, 150}) {
+    FailingSink sink(first);
+    EXPECT_THROW(run(source, sink, small_plan(50), {solver(), solver()}, {}), std::runtime_error);
+    EXPECT_EQ(sink.calls, first);
+  }
 }
 
 TEST(Chunks, CanBeInterrupted) {

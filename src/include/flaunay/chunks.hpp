@@ -53,7 +53,8 @@ struct ChunkOptions {
   /// Instead of devices: triangulators of the caller's, such as those of sub-devices. They take chunks from
   /// one queue and must not be used meanwhile.
   std::vector<Triangulator*> triangulators;
-  /// Points of a chunk. 0: as many as suit the devices. In any case no more than the memory permits.
+  /// Points of a chunk. 0: as many as suit the devices. In any case no more than the memory permits at once,
+  /// and not so few that the chunks' buffers would not fit it.
   std::size_t chunk_points = 0;
   /// If not empty, called from time to time on the calling thread. stage: "sampling", "distributing" or
   /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. An
@@ -63,7 +64,8 @@ struct ChunkOptions {
 
 /// A round of chunks.
 struct ChunkRound {
-  std::uint64_t points = 0;     ///< distinct points of the round; of the first one, with duplicates
+  std::uint64_t points =
+      0;  ///< points of the round; of the first one, without those that are equal to very many
   std::uint64_t chunks = 0;     ///< chunks into which they were cut
   std::uint64_t triangles = 0;  ///< triangles that became final
   std::uint64_t handed_on = 0;  ///< points that went on to the next round

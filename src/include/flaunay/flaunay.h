@@ -193,7 +193,7 @@ typedef struct flaunay_chunk_options {
   /// one queue and must not be used meanwhile.
   flaunay_triangulator* const* triangulators;
   size_t triangulator_count;  ///< number of triangulators; 0: the devices above
-  size_t chunk_points;        ///< points of a chunk; 0: as many as the memory permits
+  size_t chunk_points;        ///< points of a chunk; 0: as many as suit the devices
   /// If not NULL, called from time to time on the calling thread. stage: "sampling", "distributing" or
   /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. If it
   /// returns anything but 0, the call ends with FLAUNAY_ERROR_STOPPED.
