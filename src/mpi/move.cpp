@@ -75,9 +75,13 @@ std::vector<std::int32_t> find_ranks(host::Threads& threads, const GivenPoints& 
                                      const ChunkTree& tree) {
   std::vector<std::int32_t> found(points.count);
   threads.share(points.count, kPart, [&](std::size_t begin, std::size_t end) {
-    std::array<std::size_t, kPart> leaves;
-    tree.find_leaves(points.coordinates + 2 * begin, end - begin, leaves.data());
-    std::copy_n(leaves.begin(), end - begin, found.begin() + static_cast<std::ptrdiff_t>(begin));
+    // A thread alone gets all at once.
+    std::vector<std::size_t> leaves(std::min(kPart, end - begin));
+    for (; begin < end; begin += leaves.size()) {
+      const std::size_t size = std::min(leaves.size(), end - begin);
+      tree.find_leaves(points.coordinates + 2 * begin, size, leaves.data());
+      std::copy_n(leaves.begin(), size, found.begin() + static_cast<std::ptrdiff_t>(begin));
+    }
   });
   return found;
 }
