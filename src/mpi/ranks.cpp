@@ -147,11 +147,7 @@ std::int64_t Ranks::joined(std::int64_t value, Join how) const {
   return values.front();
 }
 
-double Ranks::sum_here(double value) const {
-  std::vector<double> values = {value};
-  join_values(values, MPI_DOUBLE, Join::sum, here_);
-  return values.front();
-}
+void Ranks::sum_here(std::vector<double>& values) const { join_values(values, MPI_DOUBLE, Join::sum, here_); }
 
 std::vector<std::int64_t> Ranks::all(std::int64_t value) const {
   std::vector<std::int64_t> values(static_cast<std::size_t>(size_));

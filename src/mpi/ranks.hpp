@@ -84,8 +84,8 @@ class Ranks {
   /// counts[r] of each rank, for this rank.
   std::vector<int> exchange_counts(const std::vector<int>& counts) const;
 
-  /// The sum of a value over the ranks on this rank's machine, and the number of them before this one.
-  double sum_here(double value) const;
+  /// Sums over the ranks on this rank's machine, and how many of them come before this one.
+  void sum_here(std::vector<double>& values) const;
   int rank_here() const { return rank_here_; }
 
  private:

@@ -187,16 +187,18 @@ class Run {
                       "more ranks, or devices with more memory",
                       points, points_.total(), reason_, solver_.name, solver_.capacity));
     });
-    const double share =
-        static_cast<double>(points) / static_cast<double>(std::max<std::size_t>(1, solver_.capacity));
-    const double used = ranks_.sum_here(solver_.shares_memory ? share : 0);
+    std::vector<double> used = {0};
+    if (solver_.shares_memory) {
+      used[0] = static_cast<double>(points) / static_cast<double>(std::max<std::size_t>(1, solver_.capacity));
+    }
+    ranks_.sum_here(used);
     ranks_.together([&] {
-      if (used <= 1) return;
+      if (used[0] <= 1) return;
       throw Error(
           ErrorKind::input,
           fmt::format("the ranks of this machine would need {:.1f} times the memory that is free; take more "
                       "machines, or fewer ranks of each",
-                      used));
+                      used[0]));
     });
   }
 
