@@ -16,7 +16,9 @@
 namespace flaunay::mpi {
 namespace {
 
-// Values of one call. All ranks make the same number of calls, some with fewer values or none.
+// Values of one call. The calls are those of one rank alone, because in Open MPI's collective ones all ranks
+// wait for ever if one cannot write; each rank has one contiguous part of the file, for which collective
+// calls would gain nothing.
 constexpr std::size_t kPiece = std::size_t{1} << 22;
 
 void check_file(int code, const std::string& path, const char* what) {
@@ -27,30 +29,6 @@ void check_file(int code, const std::string& path, const char* what) {
   io::fail(path, "cannot be {}: {}", what, text);
 }
 
-/// As many pieces as the rank with the most values needs.
-std::size_t pieces_of(const Ranks& ranks, std::size_t values) {
-  return static_cast<std::size_t>(ranks.most(static_cast<std::int64_t>((values + kPiece - 1) / kPiece)));
-}
-
-/// The first error of several calls of which all must be made.
-class FirstError {
- public:
-  template <typename Work>
-  void unless(const Work& work) {
-    try {
-      work();
-    } catch (...) {
-      if (!error_) error_ = std::current_exception();
-    }
-  }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  std::exception_ptr error_;
-};
-
 void check_count(const MPI_Status& status, MPI_Datatype type, std::size_t expected, const std::string& path,
                  const char* what) {
   int count = 0;
@@ -59,56 +37,41 @@ void check_count(const MPI_Status& status, MPI_Datatype type, std::size_t expect
 }
 
 template <typename Value>
-std::vector<double> read_values(Ranks& ranks, MPI_File file, std::uint64_t begin, std::size_t count,
+std::vector<double> read_values(MPI_File file, std::uint64_t begin, std::size_t count,
                                 const std::string& path) {
   const MPI_Datatype type = sizeof(Value) == sizeof(double) ? MPI_DOUBLE : MPI_FLOAT;
   std::vector<double> values;
-  std::vector<Value> piece;
-  ranks.together([&] {
-    values.reserve(count);
-    piece.resize(std::min(count, kPiece));
-  });
-  FirstError error;
-  const std::size_t pieces = pieces_of(ranks, count);
-  for (std::size_t k = 0; k < pieces; ++k) {
+  values.reserve(count);
+  std::vector<Value> piece(std::min(count, kPiece));
+  while (values.size() < count) {
     const std::size_t size = std::min(kPiece, count - values.size());
     MPI_Status status;
-    const int code =
-        MPI_File_read_at_all(file, static_cast<MPI_Offset>(begin + values.size() * sizeof(Value)),
-                             piece.data(), static_cast<int>(size), type, &status);
-    error.unless([&] {
-      check_file(code, path, "read");
-      check_count(status, type, size, path, "became shorter while it was read");
-    });
+    check_file(MPI_File_read_at(file, static_cast<MPI_Offset>(begin + values.size() * sizeof(Value)),
+                                piece.data(), static_cast<int>(size), type, &status),
+               path, "read");
+    check_count(status, type, size, path, "became shorter while it was read");
     values.insert(values.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(size));
   }
-  ranks.together([&] { error.rethrow(); });
   return values;
 }
 
 template <typename Value>
-void write_values(Ranks& ranks, MPI_File file, std::uint64_t begin, const std::vector<std::int64_t>& values,
+void write_values(MPI_File file, std::uint64_t begin, const std::vector<std::int64_t>& values,
                   const std::string& path) {
   const MPI_Datatype type = sizeof(Value) == sizeof(std::int64_t) ? MPI_INT64_T : MPI_INT32_T;
-  std::vector<Value> piece;
-  ranks.together([&] { piece.resize(std::min(values.size(), kPiece)); });
-  FirstError error;
-  const std::size_t pieces = pieces_of(ranks, values.size());
-  for (std::size_t k = 0, done = 0; k < pieces; ++k) {
+  std::vector<Value> piece(std::min(values.size(), kPiece));
+  for (std::size_t done = 0; done < values.size();) {
     const std::size_t size = std::min(kPiece, values.size() - done);
     std::transform(values.begin() + static_cast<std::ptrdiff_t>(done),
                    values.begin() + static_cast<std::ptrdiff_t>(done + size), piece.begin(),
                    [](std::int64_t value) { return static_cast<Value>(value); });
     MPI_Status status;
-    const int code = MPI_File_write_at_all(file, static_cast<MPI_Offset>(begin + done * sizeof(Value)),
-                                           piece.data(), static_cast<int>(size), type, &status);
-    error.unless([&] {
-      check_file(code, path, "written");
-      check_count(status, type, size, path, "cannot be written: the disk is full");
-    });
+    check_file(MPI_File_write_at(file, static_cast<MPI_Offset>(begin + done * sizeof(Value)), piece.data(),
+                                 static_cast<int>(size), type, &status),
+               path, "written");
+    check_count(status, type, size, path, "cannot be written: the disk is full");
     done += size;
   }
-  ranks.together([&] { error.rethrow(); });
 }
 
 /// In the folder of the target, so that it can be renamed.
@@ -163,8 +126,11 @@ std::vector<double> PointFile::read(Ranks& ranks) const {
   const int code = MPI_File_open(ranks.communicator(), path_.c_str(), MPI_MODE_RDONLY, MPI_INFO_NULL, &file);
   ranks.together([&] { check_file(code, path_, "opened"); });
   const std::uint64_t begin = data_begin_ + 2 * first * (is_double_ ? sizeof(double) : sizeof(float));
-  std::vector<double> points = is_double_ ? read_values<double>(ranks, file, begin, values, path_)
-                                          : read_values<float>(ranks, file, begin, values, path_);
+  std::vector<double> points;
+  ranks.together([&] {
+    points = is_double_ ? read_values<double>(file, begin, values, path_)
+                        : read_values<float>(file, begin, values, path_);
+  });
   MPI_File_close(&file);
   return points;
 }
@@ -193,21 +159,23 @@ IndexFile::~IndexFile() {
 }
 
 void IndexFile::write(Ranks& ranks, const std::vector<std::int64_t>& values, std::uint64_t first_row) {
-  ranks.together([&] {
-    if (ranks.rank() != 0) return;
-    const std::string header = io::npy_header(io::descr_of(type_), rows_, columns_);
-    MPI_Status status;
-    check_file(MPI_File_write_at(file_, 0, header.data(), static_cast<int>(header.size()), MPI_CHAR, &status),
-               path_, "written");
-    check_count(status, MPI_CHAR, header.size(), path_, "cannot be written: the disk is full");
-  });
   const std::uint64_t bytes = type_ == io::IndexType::int32 ? 4 : 8;
   const std::uint64_t begin = io::kNpyHeaderBytes + first_row * std::max<std::size_t>(1, columns_) * bytes;
-  if (type_ == io::IndexType::int32) {
-    write_values<std::int32_t>(ranks, file_, begin, values, path_);
-  } else {
-    write_values<std::int64_t>(ranks, file_, begin, values, path_);
-  }
+  ranks.together([&] {
+    if (ranks.rank() == 0) {
+      const std::string header = io::npy_header(io::descr_of(type_), rows_, columns_);
+      MPI_Status status;
+      check_file(
+          MPI_File_write_at(file_, 0, header.data(), static_cast<int>(header.size()), MPI_CHAR, &status),
+          path_, "written");
+      check_count(status, MPI_CHAR, header.size(), path_, "cannot be written: the disk is full");
+    }
+    if (type_ == io::IndexType::int32) {
+      write_values<std::int32_t>(file_, begin, values, path_);
+    } else {
+      write_values<std::int64_t>(file_, begin, values, path_);
+    }
+  });
   const int synced = MPI_File_sync(file_), closed = MPI_File_close(&file_);
   ranks.together([&] {
     check_file(synced, path_, "written");
