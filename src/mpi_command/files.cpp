@@ -21,6 +21,9 @@ namespace {
 // calls would gain nothing.
 constexpr std::size_t kPiece = std::size_t{1} << 22;
 
+constexpr const char* kCutShort =
+    "cannot be written to its end: the disk is full, or the file larger than permitted";
+
 void check_file(int code, const std::string& path, const char* what) {
   if (code == MPI_SUCCESS) return;
   char text[MPI_MAX_ERROR_STRING] = "";
@@ -69,7 +72,7 @@ void write_values(MPI_File file, std::uint64_t begin, const std::vector<std::int
     check_file(MPI_File_write_at(file, static_cast<MPI_Offset>(begin + done * sizeof(Value)), piece.data(),
                                  static_cast<int>(size), type, &status),
                path, "written");
-    check_count(status, type, size, path, "cannot be written: the disk is full");
+    check_count(status, type, size, path, kCutShort);
     done += size;
   }
 }
@@ -168,7 +171,7 @@ void IndexFile::write(Ranks& ranks, const std::vector<std::int64_t>& values, std
       check_file(
           MPI_File_write_at(file_, 0, header.data(), static_cast<int>(header.size()), MPI_CHAR, &status),
           path_, "written");
-      check_count(status, MPI_CHAR, header.size(), path_, "cannot be written: the disk is full");
+      check_count(status, MPI_CHAR, header.size(), path_, kCutShort);
     }
     if (type_ == io::IndexType::int32) {
       write_values<std::int32_t>(file_, begin, values, path_);
