@@ -39,6 +39,9 @@ void add(CLI::App& app, Action& action);
 namespace processes {
 void add(CLI::App& app, Action& action);
 }
+namespace ranks {
+void add(CLI::App& app, Action& action);
+}
 namespace launches {
 void add(CLI::App& app, Action& action);
 }
@@ -67,7 +70,7 @@ int run(int argc, char** argv) {
   Action action;
   for (const auto add : {targets::add, peers::add, modes::add, sizes::add_scaling, cliffs::add,
                          sizes::add_small, batches::add, embedding::add, threads::add, processes::add,
-                         launches::add, device::add, primitives::add, paper::add}) {
+                         ranks::add, launches::add, device::add, primitives::add, paper::add}) {
     add(app, action);
   }
   try {

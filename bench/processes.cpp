@@ -1,20 +1,16 @@
 // flaunay-bench processes: the command as a whole process, from its start to its end.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 
-#include "cli/errors.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "io/output.hpp"
 #include "io/points.hpp"
+#include "program.hpp"
 #include "timing.hpp"
 
 extern char** environ;
@@ -34,35 +30,6 @@ struct Request : Measurement {
   std::vector<std::string> choices{kNoOption, "device=host", "device=#0", "cold:device=#0", "mode=dwyer"};
 };
 
-// A folder that is removed at the end.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "flaunay-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw Error(ErrorKind::input, fmt::format("cannot make a folder such as {}", name));
-    }
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
-
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 // The environment of this process, and folders without compiled kernels: flaunay's and PoCL's.
 std::vector<std::string> cold_environment(const Folder& empty) {
   std::vector<std::string> all;
@@ -77,31 +44,13 @@ std::vector<std::string> cold_environment(const Folder& empty) {
   return all;
 }
 
-// Runs a program with its output thrown away, and returns the seconds that passed.
-double run_program(std::vector<std::string> words, bool is_cold) {
+double run_command(const std::vector<std::string>& words, bool is_cold) {
   const Folder empty;
-  std::vector<std::string> cold;
-  if (is_cold) cold = cold_environment(empty);
-  std::vector<char*> pointers = pointers_to(words), variables = pointers_to(cold);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const Stopwatch watch;
-  pid_t child = 0;
-  const int code = posix_spawn(&child, pointers.front(), &actions, nullptr, pointers.data(),
-                               is_cold ? variables.data() : environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  if (code != 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw Error(ErrorKind::device, fmt::format("{} could not be run, or failed", fmt::join(words, " ")));
-  }
-  return watch.seconds();
+  return run_program(words, is_cold ? cold_environment(empty) : std::vector<std::string>());
 }
 
 Result measure_processes(const Request& request) {
-  const std::string program = request.program.empty()
-                                  ? (fs::read_symlink("/proc/self/exe").parent_path() / "flaunay").string()
-                                  : request.program;
+  const std::string program = request.program.empty() ? beside_this("flaunay") : request.program;
   const Folder folder;
   std::vector<Job> jobs;
   Result result;
@@ -125,7 +74,7 @@ Result measure_processes(const Request& request) {
         words.push_back(*word == '-' ? word : folder.file(word));
       }
       jobs.push_back({fmt::format("flaunay {}, {} points", choice, n),
-                      [words, is_cold] { return run_program(words, is_cold); }});
+                      [words, is_cold] { return run_command(words, is_cold); }});
       rows.push_back({{"option", choice}, {"distribution", "uniform"}, {"n", n}});
     }
   }

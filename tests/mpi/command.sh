@@ -24,7 +24,10 @@ read -ra mpirun <<<"$MPIRUN"
 on() {
   local ranks=$1
   shift
-  "${mpirun[@]}" -n "$ranks" bash -c "ulimit -f $largest_file && exec \"\$0\" \"\$@\"" "$FLAUNAY_MPI" triangulate --quiet "$@"
+  : >"$WORK.ranks"
+  # shellcheck disable=SC2016
+  "${mpirun[@]}" -n "$ranks" bash -c 'ulimit -f "$1"; echo $$ >>"$2"; shift 2; exec "$@"' rank "$largest_file" \
+    "$WORK.ranks" "$FLAUNAY_MPI" triangulate --quiet "$@"
 }
 
 # refused CODE TEXT RANKS ARGUMENTS...: ends with the code and one message that has the text, and leaves what is there.
@@ -34,10 +37,10 @@ refused() {
   before="$(ls -A)"
   on "$@" >out 2>err || got=$?
   rm -f out
-  mv err ../err
-  [[ $got == "$code" ]] || fail "exit code $got, expected $code: $(cat ../err)"
-  [[ $(grep -c '^flaunay-mpi: ' ../err) == 1 ]] || fail "not one message: $(cat ../err)"
-  grep '^flaunay-mpi: ' ../err | grep -qF -- "$text" || fail "no '$text' in $(cat ../err)"
+  mv err "$WORK.err"
+  [[ $got == "$code" ]] || fail "exit code $got, expected $code: $(cat "$WORK.err")"
+  [[ $(grep -c '^flaunay-mpi: ' "$WORK.err") == 1 ]] || fail "not one message: $(cat "$WORK.err")"
+  grep '^flaunay-mpi: ' "$WORK.err" | grep -qF -- "$text" || fail "no '$text' in $(cat "$WORK.err")"
   [[ $(ls -A) == "$before" ]] || fail "it left something behind: $(ls -A)"
   [[ ! -e t.npy || $(cat t.npy) == old ]] || fail 't.npy changed'
 }
@@ -93,15 +96,11 @@ case "$1" in
     echo old >t.npy
     on 3 points.npy --triangles t.npy --neighbors n.npy >log 2>&1 &
     launcher=$!
-    # The ranks are the launcher's children.
-    for ((tries = 0; tries < 200; ++tries)); do
-      ranks="$(pgrep -P "$launcher" || true)"
-      [[ -z $ranks ]] || ranks+=" $(for each in $ranks; do pgrep -P "$each" || true; done)"
-      last="$(for each in $ranks; do [[ $(cat "/proc/$each/comm" 2>/dev/null) != flaunay-mpi ]] || echo "$each"; done | tail -1)"
-      [[ -z $last ]] || break
+    for ((tries = 0; tries < 500; ++tries)); do
+      (($(wc -l <"$WORK.ranks") < 3)) || break
       sleep 0.02
     done
-    [[ -n $last ]] || fail 'no rank was found'
+    last="$(tail -1 "$WORK.ranks")"
     sleep 0.6
     kill -KILL "$last" || fail 'the ranks were too fast'
     got=0
