@@ -19,6 +19,8 @@ struct Request : Measurement {
   std::vector<std::string> distributions{"uniform", "kuzmin", "line"};
   std::vector<std::string> memories{"1G"};
   std::size_t in_memory = 10000000;
+
+  std::string command() const { return program.empty() ? beside_this("flaunay") : program; }
 };
 
 // A process that is run several times: with a limit of memory, or, if that is empty, without chunks.
@@ -31,15 +33,10 @@ struct Run {
 };
 
 std::vector<std::string> words_of(const Request& request, const Run& run, const Folder& folder) {
-  std::vector<std::string> words = {program_or_default(request.program),
-                                    "triangulate",
-                                    folder.file("points.npy"),
-                                    "--triangles",
-                                    folder.file("t.npy"),
-                                    "--neighbors",
-                                    folder.file("n.npy"),
-                                    "--stats",
-                                    folder.file("s.json")};
+  std::vector<std::string> words = {
+      request.command(),    "triangulate", folder.file("points.npy"), "--triangles",
+      folder.file("t.npy"), "--neighbors", folder.file("n.npy"),      "--stats",
+      folder.file("s.json")};
   if (!run.memory.empty()) words.insert(words.end(), {"--memory", run.memory, "--scratch", folder.file("")});
   return words;
 }
@@ -81,8 +78,8 @@ Result measure_chunks(const Request& request) {
     std::sort(sizes.begin(), sizes.end());
     sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
     for (const std::size_t n : sizes) {
-      run_program({program_or_default(request.program), "generate", distribution, std::to_string(n), "-o",
-                   folder.file("points.npy")});
+      run_program(
+          {request.command(), "generate", distribution, std::to_string(n), "-o", folder.file("points.npy")});
       std::vector<Run> runs;
       const bool is_cut = std::find(request.sizes.begin(), request.sizes.end(), n) != request.sizes.end();
       if (n == request.in_memory) runs.push_back({distribution, n, ""});

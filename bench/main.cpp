@@ -42,6 +42,9 @@ void add(CLI::App& app, Action& action);
 namespace processes {
 void add(CLI::App& app, Action& action);
 }
+namespace ranks {
+void add(CLI::App& app, Action& action);
+}
 namespace launches {
 void add(CLI::App& app, Action& action);
 }
@@ -68,9 +71,10 @@ int run(int argc, char** argv) {
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
-  for (const auto add : {targets::add, peers::add, modes::add, sizes::add_scaling, cliffs::add,
-                         sizes::add_small, batches::add, chunks::add, embedding::add, threads::add,
-                         processes::add, launches::add, device::add, primitives::add, paper::add}) {
+  for (const auto add :
+       {targets::add, peers::add, modes::add, sizes::add_scaling, cliffs::add, sizes::add_small, batches::add,
+        chunks::add, embedding::add, threads::add, processes::add, ranks::add, launches::add, device::add,
+        primitives::add, paper::add}) {
     add(app, action);
   }
   try {

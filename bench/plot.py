@@ -167,6 +167,25 @@ def draw_threads(record):
     return time_bars(record, "Time by number of threads", group="group")
 
 
+def draw_ranks(record):
+    """Wall time and CPU time per point by number of ranks, on the same points and on as many for each rank."""
+    figure, panels = new_figure("Time by number of ranks", record, 4, 2)
+    scalings = [(scaling, key) for scaling in ("strong", "weak") for key in ("wall", "CPU")]
+    for panel, (scaling, key) in zip(panels, scalings):
+        series = {name: [] for name in names(record["results"], "distribution")}
+        for row in record["results"]:
+            if row["scaling"] == scaling:
+                seconds = row["cpu_seconds"] if key == "CPU" else row["seconds_median"]
+                series[row["distribution"]].append((row["ranks"], seconds / row["n"]))
+        lines(panel, series)
+        panel.set_ylim(bottom=0)
+        panel.yaxis.set_major_formatter(EngFormatter("s"))
+        panel.set_xticks(sorted({row["ranks"] for row in record["results"]}))
+        of = "the same points" if scaling == "strong" else "as many points for each rank"
+        panel.set(title=f"{scaling}: {of}", xlabel="ranks", ylabel=f"{key} time per point")
+    return figure, panels
+
+
 def draw_cliffs(record):
     sizes = names(record["cliffs"], "n")
     figure, panels = new_figure("Inputs on which triangulators are slow", record, len(sizes), 1, (10, 3.2))
@@ -232,7 +251,7 @@ def draw_primitives(record):
 
 
 DRAW = {
-    "peers": draw_peers, "threads": draw_threads, "cliffs": draw_cliffs, "targets": draw_targets,
+    "peers": draw_peers, "threads": draw_threads, "ranks": draw_ranks, "cliffs": draw_cliffs, "targets": draw_targets,
     "embedding": draw_embedding, "primitives": draw_primitives,
     "scaling": lambda record: time_by_size(record, "Time per point by number of points"),
     "small": lambda record: time_by_size(record, "Few points in a call"),

@@ -51,7 +51,7 @@ double run_timed(const std::vector<std::string>& words, bool is_cold) {
 }
 
 Result measure_processes(const Request& request) {
-  const std::string program = program_or_default(request.program);
+  const std::string program = request.program.empty() ? beside_this("flaunay") : request.program;
   const Folder folder;
   std::vector<Job> jobs;
   Result result;

@@ -55,8 +55,8 @@ Spent run_program(std::vector<std::string> words, std::vector<std::string> envir
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   const Stopwatch watch;
   pid_t child = 0;
-  const int code = posix_spawn(&child, pointers.front(), &actions, nullptr, pointers.data(),
-                               environment.empty() ? environ : variables.data());
+  const int code = posix_spawnp(&child, pointers.front(), &actions, nullptr, pointers.data(),
+                                environment.empty() ? environ : variables.data());
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
   rusage usage{};
@@ -69,8 +69,8 @@ Spent run_program(std::vector<std::string> words, std::vector<std::string> envir
           kKibibyte * static_cast<std::size_t>(usage.ru_maxrss)};
 }
 
-std::string program_or_default(const std::string& program) {
-  return program.empty() ? (fs::read_symlink("/proc/self/exe").parent_path() / "flaunay").string() : program;
+std::string beside_this(const std::string& name) {
+  return (fs::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
 }  // namespace flaunay::bench

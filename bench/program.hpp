@@ -29,11 +29,11 @@ struct Spent {
   std::size_t resident_peak = 0;  ///< bytes
 };
 
-/// Runs a program with its output thrown away. environment: empty for that of this process. Throws
-/// Error(device) if it fails.
+/// Runs a program, by its path or its name, with its output thrown away. environment: empty for that of this
+/// process. Throws Error(device) if it fails.
 Spent run_program(std::vector<std::string> words, std::vector<std::string> environment = {});
 
-/// The program, or if it is empty flaunay beside this program.
-std::string program_or_default(const std::string& program);
+/// The program of this name in the folder of this one.
+std::string beside_this(const std::string& name);
 
 }  // namespace flaunay::bench

@@ -8,6 +8,14 @@ install(TARGETS flaunay EXPORT flaunay-targets FILE_SET HEADERS INCLUDES DESTINA
 if(TARGET flaunay_cli)
   install(TARGETS flaunay_cli)
 endif()
+# The component mpi, with targets of its own, so that others need no MPI.
+if(TARGET flaunay_mpi)
+  install(TARGETS flaunay_mpi EXPORT flaunay-mpi-targets FILE_SET HEADERS INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT flaunay-mpi-targets NAMESPACE flaunay:: DESTINATION ${FLAUNAY_CONFIG_DIR})
+endif()
+if(TARGET flaunay_mpi_cli)
+  install(TARGETS flaunay_mpi_cli)
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(EXPORT flaunay-targets NAMESPACE flaunay:: DESTINATION ${FLAUNAY_CONFIG_DIR})

@@ -9,6 +9,8 @@ packages=(
   ocl-icd-opencl-dev opencl-headers pocl-opencl-icd
   # libraries
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
+  # MPI, for what FLAUNAY_MPI builds
+  libopenmpi-dev openmpi-bin
   # tests
   libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
   # libFuzzer, for the readers of files

@@ -335,6 +335,25 @@ TEST_F(BenchTest, ChunksAreTimed) {
   }
 }
 
+TEST_F(BenchTest, RanksAreCounted) {
+#ifndef FLAUNAY_BENCH_MPIRUN
+  GTEST_SKIP() << "without MPI";
+#else
+  const auto record =
+      run_well("ranks --sizes 3000 --sizes-per-rank 1000 --counts 1,3 --distributions uniform --launcher '" +
+               std::string(FLAUNAY_BENCH_MPIRUN) + "'");
+  ASSERT_EQ(record["results"].size(), 4u);
+  for (const auto& row : record["results"]) {
+    expect_keys(row, {"scaling", "distribution", "n", "ranks", "seconds_median", "cpu_seconds",
+                      "bytes_sent_over_own", "most_points_over_mean"});
+    EXPECT_EQ(row.value("n", 0) == 3000 || row.value("ranks", 0) == 1, true);
+    EXPECT_EQ(row.value("bytes_sent_over_own", 0.0) > 0, row.value("ranks", 0) == 3);
+  }
+  EXPECT_EQ(record["targets"].size(), 3u);
+  expect_drawn({"Time by number of ranks", "strong: the same points"});
+#endif
+}
+
 TEST_F(BenchTest, BatchesAreBesideLoops) {
   const auto record = run_well("batches --quick");
   const bool cgal = !without_cgal(contents(path("err")));

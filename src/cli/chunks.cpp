@@ -57,9 +57,13 @@ void add_chunk_options(CLI::App* command, ChunkRequest& request) {
   add_path(command, "--scratch", request.scratch,
            "Chunks: the folder for 24 bytes per point, in a file without a name; default: TMPDIR, or /tmp")
       ->check(CLI::ExistingDirectory);
-  request.index = "auto";
+  add_index(command, request.index);
+}
+
+void add_index(CLI::App* command, std::string& index) {
+  index = "auto";
   command
-      ->add_option("--index", request.index,
+      ->add_option("--index", index,
                    "Bits of the indices in .npy files; auto: 64 if there are more than 2^30 points")
       ->check(CLI::IsMember({"auto", "32", "64"}))
       ->capture_default_str();

@@ -26,6 +26,8 @@ struct ChunkRequest {
 
 /// Adds --memory, --chunk-points, --scratch and --index.
 void add_chunk_options(CLI::App* command, ChunkRequest& request);
+/// Adds --index: a choice for index_type.
+void add_index(CLI::App* command, std::string& index);
 
 /// The names in a list that is separated by commas.
 std::vector<std::string> devices_of(const std::string& list);

@@ -15,6 +15,10 @@ std::vector<std::string> ResultPaths::all() const {
 void add_results(CLI::App* command, ResultPaths& paths) {
   add_path(command, "-o,--output", paths.mesh,
            "Mesh: .ele (with .node beside it), .off, .ply, .vtu, .obj, .npy or .svg");
+  add_result_arrays(command, paths);
+}
+
+void add_result_arrays(CLI::App* command, ResultPaths& paths) {
   for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
     add_path(command, kArrayFiles[k].option, paths.arrays[k], kArrayFiles[k].description);
   }

@@ -44,6 +44,8 @@ struct ResultPaths {
 };
 
 void add_results(CLI::App* command, ResultPaths& paths);
+/// The same without --output.
+void add_result_arrays(CLI::App* command, ResultPaths& paths);
 
 /// Sets the options for the arrays that have a path, and clears them for the others.
 void ask_for(const ResultPaths& paths, Options& options);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests of the package, each for one run of CTest (tests/CMakeLists.txt):
 #
-#   package.sh install | symbols | header | find_package | pkg_config | subdirectory | static
+#   package.sh install | symbols | header | find_package | mpi | pkg_config | subdirectory | static
 #
 # In the environment: SOURCE, BUILD and VERSION of flaunay, WORK (a folder to work in), CMAKE, CC and CXX.
 # WORK/prefix is what install installs, the only thing that find_package and pkg_config know of flaunay; static tests
@@ -82,8 +82,8 @@ case "$1" in
     if grep -rIlF -e "$SOURCE" -e "$BUILD" -e "$prefix" "$prefix"; then
       fail 'these name the folder of the source, of the build or of the installation'
     fi
-    for binary in "$prefix"/bin/flaunay "$prefix"/lib*/libflaunay.so; do
-      if readelf -d "$binary" | grep -E 'R(UN)?PATH'; then
+    for binary in "$prefix"/bin/flaunay* "$prefix"/lib*/libflaunay*.so; do
+      if readelf -d "$binary" | grep -E 'R(UN)?PATH' | grep -vF '[$ORIGIN]'; then
         fail "$binary has a path"
       fi
     done
@@ -93,10 +93,27 @@ case "$1" in
     rm -rf "$WORK/find_package"
     # What only flaunay itself is built from might as well not be there.
     configure "$WORK/find_package" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON \
-      -DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON
+      -DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON \
+      -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON
     "$CMAKE" --build "$WORK/find_package"
     run_consumers "$WORK/find_package"
     uses_installed "$WORK/find_package"
+    ;;
+
+  mpi)
+    rm -rf "$WORK/mpi"
+    "$CMAKE" -S "$here/mpi" -B "$WORK/mpi" -G Ninja -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_COMPILER="$CXX" \
+      -DCMAKE_PREFIX_PATH="$prefix"
+    "$CMAKE" --build "$WORK/mpi"
+    printed="$(mpirun --allow-run-as-root --oversubscribe -n 3 "$WORK/mpi/consumer_mpi")"
+    [[ $printed == '9 points, 8 triangles, 8 hull vertices' ]] || fail "it printed $printed"
+    loaded="$(ldd "$WORK/mpi/consumer_mpi" | grep libflaunay)"
+    [[ $loaded == *"=> $prefix/"*'/libflaunay_mpi.so.0 '* ]] || fail "it loads another library: $loaded"
+    # The header alone, strictly.
+    echo '#include <flaunay/mpi.hpp>' >"$WORK/mpi/header.cpp"
+    read -ra flags <<<"$(pkg-config --cflags ompi-c)"
+    "$CXX" -std=c++17 -Wall -Wextra -Wpedantic -Werror -I "$prefix/include" "${flags[@]/#-I/-isystem}" \
+      -DOMPI_SKIP_MPICXX -c "$WORK/mpi/header.cpp" -o "$WORK/mpi/header.o"
     ;;
 
   pkg_config)
@@ -127,20 +144,20 @@ case "$1" in
 
   symbols)
     # Exported is what a header marks, and all of it.
-    library="$(find "$prefix" -name libflaunay.so)"
     headers="$prefix/include/flaunay"
-    nm -D --defined-only -C "$library" | cut -d ' ' -f 3- | sed -E 's/^(typeinfo name|typeinfo|vtable) for //' |
+    find "$prefix" -name 'libflaunay*.so' -exec nm -D --defined-only -C {} + | sed '/^$/d; /:$/d' | cut -d ' ' -f 3- | sed -E 's/^(typeinfo name|typeinfo|vtable) for //' |
       sort -u >"$WORK/exported"
     # A function's name may be on the line below its type.
     marked="$(sed -E '/FLAUNAY_API [^(;{]*$/{N; s/\n */ /}' "$headers"/*.h* | sed -nE '/^#/d; s/^ *(class|struct) FLAUNAY_API ([A-Za-z_]+).*/\2/p; t
       s/^ *FLAUNAY_API [^(]*[ *&]([A-Za-z_]+|operator[^(]+)\(.*/\1/p' | sort -u)"
     [[ -n $marked ]] || fail 'no header marks anything'
     failed=false
-    # flaunay::NAME(...), flaunay::CLASS::NAME(...), the same in flaunay::research or, in C, flaunay_NAME.
+    # flaunay::NAME(...), flaunay::CLASS::NAME(...), the same in flaunay::research and flaunay::mpi or, in C, flaunay_NAME.
     while read -r symbol; do
       name="${symbol%%(*}"
       name="${name#flaunay::}"
       name="${name#research::}"
+      name="${name#mpi::}"
       owner="${name%%::*}" member="${name#*::}"
       # A marked class or function, or a marked member of a class of the headers.
       if [[ $symbol == flaunay[:_]* && $member != *::* ]] && { grep -qxF -e "$owner" <<<"$marked" ||
