@@ -21,6 +21,7 @@
 #include "cli/progress.hpp"
 #include "cli/results.hpp"
 #include "flaunay/mpi.hpp"
+#include "io/disk_space.hpp"
 #include "io/temporary.hpp"
 #include "mpi_command/files.hpp"
 
@@ -141,7 +142,7 @@ io::IndexType check_outputs(const Request& request, std::uint64_t points) {
   const std::uint64_t bytes = (type == io::IndexType::int32 ? 4 : 8) * points;
   const auto& paths = request.results.arrays;
   // There are at most twice as many triangles as points; the hull is long for few inputs.
-  cli::check_disk_space({{paths[0], 6 * bytes}, {paths[1], 6 * bytes}, {paths[3], bytes}});
+  io::check_disk_space({{paths[0], 6 * bytes}, {paths[1], 6 * bytes}, {paths[3], bytes}});
   return type;
 }
 
