@@ -26,8 +26,10 @@ void RankSink::write(MeshArray array, std::uint64_t first, const std::int64_t* v
       break;
     case MeshArray::neighbors:
       if (rank_of_row(static_cast<std::int64_t>(first / 3)) != rank_) {
-        // Only neighbours that are found later than their row are of other ranks, and come one by one.
-        links_.push_back({static_cast<std::int64_t>(first), *values});
+        // Only neighbours that are found later than their row are of other ranks.
+        for (std::size_t k = 0; k < count; ++k) {
+          links_.push_back({static_cast<std::int64_t>(first + k), values[k]});
+        }
       } else {
         const std::size_t place = first - 3 * first_row();
         if (place == neighbors_.size()) {
