@@ -21,11 +21,11 @@ scripts/format.sh --check
 
 jobs="$(nproc)"
 build() {
-  cmake --preset "$1"
+  cmake --preset "$@"
   cmake --build --preset "$1"
 }
 
-build release
+build release -DFLAUNAY_MPI=ON
 if ! $quick; then
   build asan
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the

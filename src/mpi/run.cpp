@@ -33,7 +33,9 @@ using Join = Ranks::Join;
 
 // If a round hands on more than this share of its points, all go to one rank.
 constexpr std::int64_t kMostHandedOnPercent = 70;
-// With fewer points than this, another round costs more than it saves.
+// While few ranks triangulate what is left, the others wait. So later rounds have this part of a rank's
+// points of the first one; but with fewer than so many, another round costs more than it saves.
+constexpr std::size_t kRoundPart = 16;
 constexpr std::size_t kLeastRoundPoints = std::size_t{1} << 16;
 constexpr std::size_t kPart = std::size_t{1} << 14;  // points that a thread takes at once
 
@@ -145,7 +147,7 @@ class Run {
     round_points_ = options.round_points;
     if (round_points_ == 0) {
       const auto mean = static_cast<std::size_t>(points.total() / ranks.size());
-      round_points_ = std::max(mean, kLeastRoundPoints);
+      round_points_ = std::max(mean / kRoundPart, kLeastRoundPoints);
     }
     result_.statistics.device = solver.name;
     result_.statistics.points = static_cast<std::uint64_t>(points.total());

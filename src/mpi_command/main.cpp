@@ -212,10 +212,9 @@ void add_triangulate(CLI::App& app, Request& request) {
       "The device of each rank: a part of its name, #k for the k-th that flaunay devices lists, or "
       "host; several with commas between them: the ranks of a machine take them in turn");
   command
-      ->add_option(
-          "--round-points", request.options.round_points,
-          "Points of a rank in later rounds, which have as few ranks as that permits; default: the mean of "
-          "the first round")
+      ->add_option("--round-points", request.options.round_points,
+                   "Points of a rank in later rounds, which have as few ranks as that permits; default: a "
+                   "sixteenth of the mean of the first round, but at least 65,536")
       ->check(CLI::PositiveNumber);
   cli::add_index(command, request.index);
   cli::add_quiet(command, request.quiet);

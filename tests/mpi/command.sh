@@ -94,6 +94,7 @@ case "$1" in
   killed)
     "$FLAUNAY" generate uniform 3000000 -o points.npy
     echo old >t.npy
+    : >"$WORK.ranks"
     on 3 points.npy --triangles t.npy --neighbors n.npy >log 2>&1 &
     launcher=$!
     for ((tries = 0; tries < 500; ++tries)); do

@@ -22,7 +22,7 @@ struct Options {
   std::string device;
   bool neighbors = true;  ///< compute Triangulation::neighbors
   /// Points that a rank should have at most in rounds after the first, in which as few ranks as possible work
-  /// on what is left. 0: as many as it had of the input on average, but at least 65,536.
+  /// on what is left. 0: a sixteenth of the mean of the first round, but at least 65,536.
   std::size_t round_points = 0;
 };
 
