@@ -63,9 +63,9 @@ using Paths = std::array<std::string, io::kMeshArrays>;
 template <typename Index>
 class Results : public MeshSink {
  public:
-  Results(const Wanted& wanted, std::uint64_t n)
+  Results(const Wanted& wanted, std::uint64_t n, const std::string& scratch)
       : paths_(paths_of(wanted)), files_(outputs_, paths_, kType), in_memory_(allocate(wanted, n)) {
-    io::check_room(paths_, n, kType);
+    io::check_room(paths_, n, kType, scratch);
   }
 
   bool wants(MeshArray array) const override { return files_.wants(array) || in_memory_.wants(array); }
@@ -169,7 +169,7 @@ std::function<void(const std::string&, int, double)> with_signals(const py::obje
 
 template <typename Index>
 py::tuple run(PointSource& source, const Wanted& wanted, const ChunkOptions& options) {
-  Results<Index> results(wanted, source.size());
+  Results<Index> results(wanted, source.size(), options.scratch);
   ChunkStatistics statistics;
   {
     const py::gil_scoped_release release;

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "chunks/points.hpp"
+#include "flaunay/chunks.hpp"
 #include "io/scratch.hpp"
 #include "shared/language.h"
 
 namespace flaunay::chunks {
 
 /// The bytes of a point of the first round in the scratch file.
-constexpr std::size_t kFirstRoundBytes = 24;
+constexpr std::size_t kFirstRoundBytes = kScratchBytesPerPoint;
 
 /// Buffers for a chunk have a multiple of this many bytes: whole points, and whole blocks of the disk, so
 /// that these can be given back. Smaller ones would be slow to read.

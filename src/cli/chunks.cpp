@@ -150,7 +150,7 @@ int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) 
   facts.reading_seconds = stopwatch.restart();
 
   const io::IndexType type = index_type(request.index, points->size(), request.results);
-  io::check_room(request.results.arrays, points->size(), type);
+  io::check_room(request.results.arrays, points->size(), type, request.scratch);
   io::MeshFiles files(outputs.files(), request.results.arrays, type);
   const ChunkStatistics statistics = triangulate_file(request, *points, files, progress);
 

@@ -41,8 +41,10 @@ class MeshFiles : public MeshSink {
 };
 
 /// Throws Error(input) if the disks have no room for the arrays of n points, which have at most 2 n
-/// triangles. The hull is not counted, since it is long for few inputs.
-void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type);
+/// triangles, and for the points of chunks in the scratch folder. The hull is not counted, since it is long
+/// for few inputs.
+void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
+                const std::string& scratch);
 
 /// Entries per row of an array's file; 0: it has one dimension.
 std::size_t columns_of(MeshArray array);

@@ -307,6 +307,16 @@ TEST_F(PointStreamTest, BinaryPointsOfAPipeAreRefused) {
                [&] { open_point_stream(path("pipe.npy"), folder_); });
 }
 
+TEST_F(PointStreamTest, RoomForResultsAndScratchOnOneDisk) {
+  // Points whose triangles and neighbours fit, 48 bytes a point, or their scratch, 24, but not both.
+  const std::uint64_t n = free_bytes(folder_) / 60;
+  const std::array<std::string, kMeshArrays> both = {path("t.npy"), path("n.npy"), "", ""};
+  check_room({}, n, IndexType::int32, folder_);
+  check_room(both, n / 2, IndexType::int32, folder_);
+  expect_error(ErrorKind::input, path("t.npy") + ": the disk of ", {"has room for"},
+               [&] { check_room(both, n, IndexType::int32, folder_); });
+}
+
 TEST_F(PointStreamTest, ScratchThatCannotBeWritten) {
   const std::string file = write("a.xy", "1 2\n");
   expect_error(ErrorKind::input, path("nowhere") + ": ", {"No such file"},

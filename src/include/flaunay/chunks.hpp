@@ -39,13 +39,16 @@ class FLAUNAY_API MeshSink {
   virtual void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) = 0;
 };
 
+/// Bytes in the scratch folder for each point.
+constexpr std::size_t kScratchBytesPerPoint = 24;
+
 /// The options of triangulate_chunks.
 struct ChunkOptions {
   /// Bytes that the call may use on the host, devices that share its memory included, but not what the system
   /// keeps of files. 0: half of what is free.
   std::uint64_t memory_bytes = 0;
-  /// The folder for the points of chunks, 24 bytes per point, in a file without a name. Empty: TMPDIR, or
-  /// /tmp.
+  /// The folder for the points of chunks, kScratchBytesPerPoint each, in a file without a name. Empty:
+  /// TMPDIR, or /tmp.
   std::string scratch;
   /// The devices, each named as for Triangulator; "all": every usable device. They take chunks from one
   /// queue. Empty: flaunay's own choice of one.
