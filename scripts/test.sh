@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds and runs all tests. Needs only Debian 12: installs everything else first.
-#   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers, and a minute of fuzzing
+#   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers, and some fuzzing
 #                             the readers of files
 #   scripts/test.sh --quick   without the sanitizers
 set -euo pipefail
@@ -31,7 +31,7 @@ if ! $quick; then
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
   # detection on again.
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
-  scripts/fuzz.sh 1m readers
+  scripts/fuzz.sh 20s readers
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
 ctest --preset release --no-tests=error -j "$jobs"
