@@ -59,9 +59,9 @@ def test_circumcentres_are_as_far_from_all_corners(points):
     np.testing.assert_allclose(distances, distances[:, :1].repeat(3, axis=1))
 
 
-def test_duplicates_have_no_cell():
+def test_the_cell_of_a_duplicate_is_its_twins():
     vor = flaunay.Voronoi([[0, 0], [2, 0], [0, 2], [2, 2.5], [2, 0]])
-    assert vor.point_region.tolist() == [0, 1, 2, 3, -1]
+    assert vor.point_region.tolist() == [0, 1, 2, 3, 1]
     assert vor.regions[4] == []
 
 
