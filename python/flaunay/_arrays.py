@@ -140,7 +140,7 @@ def as_floats(given: ArrayLike, name: str) -> FloatArray:
 def check_points_shape(points: FloatArray) -> None:
     """UsageError unless the shape is (n, 2)."""
     if points.ndim != 2:
-        raise UsageError(f"points must have the shape (n, 2), not {points.shape}")
+        raise UsageError(f"points must have two dimensions, of the shape (n, 2), not {points.shape}")
     if points.shape[1] != 2:
         raise UsageError(f"points must be two-dimensional, but have {points.shape[1]} coordinates")
 

@@ -59,7 +59,7 @@ def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any)
     try:
         return ask(queries)
     except InputError:
-        finite = np.isfinite(queries).all(axis=1)
+        finite: npt.NDArray[np.bool_] = np.isfinite(queries).all(axis=1)
         if finite.all():
             raise
     answers = ask(np.where(finite[:, None], queries, 0))

@@ -197,7 +197,9 @@ def to_scipy(tri: Delaunay) -> scipy.spatial.Delaunay:
     made.paraboloid_scale, made.paraboloid_shift = tri.paraboloid_scale, tri.paraboloid_shift
     made.ndim, made.npoints, made.nsimplex = tri.ndim, tri.npoints, tri.nsimplex
     made.furthest_site = False
+    # The same as SciPy's, which calls LAPACK for each simplex.
+    made._transform = np.array(tri.transform)
     # SciPy computes these when they are asked for.
-    made._transform = made._vertex_to_simplex = made._vertex_neighbor_vertices = None
+    made._vertex_to_simplex = made._vertex_neighbor_vertices = None
     made._qhull = None
     return made
