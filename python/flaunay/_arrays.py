@@ -73,16 +73,26 @@ def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any
     return np.ma.getdata(given)
 
 
-def _of_arrow(given: Any, name: str) -> Any:
-    """The numbers of a column of lists of one size, in which pyarrow has points, and what is none unchanged."""
+def _of_arrow(given: Any, name: str) -> npt.NDArray[Any]:
+    """The numbers of pyarrow: tables, columns, and columns of lists of one size, of which points have two each."""
+    if hasattr(given, "columns"):
+        return np.stack([np.asarray(column) for column in given.columns], axis=1)
     if hasattr(given, "combine_chunks"):
         given = given.combine_chunks()
-    if getattr(getattr(given, "type", None), "list_size", None) is None:
-        return given
+    size = getattr(given.type, "list_size", None)
+    if size is None:
+        return np.asarray(given)
     # Also the null rows of a column have numbers.
     if given.null_count or given.flatten().null_count:
         raise UsageError(f"{name} have nulls: drop them before")
-    return np.asarray(given.flatten()).reshape(len(given), given.type.list_size)
+    return np.asarray(given.flatten()).reshape(len(given), size)
+
+
+def _of_dlpack(given: Any) -> npt.NDArray[Any]:
+    # NumPy 1.22 has it under another name.
+    from_dlpack = getattr(np, "from_dlpack", None) or getattr(np, "_from_dlpack")
+    array: npt.NDArray[Any] = from_dlpack(given)
+    return array
 
 
 def _check_memory(given: Any, name: str) -> None:
@@ -103,13 +113,13 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
         return given
     if isinstance(given, np.ma.MaskedArray):
         return _of_masked(given, name)
-    _check_memory(given, name)
     library = type(given).__module__.partition(".")[0]
     try:
         if library == "pyarrow":
-            given = _of_arrow(given, name)
+            return _of_arrow(given, name)
+        _check_memory(given, name)
         if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
-            return np.from_dlpack(given)  # type: ignore[arg-type]
+            return _of_dlpack(given)
         array = np.asarray(given)
         if array.dtype.kind == "O" and library == "pandas":
             # Columns that may have missing values; those become NaN, which is an error where it matters.
@@ -134,13 +144,18 @@ def as_floats(given: ArrayLike, name: str) -> FloatArray:
         array = array.astype(array.dtype.newbyteorder("="))
     if array.dtype not in _FLOATS:
         array = _as_doubles(array, name)
+    flags = array.flags
+    if flags.c_contiguous and flags.aligned:
+        return array
     return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
 
 
 def check_points_shape(points: FloatArray) -> None:
     """UsageError unless the shape is (n, 2)."""
     if points.ndim != 2:
-        raise UsageError(f"points must have two dimensions, of the shape (n, 2), not {points.shape}")
+        raise UsageError(
+            f"points must have two dimensions, of the shape (n, 2), not {points.shape}"
+        )
     if points.shape[1] != 2:
         raise UsageError(f"points must be two-dimensional, but have {points.shape[1]} coordinates")
 
@@ -164,7 +179,7 @@ def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
 
 def frozen(array: _Array) -> _Array:
     """The array, read-only from now on."""
-    array.flags.writeable = False
+    array.setflags(write=False)
     return array
 
 

@@ -24,7 +24,7 @@ from flaunay._arrays import (
     summary,
 )
 from flaunay._errors import InputError, UsageError
-from flaunay._triangulation import triangulate
+from flaunay._triangulation import arrays_of_mesh
 
 if TYPE_CHECKING:
     import scipy.spatial
@@ -51,6 +51,10 @@ def _as_queries(xi: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
     return np.asarray(queries, np.float64).reshape(-1, 2), queries.shape[:-1]
 
 
+def _are_finite(queries: Doubles) -> npt.NDArray[np.bool_]:
+    return np.isfinite(queries[:, 0]) & np.isfinite(queries[:, 1])
+
+
 def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any) -> _Answers:
     """What is asked about queries, and `nowhere` for those that are not finite.
 
@@ -59,7 +63,7 @@ def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any)
     try:
         return ask(queries)
     except InputError:
-        finite: npt.NDArray[np.bool_] = np.isfinite(queries).all(axis=1)
+        finite = _are_finite(queries)
         if finite.all():
             raise
     answers = ask(np.where(finite[:, None], queries, 0))
@@ -158,12 +162,11 @@ class Delaunay:
         self._locator_or_none: Optional[tuple[_flaunay.Locator, int]] = None
         # Two threads that ask at the same time should not both make a locator.
         self._locator_lock = threading.Lock()
-        mesh = triangulate(self.points, device=device, mode=mode)
-        assert mesh.neighbors is not None
-        self.simplices: Indices = frozen(mesh.triangles)
-        self.neighbors: Indices = frozen(mesh.neighbors)
-        self.hull: Indices = frozen(mesh.hull)
-        self.representatives: Indices = frozen(mesh.representatives)
+        mesh = arrays_of_mesh(self.points, None, {"neighbors"}, device, mode)
+        self.simplices: Indices = frozen(mesh["triangles"])
+        self.neighbors: Indices = frozen(mesh["neighbors"])
+        self.hull: Indices = frozen(mesh["hull"])
+        self.representatives: Indices = frozen(mesh["representatives"])
         if all_must_be_vertices:
             _scipy.check_all_are_vertices(self)
 
@@ -441,7 +444,7 @@ class Delaunay:
             check_out(out, np.int32, shape, "out")
         found = _answers(self._locate, queries, -1)
         if tol and self.nsimplex:
-            outside = np.flatnonzero((found < 0) & np.isfinite(queries).all(axis=1))
+            outside = np.flatnonzero((found < 0) & _are_finite(queries))
             found[outside] = _scipy.simplices_near_hull(self, queries[outside], tol)
         return _given(found.reshape(shape), out)
 

@@ -202,4 +202,6 @@ def to_scipy(tri: Delaunay) -> scipy.spatial.Delaunay:
     # SciPy computes these when they are asked for.
     made._vertex_to_simplex = made._vertex_neighbor_vertices = None
     made._qhull = None
+    if hasattr(scipy.spatial.Delaunay, "vertices"):
+        made._vertices = made.simplices  # SciPy before 1.11 has two names for them
     return made

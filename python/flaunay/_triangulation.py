@@ -10,7 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import ArrayLike, as_points, as_segments, check_out, names_of, summary
+from flaunay._arrays import (
+    ArrayLike,
+    FloatArray,
+    as_points,
+    as_segments,
+    check_out,
+    names_of,
+    summary,
+)
 from flaunay._errors import UsageError
 
 Indices = npt.NDArray[np.int32]
@@ -106,6 +114,26 @@ def _write(result: dict[str, Any], arrays: dict[str, Indices]) -> None:
         result[name] = view
 
 
+def arrays_of_mesh(
+    coordinates: FloatArray,
+    offsets: Optional[npt.NDArray[np.int64]],
+    wanted: set[str],
+    device: Optional[str],
+    mode: str,
+) -> dict[str, Any]:
+    """What a `Triangulation` consists of, by its names. wanted: the optional arrays to compute."""
+    if not isinstance(mode, str):
+        names = ", ".join(row["name"] for row in _flaunay.modes())
+        raise UsageError(f"there is no mode {mode!r}; there are {names}")
+    if mode in _MODES_ON_HOST:
+        if device is not None:
+            raise UsageError(f"mode {mode} runs on the host and takes no device")
+        doubles = np.asarray(coordinates, dtype=np.float64)
+        return _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
+    triangulator = _triangulators.of_device(device)
+    return triangulator.triangulate(coordinates, offsets, mode, wanted)
+
+
 def triangulate(
     points: ArrayLike,
     segments: Optional[npt.ArrayLike] = None,
@@ -183,17 +211,7 @@ def triangulate(
     offsets = None if segments is None else as_segments(segments)
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     places = None if out is None else _arrays_of(out, wanted)
-    if not isinstance(mode, str):
-        names = ", ".join(row["name"] for row in _flaunay.modes())
-        raise UsageError(f"there is no mode {mode!r}; there are {names}")
-    if mode in _MODES_ON_HOST:
-        if device is not None:
-            raise UsageError(f"mode {mode} runs on the host and takes no device")
-        doubles = np.asarray(coordinates, dtype=np.float64)
-        result = _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
-    else:
-        triangulator = _triangulators.of_device(device)
-        result = triangulator.triangulate(coordinates, offsets, mode, wanted)
+    result = arrays_of_mesh(coordinates, offsets, wanted, device, mode)
     if places:
         _write(result, places)
     return Triangulation(**result)

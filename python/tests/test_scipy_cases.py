@@ -38,6 +38,7 @@ NOT_APPLICABLE = {
     "Test_Qhull::test_swapping": OF_QHULL,
     "TestUtilities::test_*volume_area*": OF_QHULL,
     "TestConvexHull::test_[!h]*": OF_QHULL,
+    "*test_vertices_deprecation": "an attribute that SciPy has removed since",
     "*NDInterpolation::test_threading": "slow, and hands over points",
     "Test_HalfspaceIntersection::*": OF_QHULL,
 }
