@@ -195,7 +195,14 @@ def test_what_is_nearly_cocircular_is_not_merged(scale):
 def test_cocircularity_is_that_of_fractions(random):
     # Quadrilaterals on circles, of small and large integers and beyond, half of them moved a little.
     ring = circle(1000)
-    for scale, digits in (1, 0), (2.0**20, 0), (1, 45), (2.0**-300, 0), (2.0**300, 45):
+    for scale, digits in (
+        (1, 0),
+        (12345679, 0),
+        (1, 45),
+        (2.0**-277, 0),
+        (2.0**-300, 0),
+        (2.0**300, 45),
+    ):
         quads = random.permuted(np.tile(np.arange(len(ring)), (100, 1)), axis=1)[:, :4]
         points = (ring[quads] + (2.0**digits if digits else 0)) * scale
         points[::2, 3] = np.nextafter(points[::2, 3], np.inf)
