@@ -41,7 +41,7 @@ def check_options(furthest_site: bool, incremental: bool, qhull_options: Optiona
     if incremental:
         raise UsageError(
             "incremental=True is not possible: make a new triangulation of the old points and the new, which "
-            "takes less time than SciPy takes to add many"
+            "takes less time than SciPy takes to add a point"
         )
     if qhull_options is None:
         return False
