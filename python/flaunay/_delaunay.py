@@ -238,10 +238,9 @@ class Delaunay:
         starts, indices = _flaunay.vertex_neighbors(self.simplices, self.hull, self.npoints)
         return frozen(starts), frozen(indices)
 
-    @cached_property
-    def _corners(self) -> Doubles:
-        """The coordinates of the simplices' corners, shape (nsimplex, 3, 2)."""
-        return np.asarray(self.points, np.float64)[self.simplices]
+    def _corners(self, simplices: Indices) -> Doubles:
+        """The coordinates of simplices' corners, shape (..., 3, 2)."""
+        return np.asarray(self.points[simplices], np.float64)
 
     @cached_property
     def transform(self) -> Doubles:
@@ -259,7 +258,7 @@ class Delaunay:
         >>> tri.transform[0, :2] @ ([1, 1] - tri.transform[0, 2])
         array([0.5 , 0.25])
         """
-        return frozen(_scipy.barycentric_transforms(self._corners))
+        return frozen(_scipy.barycentric_transforms(self._corners(self.simplices)))
 
     @cached_property
     def _paraboloid(self) -> tuple[float, float]:
@@ -281,7 +280,7 @@ class Delaunay:
 
         Of each its unit normal, which points down, and its offset.
         """
-        return frozen(_scipy.plane_equations(self._corners, *self._paraboloid))
+        return frozen(_scipy.plane_equations(self._corners(self.simplices), *self._paraboloid))
 
     @cached_property
     def good(self) -> Indices:
@@ -384,7 +383,6 @@ class Delaunay:
         # What is in device memory is made again where it is needed; a lock is the object's own.
         state = {**self.__dict__, "_locator_or_none": None}
         del state["_locator_lock"]
-        state.pop("_corners", None)
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -169,7 +169,7 @@ def simplices_near_hull(tri: Delaunay, outside: Doubles, tolerance: float) -> In
     found = np.full(len(outside), -1, np.int32)
     for step in (0, 1, -1):
         candidates = simplices[(places - 1 + first + step) % len(ring)]
-        transforms = tri.transform[candidates]
+        transforms = barycentric_transforms(tri._corners(tri.simplices[candidates]))
         coordinates = np.einsum("kij,kj->ki", transforms[:, :2], outside - transforms[:, 2])
         coordinates = np.column_stack([coordinates, 1 - coordinates.sum(axis=1)])
         inside = ((coordinates >= -tolerance) & (coordinates <= 1 + tolerance)).all(axis=1)
