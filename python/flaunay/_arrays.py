@@ -66,9 +66,9 @@ def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any
     """The numbers of a masked array; UsageError if one is masked, since leaving points out would renumber the rest."""
     masked = np.argwhere(np.ma.getmaskarray(given))
     if len(masked):
+        hint = ", as points[~points.mask.any(axis=1)]" if name == "points" else ""
         raise UsageError(
-            f"{name}{masked[0].tolist()} is masked, and every one of {name} counts: leave masked ones out before, "
-            f"as {name}[~{name}.mask.any(axis=1)]"
+            f"{name}{masked[0].tolist()} is masked: leave masked ones out before{hint}"
         )
     return np.ma.getdata(given)
 
@@ -98,9 +98,8 @@ def _of_dlpack(given: Any) -> npt.NDArray[Any]:
 def _check_memory(given: Any, name: str) -> None:
     """UsageError for an array that is in a device's memory."""
     if type(given).__module__.partition(".")[0] == "pyopencl":
-        raise UsageError(
-            f"{name} are in the memory of an OpenCL device: call triangulate_device, or take {name}.get()"
-        )
+        hint = "call triangulate_device, or " if name == "points" else ""
+        raise UsageError(f"{name} are in the memory of an OpenCL device: {hint}take {name}.get()")
     kind = int(given.__dlpack_device__()[0]) if hasattr(given, "__dlpack_device__") else 1
     if kind not in _HOST_MEMORY:
         memory = _DEVICE_MEMORY.get(kind, "a device")
