@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Optional, Protocol, TypeVar, Union
 
 import numpy as np
@@ -36,6 +36,9 @@ _DEVICE_MEMORY = {
     8: "a Metal device",
     10: "a ROCm device",
 }
+
+# Rows of a part; a few arrays of so many doubles fit a processor's cache.
+_ROWS = 1 << 14
 
 _SINGULAR = {
     "points": "point",
@@ -202,6 +205,11 @@ def check_out(out: Any, dtype: npt.DTypeLike, shape: tuple[Optional[int], ...], 
         raise UsageError(f"{name} must be {wanted}, not {out.dtype} of shape {out.shape}")
     if not out.flags.writeable:
         raise UsageError(f"{name} is read-only")
+
+
+def slices(count: int) -> Iterator[slice]:
+    """Parts of so many rows, of which temporary arrays stay in a processor's cache."""
+    return (slice(first, first + _ROWS) for first in range(0, count, _ROWS))
 
 
 def names_of(**wanted: bool) -> set[str]:

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from flaunay._arrays import slices
+
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
 Truths = npt.NDArray[np.bool_]
@@ -130,6 +132,19 @@ def _components(count: int, ends: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
             smallest = smallest[smallest]
 
 
+def _quadrilaterals(
+    simplices: Indices,
+    simplex: npt.NDArray[np.intp],
+    corner: npt.NDArray[np.intp],
+    beyond: Indices,
+) -> npt.NDArray[np.int64]:
+    """The ends of the edges opposite to corners, the corners, and those of the simplices beyond; shape (4, k)."""
+    first, second, apex = (simplices[simplex, (corner + k) % 3] for k in (1, 2, 0))
+    # The neighbour's corners are those two and one more.
+    opposite = simplices[beyond].sum(axis=1, dtype=np.int64) - first - second
+    return np.stack([first, second, apex, opposite])
+
+
 def same_circle(points: Doubles, simplices: Indices, neighbors: Indices) -> npt.NDArray[np.intp]:
     """For each simplex the smallest one that has the same circumcircle.
 
@@ -140,13 +155,12 @@ def same_circle(points: Doubles, simplices: Indices, neighbors: Indices) -> npt.
         (neighbors >= 0) & (neighbors < np.arange(len(simplices))[:, None])
     )
     beyond = neighbors[simplex, corner]
-    apex = simplices[simplex, corner]
-    first, second = (simplices[simplex, (corner + k) % 3] for k in (1, 2))
-    # The neighbour's corners are those two and one more.
-    opposite = simplices[beyond].sum(axis=1, dtype=np.int64) - first - second
-    quads = np.stack([points[k].T for k in (first, second, apex, opposite)])
-    pairs = np.stack([simplex, beyond.astype(np.intp)])[:, are_cocircular(quads)]
-    return _components(len(simplices), pairs)
+    ends = np.stack([simplex, beyond.astype(np.intp)])
+    same = np.empty(len(simplex), bool)
+    for rows in slices(len(simplex)):
+        quads = _quadrilaterals(simplices, simplex[rows], corner[rows], beyond[rows])
+        same[rows] = are_cocircular(points[quads].transpose(0, 2, 1))
+    return _components(len(simplices), ends[:, same])
 
 
 def merge_cells(

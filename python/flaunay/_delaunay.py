@@ -238,9 +238,8 @@ class Delaunay:
         starts, indices = _flaunay.vertex_neighbors(self.simplices, self.hull, self.npoints)
         return frozen(starts), frozen(indices)
 
-    def _corners(self, simplices: Indices) -> Doubles:
-        """The coordinates of simplices' corners, shape (..., 3, 2)."""
-        return np.asarray(self.points[simplices], np.float64)
+    def _doubles(self) -> Doubles:
+        return np.asarray(self.points, np.float64)
 
     @cached_property
     def transform(self) -> Doubles:
@@ -258,11 +257,11 @@ class Delaunay:
         >>> tri.transform[0, :2] @ ([1, 1] - tri.transform[0, 2])
         array([0.5 , 0.25])
         """
-        return frozen(_scipy.barycentric_transforms(self._corners(self.simplices)))
+        return frozen(_scipy.barycentric_transforms(self._doubles(), self.simplices))
 
     @cached_property
     def _paraboloid(self) -> tuple[float, float]:
-        return _scipy.paraboloid(np.asarray(self.points, np.float64))
+        return _scipy.paraboloid(self._doubles())
 
     @property
     def paraboloid_scale(self) -> float:
@@ -280,7 +279,8 @@ class Delaunay:
 
         Of each its unit normal, which points down, and its offset.
         """
-        return frozen(_scipy.plane_equations(self._corners(self.simplices), *self._paraboloid))
+        equations = _scipy.plane_equations(self._doubles(), self.simplices, *self._paraboloid)
+        return frozen(equations)
 
     @cached_property
     def good(self) -> Indices:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
+from flaunay._arrays import slices
 from flaunay._errors import UsageError
 
 if TYPE_CHECKING:
@@ -93,8 +94,17 @@ def lifted(points: Doubles, scale: float, shift: float) -> Doubles:
     return np.concatenate([points, heights[..., None]], axis=-1)
 
 
-def plane_equations(corners: Doubles, scale: float, shift: float) -> Doubles:
+def plane_equations(points: Doubles, simplices: Indices, scale: float, shift: float) -> Doubles:
     """The planes of the triangles on the paraboloid, shape (m, 4): unit normals, downwards, and offsets."""
+    equations = np.empty((len(simplices), 4))
+    # Triangles so thin or large that floating point has no plane for them get NaN.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for rows in slices(len(simplices)):
+            equations[rows] = _planes(points[simplices[rows]], scale, shift)
+    return equations
+
+
+def _planes(corners: Doubles, scale: float, shift: float) -> Doubles:
     first, second = corners[:, 0] - corners[:, 2], corners[:, 1] - corners[:, 2]
     # Differences of heights, without the cancellation that their computation from heights has.
     rise = [
@@ -114,34 +124,35 @@ def plane_equations(corners: Doubles, scale: float, shift: float) -> Doubles:
     return np.concatenate([normals, offsets[:, None]], axis=1)
 
 
-def barycentric_transforms(corners: Doubles) -> Doubles:
+def barycentric_transforms(points: Doubles, simplices: Indices) -> Doubles:
     """For each triangle the gradients of its first two barycentric coordinates and its last corner, shape (m, 3, 2).
 
     By elimination with pivoting, as LAPACK does it for SciPy, and NaN where that loses most digits.
     """
-    sides = corners[:, :2] - corners[:, 2:]
-    rows = np.arange(len(corners))
-    pivot = (np.abs(sides[:, 1, 0]) > np.abs(sides[:, 0, 0])).astype(np.intp)
-    upper, lower = sides[rows, pivot], sides[rows, 1 - pivot]
-    transforms = np.empty((len(corners), 3, 2))
+    transforms = np.empty((len(simplices), 3, 2))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        factor = lower[:, 0] / upper[:, 0]
-        rest = lower[:, 1] - factor * upper[:, 1]
-        y_of_upper, y_of_lower = -factor / rest, 1 / rest
-        transforms[rows, pivot, 0] = (1 - upper[:, 1] * y_of_upper) / upper[:, 0]
-        transforms[rows, pivot, 1] = y_of_upper
-        transforms[rows, 1 - pivot, 0] = -upper[:, 1] * y_of_lower / upper[:, 0]
-        transforms[rows, 1 - pivot, 1] = y_of_lower
-        condition = _norm(sides) * _norm(transforms[:, :2].transpose(0, 2, 1))
-    transforms[:, 2] = corners[:, 2]
-    transforms[~(condition <= _LARGEST_CONDITION)] = np.nan
+        for rows in slices(len(simplices)):
+            _write_transforms(points[simplices[rows]], transforms[rows])
     return transforms
 
 
-def _norm(matrices: Doubles) -> Doubles:
-    """The largest sums of absolute values of columns."""
-    sums: Doubles = np.abs(matrices).sum(axis=1).max(axis=1)
-    return sums
+def _write_transforms(corners: Doubles, transforms: Doubles) -> None:
+    (x0, y0), (x1, y1) = (corners[:, :2] - corners[:, 2:]).transpose(1, 2, 0)
+    is_second = np.abs(x1) > np.abs(x0)
+    x, y = np.where(is_second, x1, x0), np.where(is_second, y1, y0)
+    factor = np.where(is_second, x0, x1) / x
+    rest = np.where(is_second, y0, y1) - factor * y
+    # The gradients of the pivot's coordinate and of the other.
+    pivot_y, other_y = -factor / rest, 1 / rest
+    pivot_x, other_x = (1 - y * pivot_y) / x, -y * other_y / x
+    transforms[:, 0, 0] = np.where(is_second, other_x, pivot_x)
+    transforms[:, 0, 1] = np.where(is_second, other_y, pivot_y)
+    transforms[:, 1, 0] = np.where(is_second, pivot_x, other_x)
+    transforms[:, 1, 1] = np.where(is_second, pivot_y, other_y)
+    transforms[:, 2] = corners[:, 2]
+    sides = np.maximum(np.abs(x0) + np.abs(x1), np.abs(y0) + np.abs(y1))
+    gradients = np.maximum(np.abs(pivot_x) + np.abs(pivot_y), np.abs(other_x) + np.abs(other_y))
+    transforms[~(sides * gradients <= _LARGEST_CONDITION)] = np.nan
 
 
 def _hull_simplices(tri: Delaunay) -> Indices:
@@ -149,7 +160,8 @@ def _hull_simplices(tri: Delaunay) -> Indices:
     simplex, corner = np.nonzero(tri.neighbors < 0)
     by_point = np.empty(tri.npoints, np.int32)
     by_point[tri.simplices[simplex, (corner + 1) % 3]] = simplex
-    return by_point[tri.hull]
+    simplices: Indices = by_point[tri.hull]
+    return simplices
 
 
 def simplices_near_hull(tri: Delaunay, outside: Doubles, tolerance: float) -> Indices:
@@ -158,7 +170,8 @@ def simplices_near_hull(tri: Delaunay, outside: Doubles, tolerance: float) -> In
     The simplices are those of three edges of the hull: the one that is between a point and the centre,
     and the two beside it.
     """
-    ring = np.asarray(tri.points[tri.hull], np.float64)
+    points = np.asarray(tri.points, np.float64)
+    ring = points[tri.hull]
     centre = ring.mean(axis=0)
     angles = np.arctan2(*(ring - centre).T[::-1])
     first = int(np.argmin(angles))
@@ -169,7 +182,7 @@ def simplices_near_hull(tri: Delaunay, outside: Doubles, tolerance: float) -> In
     found = np.full(len(outside), -1, np.int32)
     for step in (0, 1, -1):
         candidates = simplices[(places - 1 + first + step) % len(ring)]
-        transforms = barycentric_transforms(tri._corners(tri.simplices[candidates]))
+        transforms = barycentric_transforms(points, tri.simplices[candidates])
         coordinates = np.einsum("kij,kj->ki", transforms[:, :2], outside - transforms[:, 2])
         coordinates = np.column_stack([coordinates, 1 - coordinates.sum(axis=1)])
         inside = ((coordinates >= -tolerance) & (coordinates <= 1 + tolerance)).all(axis=1)

@@ -83,6 +83,15 @@ def test_transforms_of_thin_triangles_are_nan():
     assert tri.find_simplex([1.0, 0.5e-14]) == np.flatnonzero(thin)[0]
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("scale", [1e-200, 1e200])
+def test_where_floating_point_has_no_planes(points, scale):
+    tri = flaunay.Delaunay(points * scale)
+    assert tri.transform.shape == (tri.nsimplex, 3, 2) and tri.equations.shape == (tri.nsimplex, 4)
+    found = tri.find_simplex(points * scale)
+    assert np.array_equal(found, tri.vertex_to_simplex)
+
+
 @pytest.mark.parametrize("points", [np.empty((0, 2)), [[1.0, 2.0]], [[1.0, 1.0], [3.0, 3.0]]])
 def test_without_simplices(points):
     tri = flaunay.Delaunay(points)
