@@ -9,8 +9,8 @@
 
 BEGIN_SHARED
 
-// With b and c relative to a, the centre is a + (|b|^2 (c_y, -c_x) - |c|^2 (b_y, -b_x)) / (2 b x c). It lies left of the
-// line from v to w, of direction e = w - v, if
+// With b and c relative to a, the centre is a + (|b|^2 (c_y, -c_x) - |c|^2 (b_y, -b_x)) / (2 b x c). It lies left of
+// the line from v to w, of direction e = w - v, if
 //
 //   2 (b x c) (e x (a - v)) + |c|^2 (e . b) - |b|^2 (e . c) > 0.
 //
@@ -44,8 +44,7 @@ static inline int centre_side_filtered(const centre_terms* of, double2 v, double
   const double left = e.x * f.y, right = e.y * f.x;
   const double bx = e.x * of->b_from_a.x, by = e.y * of->b_from_a.y;
   const double cx = e.x * of->c_from_a.x, cy = e.y * of->c_from_a.y;
-  const double side =
-      2.0 * of->cross * (left - right) + (of->c_square * (bx + by) - of->b_square * (cx + cy));
+  const double side = 2.0 * of->cross * (left - right) + (of->c_square * (bx + by) - of->b_square * (cx + cy));
   const double magnitude = 2.0 * of->cross_magnitude * (fabs(left) + fabs(right)) +
                            (of->c_square * (fabs(bx) + fabs(by)) + of->b_square * (fabs(cx) + fabs(cy)));
   return filtered_sign(side, bound * magnitude, bound);
@@ -92,16 +91,16 @@ OUT_OF_LINE static inline int centre_side_exact(const centre_terms* of, double2 
   const double2 f[2] = {two_sum(of->a.x, -v.x), two_sum(of->a.y, -v.y)};
   double largest = 0.0;
   for (int k = 0; k < 2; ++k) {
-    largest = larger_magnitude(largest, larger_magnitude(larger_magnitude(b[k].x, c[k].x),
-                                                         larger_magnitude(e[k].x, f[k].x)));
+    largest =
+        larger_magnitude(largest, larger_magnitude(larger_magnitude(b[k].x, c[k].x), larger_magnitude(e[k].x, f[k].x)));
   }
   if (largest == 0.0) return 0;
   const double factor = unit_factor(largest, WIDE_BITS);
   long bi[2], ci[2], ei[2], fi[2];
   int integers = 1;
   for (int k = 0; k < 2; ++k) {
-    integers &= is_integer(b[k], factor, &bi[k]) & is_integer(c[k], factor, &ci[k]) &
-                is_integer(e[k], factor, &ei[k]) & is_integer(f[k], factor, &fi[k]);
+    integers &= is_integer(b[k], factor, &bi[k]) & is_integer(c[k], factor, &ci[k]) & is_integer(e[k], factor, &ei[k]) &
+                is_integer(f[k], factor, &fi[k]);
   }
   if (!integers) return centre_side_by_expansions(b, c, e, f);
   const integer128 cross = cross_product(bi[0], bi[1], ci[0], ci[1]);
@@ -120,8 +119,8 @@ static inline int centre_side(const centre_terms* of, double2 v, double2 w, doub
 // |p - w|^2 - |q - w|^2, exact until it is rounded.
 OUT_OF_LINE static inline double nearness_rounded(double2 p, double2 q, double2 w) {
   expansion sum;
-  nearness_expansion(two_sum(p.x, -q.x), two_sum(p.y, -q.y), two_sum(p.x, -w.x), two_sum(p.y, -w.y),
-                     two_sum(q.x, -w.x), two_sum(q.y, -w.y), &sum);
+  nearness_expansion(two_sum(p.x, -q.x), two_sum(p.y, -q.y), two_sum(p.x, -w.x), two_sum(p.y, -w.y), two_sum(q.x, -w.x),
+                     two_sum(q.y, -w.y), &sum);
   double value = 0.0;
   for (int i = 0; i < sum.size; ++i) value += sum.part[i];
   return value;
@@ -138,8 +137,8 @@ static inline double2 nearness_with_magnitude(double2 p, double2 q, double2 w) {
 // crossing is wrong by less than 2^-45 of the segment's length, beside its last rounding.
 #define CROSSING_CANCELLED 16.0
 
-// The point at which the bisector of p and q crosses the segment from v to w, whose ends are on different sides of it or
-// one on it. The same to the last bit for q and p.
+// The point at which the bisector of p and q crosses the segment from v to w, whose ends are on different sides of it
+// or one on it. The same to the last bit for q and p.
 static inline double2 bisector_crossing(double2 p, double2 q, double2 v, double2 w) {
   const double2 at_v = nearness_with_magnitude(p, q, v), at_w = nearness_with_magnitude(p, q, w);
   double before = fabs(at_v.x), behind = fabs(at_w.x);

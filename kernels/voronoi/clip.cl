@@ -16,7 +16,8 @@
 // The polygon has its corners counter-clockwise, and none on the line through its neighbours. What is decided, is
 // decided exactly: the side of a clip edge on which a circumcentre lies, whether four points are cocircular, and to
 // which of two points a clip corner is nearer. Voronoi edges count if they have a part of positive length strictly
-// inside of the polygon; see docs/exactness.md. Only coordinates are rounded. Indices that are out of range are skipped.
+// inside of the polygon; see docs/exactness.md. Only coordinates are rounded. Indices that are out of range are
+// skipped.
 
 #include "shared/bounds.h"
 #include "shared/centre_side.h"
@@ -301,9 +302,9 @@ kernel void clip_slots(int n, int points, int triangle_count, int hull_count, in
           tail >= 0 && head >= 0 && tail != STRICTLY_INSIDE && head != STRICTLY_INSIDE &&
           (tail == head || side_of_centre(edge.head, tail, clip, corners, input, triangles, side_bound) <= 0 ||
            side_of_centre(edge.tail, head, clip, corners, input, triangles, side_bound) <= 0);
-      const int2 crossed = is_beyond ? VECTOR(int2, -1, -1)
-                                     : crossed_edges(vload2(edge.p, input), vload2(edge.q, input), clip, corners,
-                                                     nearness_bound);
+      const int2 crossed =
+          is_beyond ? VECTOR(int2, -1, -1)
+                    : crossed_edges(vload2(edge.p, input), vload2(edge.q, input), clip, corners, nearness_bound);
       if (crossed.x >= 0) {
         int in = crossed.x, out = crossed.y, begins = 0, ends = 0, is_outside = 0;
         // It begins behind the point where its line enters, or there, and so on.
@@ -333,10 +334,10 @@ kernel void clip_slots(int n, int points, int triangle_count, int hull_count, in
 
 // n points. centres: where the circles of triangles in the fan of a cocircular polygon are the same, the centre of the
 // first is copied to the others, by its first vertex, which has them all.
-kernel void join_centres(int n, global const double* restrict input,
-                         global const int* restrict triangles, global const int* restrict ahead,
-                         global const uint* restrict offsets, global const int* restrict slots,
-                         global const uint* restrict codes, global double* restrict centres) {
+kernel void join_centres(int n, global const double* restrict input, global const int* restrict triangles,
+                         global const int* restrict ahead, global const uint* restrict offsets,
+                         global const int* restrict slots, global const uint* restrict codes,
+                         global double* restrict centres) {
   const int p = get_global_id(0);
   if (p < n) {
     const uint first = offsets[p], end = offsets[p + 1];
@@ -511,8 +512,8 @@ kernel void write_corners(int n, int points, int triangle_count, int hull_count,
         const voronoi_edge other =
             edge_of(slots[next.slot], points, triangle_count, hull_count, triangles, ahead, flats, hull);
         const double2 at = point_on_edge(other.p, other.q, enters(next_code), next_clip_edge(enters(next_code), clip),
-                                         next_code & BEGINS_AT_VERTEX ? other.tail : -1, clip, nearness_bound,
-                                         corners, input, centres);
+                                         next_code & BEGINS_AT_VERTEX ? other.tail : -1, clip, nearness_bound, corners,
+                                         input, centres);
         vstore2(unscaled(at, unscale), to, vertices);
       }
     }
@@ -522,8 +523,9 @@ kernel void write_corners(int n, int points, int triangle_count, int hull_count,
 // ---------------------------------------------------------------------------------------------------------------------
 // Measures
 
-// n points. Areas and centroids, relative to a corner of the cell: no terms cancel, since cells are convex. The first is
-// 0 and the second no number where there is no cell. scale: what makes squares neither overflow nor underflow.
+// n points. Areas and centroids, relative to a corner of the cell: since cells are convex, all terms are positive but
+// for their rounding. The first is 0 and the second no number where there is no cell. scale: what makes squares neither
+// overflow nor underflow.
 kernel void measure_clipped(int n, scaling scale, scaling unscale, global const int* restrict cells,
                             global const double* restrict vertices, global double* restrict areas,
                             global double* restrict centroids) {
@@ -535,18 +537,19 @@ kernel void measure_clipped(int n, scaling scale, scaling unscale, global const 
     double twice = 0.0;
     if (first < end) {
       const double2 origin = unscaled(vload2(first, vertices), scale);
-      double2 before = VECTOR(double2, 0.0, 0.0), moment = before;
+      double2 before = VECTOR(double2, 0.0, 0.0), moment = before, low = before, high = before;
       for (int i = first + 1; i < end; ++i) {
         const double2 at = unscaled(vload2(i, vertices), scale) - origin;
         const double area = before.x * at.y - before.y * at.x;
         twice += area;
         moment = moment + area * (before + at);
+        low = VECTOR(double2, min(low.x, at.x), min(low.y, at.y));
+        high = VECTOR(double2, max(high.x, at.x), max(high.y, at.y));
         before = at;
       }
-      centroid = origin;
-      // Rounded corners of a cell of a few units in the last place may have no area.
-      if (twice > 0.0) centroid = origin + moment / (3.0 * twice);
-      centroid = unscaled(centroid, unscale);
+      // Of slender cells, little may be left but rounding. The box holds the centroid in any case.
+      centroid = twice > 0.0 ? moment / (3.0 * twice) : 0.5 * (low + high);
+      centroid = unscaled(origin + clamped_to(centroid, low, high), unscale);
     }
     areas[p] = scaled(scaled(0.5 * max(twice, 0.0), unscale), unscale);
     vstore2(centroid, p, centroids);
@@ -555,7 +558,7 @@ kernel void measure_clipped(int n, scaling scale, scaling unscale, global const 
 
 // n points. Those that have a cell go to its centroid.
 kernel void move_to_centroids(int n, global const int* restrict cells, global const double* restrict centroids,
-                        global double* restrict points) {
+                              global double* restrict points) {
   const int p = get_global_id(0);
   if (p < n && cells[p] < cells[p + 1]) vstore2(vload2(p, centroids), p, points);
 }

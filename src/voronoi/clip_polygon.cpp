@@ -18,7 +18,8 @@ Error bad(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
                "the clip polygon " + fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
-std::vector<Point> scaled_corners(const double* corners, std::size_t count, const geometry::Scaling& scaling) {
+std::vector<Point> scaled_corners(const double* corners, std::size_t count,
+                                  const geometry::Scaling& scaling) {
   std::vector<Point> scaled;
   scaled.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -80,12 +81,14 @@ geometry::Scaling scaling_with(const ClipPolygon& polygon, const Magnitudes& poi
   if (!geometry::differ_too_much(both)) return geometry::scaling_for(both);
   const geometry::RangeEnds ends =
       geometry::find_ends(polygon.corners.data(), 0, polygon.size(), polygon.magnitudes);
-  const bool is_fine = points.lowest - polygon.magnitudes.lowest > polygon.magnitudes.largest - points.largest;
+  const bool is_fine =
+      points.lowest - polygon.magnitudes.lowest > polygon.magnitudes.largest - points.largest;
   const geometry::NamedCoordinate& named = is_fine ? ends.finest : ends.largest;
-  throw bad("is too {} to be exact at its corner with {} = {:.17g}: the bits of points and corners together "
-            "span {} binary places, {} are supported",
-            is_fine ? "fine" : "large", named.is_y ? "y" : "x", named.value, geometry::bits_of(both),
-            kernel::MOST_BITS);
+  throw bad(
+      "is too {} to be exact at its corner with {} = {:.17g}: the bits of points and corners together "
+      "span {} binary places, {} are supported",
+      is_fine ? "fine" : "large", named.is_y ? "y" : "x", named.value, geometry::bits_of(both),
+      kernel::MOST_BITS);
 }
 
 }  // namespace flaunay::voronoi

@@ -598,9 +598,9 @@ FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* 
 // ---- Clipped Voronoi cells and relaxation
 
 /// Computes the Voronoi cells of these n points, clipped to a convex polygon: x0 y0 x1 y1 ... for 3 to 16,383
-/// corners, counter-clockwise. A corner may lie on the line through its neighbours; cells do not have it then.
-/// What vertices cells have is decided exactly; their coordinates are rounded. The triangulation must have
-/// neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
+/// corners, counter-clockwise. A corner may lie on the line through its neighbours; cells do not have it
+/// then. What vertices cells have is decided exactly; their coordinates are rounded. The triangulation must
+/// have neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
 /// message that names a corner. The caller destroys the result.
 FLAUNAY_API flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
                                                 size_t n, const flaunay_triangulation* triangulation,

@@ -301,9 +301,9 @@ class FLAUNAY_API Triangulator {
   /// magnitudes. O(n log m) work for m corners, and O(m) for each Voronoi edge across the polygon's border.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation,
                                  const double* corners, std::size_t corner_count);
-  /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors, hull
-  /// and representatives; the corners are in host memory. The host waits twice; otherwise the work is enqueued
-  /// like that of triangulate for device memory, with the same errors.
+  /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors,
+  /// hull and representatives; the corners are in host memory. The host waits twice; otherwise the work is
+  /// enqueued like that of triangulate for device memory, with the same errors.
   void clipped_voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
                        const double* corners, std::size_t corner_count, DeviceClippedVoronoi& result,
                        const Enqueue& enqueue = own_queue());
@@ -315,8 +315,8 @@ class FLAUNAY_API Triangulator {
   /// the points stay there between iterations. Throws what triangulate and clipped_voronoi throw.
   std::vector<double> relax(const double* coordinates, std::size_t n, const double* corners,
                             std::size_t corner_count, std::size_t iterations = 1);
-  /// Relaxes one set of points in device memory; result: double2, 16 bytes per point, another buffer than that
-  /// of the points. The host waits as often per iteration as triangulate does, and three times more; the
+  /// Relaxes one set of points in device memory; result: double2, 16 bytes per point, another buffer than
+  /// that of the points. The host waits as often per iteration as triangulate does, and three times more; the
   /// points do not travel. Otherwise the work is enqueued like that of triangulate, with the same errors.
   void relax(const DevicePoints& points, const double* corners, std::size_t corner_count,
              std::size_t iterations, DeviceBuffer& result, const Enqueue& enqueue = own_queue());
