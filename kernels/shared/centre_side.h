@@ -116,6 +116,23 @@ static inline int centre_side(const centre_terms* of, double2 v, double2 w, doub
   return sign != UNDECIDED ? sign : centre_side_exact(of, v, w);
 }
 
+// A rounded centre, as circumcentres of voronoi/voronoi.cl computes it, is wrong by less than 2^-36 of its distances in x
+// and y from one vertex, together, and by the rounding of the sum with that. Seen from any vertex of the triangle, this
+// is an upper bound for both coordinates' errors together. No number where the centre is none.
+static inline double centre_slack(double2 centre, double2 vertex) {
+  return 0x1p-34 * (fabs(centre.x - vertex.x) + fabs(centre.y - vertex.y)) +
+         0x1p-50 * (fabs(vertex.x) + fabs(vertex.y));
+}
+
+// As centre_side by the rounded centre alone; 0 if that cannot tell.
+static inline int centre_side_rounded(double2 centre, double slack, double2 v, double2 w) {
+  const double2 e = w - v, f = centre - v;
+  const double left = e.x * f.y, right = e.y * f.x;
+  const double side = left - right;
+  const double error = (fabs(e.x) + fabs(e.y)) * slack + 0x1p-50 * (fabs(left) + fabs(right));
+  return side > error ? 1 : side < -error ? -1 : 0;
+}
+
 // |p - w|^2 - |q - w|^2, exact until it is rounded.
 OUT_OF_LINE static inline double nearness_rounded(double2 p, double2 q, double2 w) {
   expansion sum;

@@ -4,14 +4,17 @@
 // goes to infinity is one. Slots of all cells follow each other in the order of the points. The passes:
 //
 // - locate_centres, over the triangles: which circumcentres lie strictly inside of the polygon; of each other one, an
-//   edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero.
+//   edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero. Both look at rounded
+//   centres first, whose errors are known.
 // - add_open_slots, over the hull: cells on the hull have one slot more than triangles. The host scans the sizes.
-//   write_slots, over chunks of triangles, and write_line_slots, over the hulls of sets on one line.
-// - clip_slots, over the slots: which part of its Voronoi edge is inside of the polygon, if any.
+//   write_slots, over chunks of triangles, and write_line_slots, over the hulls of sets on one line. The former follows
+//   the triangles, since what is near in the plane is near in memory in their order, and decides what is simple.
+// - clip_slots, over the slots: which part of any other Voronoi edge is inside of the polygon.
 // - join_centres, over the points: makes the centres of cocircular triangles the same to the last bit.
-// - count_corners, over the slots: how many corners of the clipped cell belong to each. The host scans the counts.
-//   find_cells, over the points: where clipped cells begin. write_corners, over the slots: the corners.
-// - measure_clipped, over the points: areas and centroids. move_to_centroids: centroids in the place of points.
+// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell belong to each
+//   slot. The host scans the counts. find_cells, over the points: where clipped cells begin. write_corners, over the
+//   slots: the corners.
+// - measure_clipped, over the points: areas and centroids. move_to_centroids: the latter in the place of points.
 //
 // The polygon has its corners counter-clockwise, and none on the line through its neighbours. What is decided, is
 // decided exactly: the side of a clip edge on which a circumcentre lies, whether four points are cocircular, and to
@@ -27,8 +30,12 @@
 #include "shared/prefetch.h"
 #include "shared/search.h"
 
-// How many triangles or slots ahead a pass fetches what it will need.
+// As in voronoi.cl.
 #define TRIANGLES_AHEAD 32
+#define TRIANGLES_AT_ONCE 64
+#define WALKS_AHEAD (FETCH_AHEAD / 3 * 2)
+// How many slots ahead the centres are fetched.
+#define SLOTS_AHEAD 32
 
 static inline double2 corner_of(int i, global const double* corners) { return vload2(i, corners); }
 static inline int next_clip_edge(int edge, int clip) { return edge + 1 == clip ? 0 : edge + 1; }
@@ -66,46 +73,75 @@ static inline int witness_of(const centre_terms* of, int clip, global const doub
   return side_of_edge(of, low, clip, corners, bound) <= 0 ? low : STRICTLY_INSIDE;
 }
 
-static inline void fetch_triangle(int t, int n, global const int* triangles, global const double* input) {
-#if FETCH_AHEAD
-  if (t < n) {
-    for (int k = 0; k < 3; ++k) fetch(&input[2 * triangles[3 * t + k]]);
+// Of a rounded centre, from the bounds of its errors. The triangles between corner 0 and the polygon's edges, as above.
+static inline int is_surely_inside(double2 centre, double slack, int clip, global const double* corners) {
+  const double2 apex = corner_of(0, corners);
+  if (centre_side_rounded(centre, slack, apex, corner_of(1, corners)) <= 0) return 0;
+  if (centre_side_rounded(centre, slack, corner_of(clip - 1, corners), apex) <= 0) return 0;
+  int low = 1, high = clip - 1;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    const int side = centre_side_rounded(centre, slack, apex, corner_of(middle, corners));
+    if (side == 0) return 0;
+    if (side > 0) {
+      low = middle;
+    } else {
+      high = middle;
+    }
   }
-#endif
+  return centre_side_rounded(centre, slack, corner_of(low, corners), corner_of(high, corners)) > 0;
 }
 
 kernel void locate_centres(int n, int points, int clip, double bound, global const double* restrict corners,
                            global const double* restrict input, global const int* restrict triangles,
-                           global int* restrict witnesses) {
+                           global const double* restrict centres, global int* restrict witnesses) {
   const int t = get_global_id(0);
   if (t < n) {
-    fetch_triangle(t + TRIANGLES_AHEAD, n, triangles, input);
+    fetch(&input[2 * triangles[3 * min(n - 1, t + TRIANGLES_AHEAD)]]);
     int witness = 0;
     if (are_points(triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2], points)) {
-      const centre_terms terms = terms_of(t, input, triangles);
-      witness = witness_of(&terms, clip, corners, bound);
+      const double2 centre = vload2(t, centres);
+      if (is_surely_inside(centre, centre_slack(centre, vload2(triangles[3 * t], input)), clip, corners)) {
+        witness = STRICTLY_INSIDE;
+      } else {
+        const centre_terms terms = terms_of(t, input, triangles);
+        witness = witness_of(&terms, clip, corners, bound);
+      }
     }
     witnesses[t] = witness;
   }
 }
 
+// Whether triangle t and its neighbour u opposite to corner k have one circle.
+static inline int is_one_circle(int t, int k, int u, int points, double bound, global const double* input,
+                                global const int* triangles, global const int* neighbors,
+                                global const double* centres) {
+  const int a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
+  if (!are_points(a, b, c, points)) return 0;
+  const double2 centre = vload2(t, centres), other = vload2(u, centres);
+  // A vertex of both.
+  const double2 shared = vload2(k == 0 ? b : a, input);
+  const double slack = centre_slack(centre, shared) + centre_slack(other, shared);
+  if (fabs(centre.x - other.x) + fabs(centre.y - other.y) > slack) return 0;
+  global const int* const back = neighbors + 3 * u;
+  const int d = triangles[3 * u + (back[0] == t ? 0 : back[1] == t ? 1 : 2)];
+  if ((uint)d >= (uint)points) return 0;
+  return circle_sign(vload2(a, input), vload2(b, input), vload2(c, input), vload2(d, input), bound) == 0;
+}
+
 // flats: gets for each triangle the set of its corners whose opposite triangle has a larger index and the same circle.
 kernel void mark_flat(int n, int points, double bound, global const double* restrict input,
                       global const int* restrict triangles, global const int* restrict neighbors,
-                      global uchar* restrict flats) {
+                      global const double* restrict centres, global uchar* restrict flats) {
   const int t = get_global_id(0);
   if (t < n) {
-    fetch_triangle(t + TRIANGLES_AHEAD, n, triangles, input);
-    const int a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
+    const int ahead = min(n - 1, t + TRIANGLES_AHEAD);
+    fetch(&input[2 * triangles[3 * ahead]]);
+    fetch(&input[2 * triangles[3 * ahead + 1]]);
     int flat = 0;
     for (int k = 0; k < 3; ++k) {
       const int u = neighbors[3 * t + k];
-      if (u <= t || u >= n) continue;
-      global const int* const back = neighbors + 3 * u;
-      const int opposite = back[0] == t ? 0 : back[1] == t ? 1 : 2;
-      const int d = triangles[3 * u + opposite];
-      if (!are_points(a, b, c, points) | ((uint)d >= (uint)points)) continue;
-      if (circle_sign(vload2(a, input), vload2(b, input), vload2(c, input), vload2(d, input), bound) == 0)
+      if ((u > t) & (u < n) && is_one_circle(t, k, u, points, bound, input, triangles, neighbors, centres))
         flat |= 1 << k;
     }
     flats[t] = (uchar)flat;
@@ -154,31 +190,6 @@ kernel void add_open_slots(int n, int points, int sets, global const int* restri
   }
 }
 
-// n triangles. slots: NO_SLOT throughout. For the others see write_cells in voronoi.cl.
-kernel void write_slots(int n, int chunk, global const int* restrict triangles, global const int* restrict neighbors,
-                        global const int* restrict ahead, global const uchar* restrict firsts,
-                        global const uint* restrict offsets, global int* restrict slots) {
-  const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
-    for (int t = c * chunk; t < last; ++t) {
-      fetch(&ahead[3 * min(n - 1, t + TRIANGLES_AHEAD)]);
-      for (int k = 0; k < 3; ++k) {
-        if (!(firsts[t] >> k & 1)) continue;
-        int at = 3 * t + k;
-        const int p = triangles[at];
-        const uint end = offsets[p + 1];
-        uint to = offsets[p];
-        if (neighbors[3 * t + corner_before(k)] == -1 && to < end) slots[to++] = ~at;
-        for (; to < end && at >= 0; ++to) {
-          slots[to] = at;
-          at = ahead[at];
-        }
-      }
-    }
-  }
-}
-
 // n hull vertices.
 kernel void write_line_slots(int n, int points, int sets, int triangle_count, global const int* restrict hull_offsets,
                              global const int* restrict triangle_offsets, global const int* restrict hull,
@@ -198,34 +209,33 @@ kernel void write_line_slots(int n, int points, int sets, int triangle_count, gl
 }
 
 // The Voronoi edge between the cells of p and q, with p on its left, from the centre of triangle tail to that of head;
-// -1 for infinity. q = p: the vertex is alone, or the slot is none. is_flat: of length zero.
+// -1 for infinity. q = p: the vertex is alone, or the slot is none.
 typedef struct {
-  int p, q, tail, head, is_flat;
+  int p, q, tail, head;
 } voronoi_edge;
 
 static inline voronoi_edge no_edge(int p) {
-  const voronoi_edge edge = {p, p, -1, -1, 0};
+  const voronoi_edge edge = {p, p, -1, -1};
   return edge;
 }
 
-static inline voronoi_edge edge_at_corner(int c, global const int* triangles, global const int* ahead,
-                                          global const uchar* flats) {
-  const int t = c / 3, k = c - 3 * t, next = ahead[c];
-  voronoi_edge edge = {triangles[c], triangles[3 * t + corner_before(k)], t, -1, 0};
-  if (next >= 0) {
-    const int u = next / 3;
-    edge.head = u;
-    edge.is_flat = t < u ? flats[t] >> next_corner(k) & 1 : flats[u] >> corner_before(next - 3 * u) & 1;
-  }
+static inline voronoi_edge edge_at_corner(int c, global const int* triangles, global const int* ahead) {
+  const int t = c / 3, next = ahead[c];
+  const voronoi_edge edge = {triangles[c], triangles[3 * t + corner_before(c - 3 * t)], t, next < 0 ? -1 : next / 3};
   return edge;
+}
+
+// Whether the edge from a corner's triangle to that of the next corner around the vertex has length zero.
+static inline int is_flat_edge(int c, int next, global const uchar* flats) {
+  const int t = c / 3, u = next / 3;
+  return t < u ? flats[t] >> next_corner(c - 3 * t) & 1 : flats[u] >> corner_before(next - 3 * u) & 1;
 }
 
 static inline voronoi_edge edge_of(int slot, int points, int triangle_count, int hull_count,
-                                   global const int* triangles, global const int* ahead, global const uchar* flats,
-                                   global const int* hull) {
+                                   global const int* triangles, global const int* ahead, global const int* hull) {
   voronoi_edge edge = no_edge(-1);
   if (slot >= 0) {
-    edge = edge_at_corner(slot, triangles, ahead, flats);
+    edge = edge_at_corner(slot, triangles, ahead);
   } else if (~slot < 3 * triangle_count) {
     const int c = ~slot, t = c / 3;
     edge.p = triangles[c];
@@ -250,6 +260,56 @@ static inline voronoi_edge edge_of(int slot, int points, int triangle_count, int
 #define IS_FLAT (8u << 2 * CLIP_BITS)
 static inline int enters(uint code) { return (int)(code & STRICTLY_INSIDE); }
 static inline int leaves(uint code) { return (int)(code >> LEAVES_SHIFT & STRICTLY_INSIDE); }
+
+// What is decided without predicates of the edge itself, of corner c of triangle t: it has length zero, or it is all
+// inside. 0 for others.
+static inline uint simple_code(int c, int t, int next, global const uchar* flats, global const int* witnesses) {
+  if (next < 0) return 0;
+  if (is_flat_edge(c, next, flats)) return IS_FLAT;
+  const int is_inside = (witnesses[t] == STRICTLY_INSIDE) & (witnesses[next / 3] == STRICTLY_INSIDE);
+  return is_inside ? IS_KEPT | BEGINS_AT_VERTEX | ENDS_AT_VERTEX | STRICTLY_INSIDE | STRICTLY_INSIDE << LEAVES_SHIFT : 0;
+}
+
+// n triangles. slots: NO_SLOT throughout; codes: 0 throughout. For the others see write_cells in voronoi.cl.
+kernel void write_slots(int n, int chunk, global const int* restrict triangles, global const int* restrict neighbors,
+                        global const int* restrict ahead, global const uchar* restrict firsts,
+                        global const uchar* restrict flats, global const int* restrict witnesses,
+                        global const uint* restrict offsets, global int* restrict slots, global uint* restrict codes) {
+  const int c = get_global_id(0);
+  if ((long)c * chunk < n) {
+    const int last = (int)min((long)n, (c + 1L) * chunk);
+    for (int begin = c * chunk; begin < last; begin += TRIANGLES_AT_ONCE) {
+      const int end = min(last, begin + TRIANGLES_AT_ONCE);
+      int corners[3 * TRIANGLES_AT_ONCE + 1];
+      int count = 0;
+      for (int t = begin; t < end; ++t) {
+        fetch(&ahead[3 * min(n - 1, t + WALKS_AHEAD)]);
+        for (int k = 0; k < 3; ++k) {
+          corners[count] = 3 * t + k;
+          count += firsts[t] >> k & 1;
+        }
+      }
+      for (int i = 0; i < count; ++i) fetch(&offsets[triangles[corners[i]]]);
+      for (int i = 0; i < count; ++i) {
+        fetch(&slots[offsets[triangles[corners[i]]]]);
+        fetch(&codes[offsets[triangles[corners[i]]]]);
+      }
+      for (int i = 0; i < count; ++i) {
+        int at = corners[i];
+        const int p = triangles[at], t = at / 3;
+        const uint end_of_cell = offsets[p + 1];
+        uint to = offsets[p];
+        if (neighbors[3 * t + corner_before(at - 3 * t)] == -1 && to < end_of_cell) slots[to++] = ~at;
+        for (; to < end_of_cell && at >= 0; ++to) {
+          const int next = ahead[at];
+          slots[to] = at;
+          codes[to] = simple_code(at, at / 3, next, flats, witnesses);
+          at = next;
+        }
+      }
+    }
+  }
+}
 
 // The edges through which the bisector of p and q enters and leaves the polygon, with p on its left. It enters where
 // corners nearer to p are followed by others, counter-clockwise; if it goes through a corner, that is the end of the
@@ -276,59 +336,59 @@ static inline int side_of_centre(int t, int edge, int clip, global const double*
   return side_of_edge(&terms, edge, clip, corners, bound);
 }
 
+// In the place of the witness of an end at infinity.
+#define NO_WITNESS -1
+static inline int is_outside(int witness) { return (witness != NO_WITNESS) & (witness != STRICTLY_INSIDE); }
+
 static inline int is_whole(int t, int points, global const int* triangles) {
   return t < 0 || are_points(triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2], points);
 }
 
-// n slots.
+// n slots. codes: 0 where write_slots has not decided; get what is inside, and stay 0 where nothing is.
 kernel void clip_slots(int n, int points, int triangle_count, int hull_count, int clip, double side_bound,
                        double nearness_bound, global const double* restrict corners,
                        global const double* restrict input, global const int* restrict triangles,
-                       global const int* restrict ahead, global const uchar* restrict flats,
-                       global const int* restrict hull, global const int* restrict witnesses,
-                       global const int* restrict slots, global uint* restrict codes) {
+                       global const int* restrict ahead, global const int* restrict hull,
+                       global const int* restrict witnesses, global const int* restrict slots,
+                       global uint* restrict codes) {
   const int i = get_global_id(0);
-  if (i < n) {
-    const voronoi_edge edge = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, flats, hull);
-    const int tail = edge.tail >= 0 ? witnesses[edge.tail] : -1, head = edge.head >= 0 ? witnesses[edge.head] : -1;
-    uint code = 0;
-    if (edge.is_flat) {
-      code = IS_FLAT;
-    } else if ((tail == STRICTLY_INSIDE) & (head == STRICTLY_INSIDE)) {
-      code = IS_KEPT | BEGINS_AT_VERTEX | ENDS_AT_VERTEX | STRICTLY_INSIDE | STRICTLY_INSIDE << LEAVES_SHIFT;
-    } else if (edge.p != edge.q && is_whole(edge.tail, points, triangles) && is_whole(edge.head, points, triangles)) {
+  if (i < n && codes[i] == 0) {
+    const voronoi_edge edge = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, hull);
+    const int tail = edge.tail >= 0 ? witnesses[edge.tail] : NO_WITNESS;
+    const int head = edge.head >= 0 ? witnesses[edge.head] : NO_WITNESS;
+    int2 crossed = VECTOR(int2, -1, -1);
+    if (edge.p != edge.q && is_whole(edge.tail, points, triangles) && is_whole(edge.head, points, triangles)) {
       // Beyond one edge with both ends, as most edges outside are.
       const int is_beyond =
-          tail >= 0 && head >= 0 && tail != STRICTLY_INSIDE && head != STRICTLY_INSIDE &&
+          is_outside(tail) && is_outside(head) &&
           (tail == head || side_of_centre(edge.head, tail, clip, corners, input, triangles, side_bound) <= 0 ||
            side_of_centre(edge.tail, head, clip, corners, input, triangles, side_bound) <= 0);
-      const int2 crossed =
-          is_beyond ? VECTOR(int2, -1, -1)
-                    : crossed_edges(vload2(edge.p, input), vload2(edge.q, input), clip, corners, nearness_bound);
-      if (crossed.x >= 0) {
-        int in = crossed.x, out = crossed.y, begins = 0, ends = 0, is_outside = 0;
-        // It begins behind the point where its line enters, or there, and so on.
-        if (tail == STRICTLY_INSIDE) {
-          in = STRICTLY_INSIDE;
-          begins = 1;
-        } else if (tail >= 0) {
-          is_outside |= side_of_centre(edge.tail, out, clip, corners, input, triangles, side_bound) <= 0;
-          begins = side_of_centre(edge.tail, in, clip, corners, input, triangles, side_bound) == 0;
-        }
-        if (head == STRICTLY_INSIDE) {
-          out = STRICTLY_INSIDE;
-          ends = 1;
-        } else if (head >= 0) {
-          is_outside |= side_of_centre(edge.head, crossed.x, clip, corners, input, triangles, side_bound) <= 0;
-          ends = side_of_centre(edge.head, out, clip, corners, input, triangles, side_bound) == 0;
-        }
-        if (!is_outside) {
-          code = IS_KEPT | (uint)in | (uint)out << LEAVES_SHIFT | (begins ? BEGINS_AT_VERTEX : 0u) |
-                 (ends ? ENDS_AT_VERTEX : 0u);
-        }
+      if (!is_beyond)
+        crossed = crossed_edges(vload2(edge.p, input), vload2(edge.q, input), clip, corners, nearness_bound);
+    }
+    if (crossed.x >= 0) {
+      int in = crossed.x, out = crossed.y, begins = 0, ends = 0, is_missed = 0;
+      // It begins where its line enters, or where its tail is, if that is behind; and ends in the same way. It misses
+      // the interior if it begins where its line leaves or behind, or ends where that enters or before.
+      if (tail == STRICTLY_INSIDE) {
+        in = STRICTLY_INSIDE;
+        begins = 1;
+      } else if (tail != NO_WITNESS) {
+        is_missed |= side_of_centre(edge.tail, crossed.y, clip, corners, input, triangles, side_bound) <= 0;
+        begins = side_of_centre(edge.tail, crossed.x, clip, corners, input, triangles, side_bound) == 0;
+      }
+      if (head == STRICTLY_INSIDE) {
+        out = STRICTLY_INSIDE;
+        ends = 1;
+      } else if (head != NO_WITNESS) {
+        is_missed |= side_of_centre(edge.head, crossed.x, clip, corners, input, triangles, side_bound) <= 0;
+        ends = side_of_centre(edge.head, crossed.y, clip, corners, input, triangles, side_bound) == 0;
+      }
+      if (!is_missed) {
+        codes[i] = IS_KEPT | (uint)in | (uint)out << LEAVES_SHIFT | (begins ? BEGINS_AT_VERTEX : 0u) |
+                   (ends ? ENDS_AT_VERTEX : 0u);
       }
     }
-    codes[i] = code;
   }
 }
 
@@ -347,6 +407,7 @@ kernel void join_centres(int n, global const double* restrict input, global cons
       const uint i = sharp + step < end ? sharp + step : sharp + step - (end - first);
       if (!(codes[i] & IS_FLAT)) continue;
       const int c = slots[i], t = c / 3, k = c - 3 * t;
+      if (c < 0 || ahead[c] < 0) continue;
       const int q = triangles[3 * t + next_corner(k)], r = triangles[3 * t + corner_before(k)];
       if (!are_points(q, r, r, n)) continue;
       const double2 at = vload2(p, input);
@@ -359,92 +420,98 @@ kernel void join_centres(int n, global const double* restrict input, global cons
 // ---------------------------------------------------------------------------------------------------------------------
 // Corners
 //
-// A slot with a kept Voronoi edge has the point where that ends; if the cell goes on along the polygon from there, the
-// polygon's corners up to where the cell's next kept edge begins, and that point, too. The first slot of a cell without
-// such edges has all corners of the polygon if it lies in the cell.
+// A slot with a kept Voronoi edge has the point where that begins; if the cell comes along the polygon to that point,
+// also the point where the cell's kept edge before ends, and the polygon's corners between. The first slot of a cell
+// without such edges has all corners of the polygon if it lies in the cell.
 
-// The next slot of the cell with a kept edge, and whether all between have length zero.
+// The slot of the kept edge before in the cell, and whether all between have length zero.
 typedef struct {
   uint slot;
   int joins;
-} following;
+} preceding;
 
-static inline following following_kept(uint i, uint first, uint end, global const uint* codes) {
-  following next;
-  next.joins = 1;
-  next.slot = i;
+static inline preceding kept_before(uint i, uint first, uint end, global const uint* codes) {
+  preceding before;
+  before.joins = 1;
+  before.slot = i;
   do {
-    if (next.slot != i && !(codes[next.slot] & IS_FLAT)) next.joins = 0;
-    next.slot = next.slot + 1 == end ? first : next.slot + 1;
-  } while (!(codes[next.slot] & IS_KEPT) && next.slot != i);
-  return next;
+    if (before.slot != i && !(codes[before.slot] & IS_FLAT)) before.joins = 0;
+    before.slot = before.slot == first ? end - 1 : before.slot - 1;
+  } while (!(codes[before.slot] & IS_KEPT) && before.slot != i);
+  return before;
 }
 
-// Whether a kept edge ends where the next one begins.
-static inline int is_joint(uint code, uint next_code, int joins) {
-  return (leaves(code) == STRICTLY_INSIDE) | (enters(next_code) == STRICTLY_INSIDE) |
-         (joins && (code & ENDS_AT_VERTEX) && (next_code & BEGINS_AT_VERTEX));
+// Whether a kept edge begins where the one before ends.
+static inline int is_joint(uint code, uint code_before, int joins) {
+  return (enters(code) == STRICTLY_INSIDE) | (leaves(code_before) == STRICTLY_INSIDE) |
+         (joins && (code_before & ENDS_AT_VERTEX) && (code & BEGINS_AT_VERTEX));
 }
 
-static inline int corners_between(int edge, int other, int clip) {
-  return other >= edge ? other - edge : other - edge + clip;
+static inline uint corners_between(int edge, int other, int clip) {
+  return (uint)(other >= edge ? other - edge : other - edge + clip);
 }
 
-static inline int has_kept(uint first, uint end, global const uint* codes) {
-  for (uint i = first; i < end; ++i) {
-    if (codes[i] & IS_KEPT) return 1;
+// n slots. counts: how many corners each has, but for cells without kept edges.
+kernel void count_corners(int n, int points, int triangle_count, int hull_count, int clip,
+                          global const int* restrict triangles, global const int* restrict ahead,
+                          global const int* restrict hull, global const uint* restrict offsets,
+                          global const int* restrict slots, global const uint* restrict codes,
+                          global uint* restrict counts) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const uint code = codes[i];
+    uint count = 0;
+    if (code & IS_KEPT) {
+      count = 1;
+      const int p = enters(code) == STRICTLY_INSIDE
+                        ? -1
+                        : edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, hull).p;
+      // A slot of another cell is in no triangulation.
+      if (p >= 0 && offsets[p] <= (uint)i && (uint)i < offsets[p + 1]) {
+        const preceding before = kept_before(i, offsets[p], offsets[p + 1], codes);
+        const uint code_before = codes[before.slot];
+        if (!is_joint(code, code_before, before.joins))
+          count = 2 + corners_between(leaves(code_before), enters(code), clip);
+      }
+    }
+    counts[i] = count;
   }
-  return 0;
 }
 
-// Slots [first, end) of a cell whose edges all miss the interior of the polygon: whether that is in the cell. If
-// corner 0 is nearer to another point it is not, and that is nearly always so.
+// Whether the polygon lies in a cell with slots [first, end), whose edges all miss its interior. If corner 0 is nearer
+// to another point it does not, and that is nearly always so.
 static inline int is_all_nearest(uint first, uint end, int points, int triangle_count, int hull_count, int clip,
                                  double bound, global const double* corners, global const double* input,
-                                 global const int* triangles, global const int* ahead, global const uchar* flats,
-                                 global const int* hull, global const int* slots) {
+                                 global const int* triangles, global const int* ahead, global const int* hull,
+                                 global const int* slots) {
   for (int k = 0; k < clip; ++k) {
     for (uint i = first; i < end; ++i) {
-      const voronoi_edge edge = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, flats, hull);
+      const voronoi_edge edge = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, hull);
       if (edge.p < 0) return 0;
-      if (edge.p == edge.q) continue;
-      if (nearness_sign(vload2(edge.q, input), vload2(edge.p, input), corner_of(k, corners), bound) < 0) return 0;
+      if (edge.p != edge.q &&
+          nearness_sign(vload2(edge.q, input), vload2(edge.p, input), corner_of(k, corners), bound) < 0)
+        return 0;
     }
   }
   return 1;
 }
 
-// n slots. counts: how many corners each has.
-kernel void count_corners(int n, int points, int triangle_count, int hull_count, int clip, double nearness_bound,
-                          global const double* restrict corners, global const double* restrict input,
-                          global const int* restrict triangles, global const int* restrict ahead,
-                          global const uchar* restrict flats, global const int* restrict hull,
-                          global const uint* restrict offsets, global const int* restrict slots,
-                          global const uint* restrict codes, global uint* restrict counts) {
-  const int i = get_global_id(0);
-  if (i < n) {
-    const uint code = codes[i];
-    uint count = 0;
-    if ((code & IS_KEPT) && leaves(code) == STRICTLY_INSIDE) {
-      count = 1;
-    } else {
-      const int p = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, flats, hull).p;
-      const uint first = p < 0 ? 0 : offsets[p], end = p < 0 ? 0 : offsets[p + 1];
-      const int is_own = (first <= (uint)i) & ((uint)i < end);
-      if (is_own && (code & IS_KEPT)) {
-        const following next = following_kept(i, first, end, codes);
-        const uint next_code = codes[next.slot];
-        count = is_joint(code, next_code, next.joins)
-                    ? 1
-                    : 2 + (uint)corners_between(leaves(code), enters(next_code), clip);
-      } else if (is_own && (uint)i == first && !has_kept(first, end, codes)) {
-        count = is_all_nearest(first, end, points, triangle_count, hull_count, clip, nearness_bound, corners, input,
-                               triangles, ahead, flats, hull, slots)
-                    ? (uint)clip
-                    : 0;
-      }
-    }
-    counts[i] = count;
+// n points.
+kernel void count_whole(int n, int triangle_count, int hull_count, int clip, double nearness_bound,
+                        global const double* restrict corners, global const double* restrict input,
+                        global const int* restrict triangles, global const int* restrict ahead,
+                        global const int* restrict hull, global const uint* restrict offsets,
+                        global const int* restrict slots, global const uint* restrict codes,
+                        global uint* restrict counts) {
+  const int p = get_global_id(0);
+  if (p < n) {
+    const uint first = offsets[p], end = offsets[p + 1];
+    uint i = first;
+    while (i < end && !(codes[i] & IS_KEPT)) ++i;
+    if (first < end && i == end &&
+        is_all_nearest(first, end, n, triangle_count, hull_count, clip, nearness_bound, corners, input, triangles,
+                       ahead, hull, slots))
+      counts[first] = (uint)clip;
   }
 }
 
@@ -484,38 +551,39 @@ static inline double2 unscaled(double2 p, scaling scale) {
 kernel void write_corners(int n, int points, int triangle_count, int hull_count, int clip, double nearness_bound,
                           vertex_box box, scaling unscale, global const double* restrict corners,
                           global const double* restrict input, global const int* restrict triangles,
-                          global const int* restrict ahead, global const uchar* restrict flats,
-                          global const int* restrict hull, global const double* restrict centres,
-                          global const uint* restrict offsets, global const int* restrict slots,
-                          global const uint* restrict codes, global const uint* restrict places,
-                          global double* restrict vertices) {
+                          global const int* restrict ahead, global const int* restrict hull,
+                          global const double* restrict centres, global const uint* restrict offsets,
+                          global const int* restrict slots, global const uint* restrict codes,
+                          global const uint* restrict places, global double* restrict vertices) {
   const int i = get_global_id(0);
-  if (i < n && places[i] < places[i + 1]) {
-    const voronoi_edge edge = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, flats, hull);
+  if (i < n) {
+    fetch(&centres[2 * (max(0, slots[min(n - 1, i + SLOTS_AHEAD)]) / 3)]);
     const uint code = codes[i], end = places[i + 1];
     uint to = places[i];
-    if (!(code & IS_KEPT)) {
+    if (to < end && !(code & IS_KEPT)) {
       for (int k = 0; to < end; ++to, ++k) vstore2(unscaled(corner_of(k, corners), unscale), to, vertices);
-    } else if (leaves(code) == STRICTLY_INSIDE) {
-      const double2 at = clamped_to(vload2(edge.head, centres), box.low, box.high);
+    } else if (to < end && enters(code) == STRICTLY_INSIDE) {
+      const double2 at = clamped_to(vload2(max(0, slots[i]) / 3, centres), box.low, box.high);
       vstore2(unscaled(at, unscale), to, vertices);
-    } else {
-      const int out = leaves(code);
-      const double2 last = point_on_edge(edge.p, edge.q, out, out, code & ENDS_AT_VERTEX ? edge.head : -1, clip,
-                                         nearness_bound, corners, input, centres);
-      vstore2(unscaled(last, unscale), to++, vertices);
-      for (int k = next_clip_edge(out, clip); to + 1 < end; ++to, k = next_clip_edge(k, clip))
-        vstore2(unscaled(corner_of(k, corners), unscale), to, vertices);
-      if (to < end) {
-        const following next = following_kept(i, offsets[edge.p], offsets[edge.p + 1], codes);
-        const uint next_code = codes[next.slot];
+    } else if (to < end) {
+      const voronoi_edge edge = edge_of(slots[i], points, triangle_count, hull_count, triangles, ahead, hull);
+      if (end - to > 1) {
+        const preceding before = kept_before(i, offsets[edge.p], offsets[edge.p + 1], codes);
+        const uint code_before = codes[before.slot];
+        const int out = leaves(code_before);
         const voronoi_edge other =
-            edge_of(slots[next.slot], points, triangle_count, hull_count, triangles, ahead, flats, hull);
-        const double2 at = point_on_edge(other.p, other.q, enters(next_code), next_clip_edge(enters(next_code), clip),
-                                         next_code & BEGINS_AT_VERTEX ? other.tail : -1, clip, nearness_bound, corners,
-                                         input, centres);
-        vstore2(unscaled(at, unscale), to, vertices);
+            edge_of(slots[before.slot], points, triangle_count, hull_count, triangles, ahead, hull);
+        const double2 at = point_on_edge(other.p, other.q, out, out, code_before & ENDS_AT_VERTEX ? other.head : -1,
+                                         clip, nearness_bound, corners, input, centres);
+        vstore2(unscaled(at, unscale), to++, vertices);
+        for (int k = next_clip_edge(out, clip); to + 1 < end; ++to, k = next_clip_edge(k, clip))
+          vstore2(unscaled(corner_of(k, corners), unscale), to, vertices);
       }
+      const int in = enters(code);
+      const double2 at = point_on_edge(edge.p, edge.q, in, next_clip_edge(in, clip),
+                                       code & BEGINS_AT_VERTEX ? edge.tail : -1, clip, nearness_bound, corners, input,
+                                       centres);
+      vstore2(unscaled(at, unscale), to, vertices);
     }
   }
 }

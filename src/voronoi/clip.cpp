@@ -61,16 +61,19 @@ struct Slots {
   std::size_t most = 0;       ///< no fewer than there are
   Buffer<cl_uint> offsets{};  ///< n + 1
   Buffer<cl_int> slots{};
+  Buffer<cl_uint> codes{};  ///< what is inside of the polygon, if write_slots decided it, otherwise 0
   Buffer<cl_int> ahead{};
 };
 
-Slots make_slots(host::Runtime& runtime, const DeviceMesh& mesh) {
+Slots make_slots(host::Runtime& runtime, const DeviceMesh& mesh, const Buffer<cl_uchar>& flats,
+                 const Buffer<cl_int>& witnesses) {
   const std::size_t n = mesh.points(), triangles = mesh.triangle_count(), hull = mesh.hull_offsets.back();
   Slots made;
   // A vertex on a line has two.
   made.most = 3 * triangles + 2 * hull;
   made.offsets = runtime.arena().allocate<cl_uint>(n + 1);
   made.slots = runtime.arena().allocate<cl_int>(made.most);
+  made.codes = runtime.arena().allocate<cl_uint>(made.most);
   const Walks walks = measure_cells(runtime, mesh, made.offsets);
   made.ahead = walks.ahead;
   const auto hull_offsets = runtime.upload(runtime.arena(), integers(mesh.hull_offsets));
@@ -83,13 +86,17 @@ Slots make_slots(host::Runtime& runtime, const DeviceMesh& mesh) {
                                             .sizes = made.offsets});
   host::exclusive_scan(runtime, made.offsets, n, made.offsets);
   runtime.fill(made.slots, made.most, cl_int{kernel::NO_SLOT});
+  runtime.fill(made.codes, made.most, cl_uint{0});
   runtime.chunks(triangles, runtime.sizes().chunk(triangles),
                  kernels::write_slots{.triangles = mesh.triangles,
                                       .neighbors = mesh.neighbors,
                                       .ahead = walks.ahead,
                                       .firsts = walks.firsts,
+                                      .flats = flats,
+                                      .witnesses = witnesses,
                                       .offsets = made.offsets,
-                                      .slots = made.slots});
+                                      .slots = made.slots,
+                                      .codes = made.codes});
   runtime.map(hull, kernels::write_line_slots{.points = n,
                                               .sets = mesh.sets(),
                                               .triangle_count = triangles,
@@ -129,15 +136,16 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
                                                                  .corners = clip.corners,
                                                                  .input = mesh.coordinates,
                                                                  .triangles = mesh.triangles,
+                                                                 .centres = centres,
                                                                  .witnesses = witnesses});
   runtime.map_in_small_groups(triangles, kernels::mark_flat{.points = n,
                                                             .bound = clip.circle_bound,
                                                             .input = mesh.coordinates,
                                                             .triangles = mesh.triangles,
                                                             .neighbors = mesh.neighbors,
+                                                            .centres = centres,
                                                             .flats = flats});
-  const Slots slots = make_slots(runtime, mesh);
-  const auto codes = runtime.arena().allocate<cl_uint>(slots.most);
+  const Slots slots = make_slots(runtime, mesh, flats, witnesses);
   const auto places = runtime.arena().allocate<cl_uint>(slots.most + 1);
   runtime.map_in_small_groups(slots.most, kernels::clip_slots{.points = n,
                                                               .triangle_count = triangles,
@@ -149,33 +157,41 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
                                                               .input = mesh.coordinates,
                                                               .triangles = mesh.triangles,
                                                               .ahead = slots.ahead,
-                                                              .flats = flats,
                                                               .hull = mesh.hull,
                                                               .witnesses = witnesses,
                                                               .slots = slots.slots,
-                                                              .codes = codes});
+                                                              .codes = slots.codes});
   runtime.map(n, kernels::join_centres{.input = mesh.coordinates,
                                        .triangles = mesh.triangles,
                                        .ahead = slots.ahead,
                                        .offsets = slots.offsets,
                                        .slots = slots.slots,
-                                       .codes = codes,
+                                       .codes = slots.codes,
                                        .centres = centres});
-  runtime.map_in_small_groups(slots.most, kernels::count_corners{.points = n,
-                                                                 .triangle_count = triangles,
-                                                                 .hull_count = hull,
-                                                                 .clip = clip.size,
-                                                                 .nearness_bound = clip.nearness_bound,
-                                                                 .corners = clip.corners,
-                                                                 .input = mesh.coordinates,
-                                                                 .triangles = mesh.triangles,
-                                                                 .ahead = slots.ahead,
-                                                                 .flats = flats,
-                                                                 .hull = mesh.hull,
-                                                                 .offsets = slots.offsets,
-                                                                 .slots = slots.slots,
-                                                                 .codes = codes,
-                                                                 .counts = places});
+  runtime.map(slots.most, kernels::count_corners{.points = n,
+                                                 .triangle_count = triangles,
+                                                 .hull_count = hull,
+                                                 .clip = clip.size,
+                                                 .triangles = mesh.triangles,
+                                                 .ahead = slots.ahead,
+                                                 .hull = mesh.hull,
+                                                 .offsets = slots.offsets,
+                                                 .slots = slots.slots,
+                                                 .codes = slots.codes,
+                                                 .counts = places});
+  runtime.map_in_small_groups(n, kernels::count_whole{.triangle_count = triangles,
+                                                      .hull_count = hull,
+                                                      .clip = clip.size,
+                                                      .nearness_bound = clip.nearness_bound,
+                                                      .corners = clip.corners,
+                                                      .input = mesh.coordinates,
+                                                      .triangles = mesh.triangles,
+                                                      .ahead = slots.ahead,
+                                                      .hull = mesh.hull,
+                                                      .offsets = slots.offsets,
+                                                      .slots = slots.slots,
+                                                      .codes = slots.codes,
+                                                      .counts = places});
   host::exclusive_scan(runtime, places, slots.most, places);
   runtime.map(n, kernels::find_cells{.offsets = slots.offsets, .places = places, .cells = result.offsets});
   const Buffer<cl_double> vertices = provide(runtime.read_one(places, slots.most));
@@ -190,12 +206,11 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
                                                                  .input = mesh.coordinates,
                                                                  .triangles = mesh.triangles,
                                                                  .ahead = slots.ahead,
-                                                                 .flats = flats,
                                                                  .hull = mesh.hull,
                                                                  .centres = centres,
                                                                  .offsets = slots.offsets,
                                                                  .slots = slots.slots,
-                                                                 .codes = codes,
+                                                                 .codes = slots.codes,
                                                                  .places = places,
                                                                  .vertices = vertices});
   runtime.map(n, kernels::measure_clipped{.scale = clip.scale,
