@@ -116,9 +116,9 @@ static inline int centre_side(const centre_terms* of, double2 v, double2 w, doub
   return sign != UNDECIDED ? sign : centre_side_exact(of, v, w);
 }
 
-// A rounded centre, as circumcentres of voronoi/voronoi.cl computes it, is wrong by less than 2^-36 of its distances in x
-// and y from one vertex, together, and by the rounding of the sum with that. Seen from any vertex of the triangle, this
-// is an upper bound for both coordinates' errors together. No number where the centre is none.
+// A rounded centre, as circumcentres of voronoi/voronoi.cl computes it, is wrong by less than 2^-36 of its distances in
+// x and y from one vertex, together, and by the rounding of the sum with that. Seen from any vertex of the triangle,
+// this is an upper bound for both coordinates' errors together. No number where the centre is none.
 static inline double centre_slack(double2 centre, double2 vertex) {
   return 0x1p-34 * (fabs(centre.x - vertex.x) + fabs(centre.y - vertex.y)) +
          0x1p-50 * (fabs(vertex.x) + fabs(vertex.y));

@@ -4,14 +4,15 @@
 // goes to infinity is one. Slots of all cells follow each other in the order of the points. The passes:
 //
 // - locate_centres, over the triangles: which circumcentres lie strictly inside of the polygon; of each other one, an
-//   edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero. Both look at rounded
-//   centres first, whose errors are known.
+//   edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero. Both look at
+//   rounded centres first, whose errors are known.
 // - add_open_slots, over the hull: cells on the hull have one slot more than triangles. The host scans the sizes.
 //   write_slots, over chunks of triangles, and write_line_slots, over the hulls of sets on one line. The former follows
 //   the triangles, since what is near in the plane is near in memory in their order, and decides what is simple.
 // - clip_slots, over the slots: which part of any other Voronoi edge is inside of the polygon.
 // - join_centres, over the points: makes the centres of cocircular triangles the same to the last bit.
-// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell belong to each
+// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell belong to
+// each
 //   slot. The host scans the counts. find_cells, over the points: where clipped cells begin. write_corners, over the
 //   slots: the corners.
 // - measure_clipped, over the points: areas and centroids. move_to_centroids: the latter in the place of points.
@@ -267,7 +268,8 @@ static inline uint simple_code(int c, int t, int next, global const uchar* flats
   if (next < 0) return 0;
   if (is_flat_edge(c, next, flats)) return IS_FLAT;
   const int is_inside = (witnesses[t] == STRICTLY_INSIDE) & (witnesses[next / 3] == STRICTLY_INSIDE);
-  return is_inside ? IS_KEPT | BEGINS_AT_VERTEX | ENDS_AT_VERTEX | STRICTLY_INSIDE | STRICTLY_INSIDE << LEAVES_SHIFT : 0;
+  return is_inside ? IS_KEPT | BEGINS_AT_VERTEX | ENDS_AT_VERTEX | STRICTLY_INSIDE | STRICTLY_INSIDE << LEAVES_SHIFT
+                   : 0;
 }
 
 // n triangles. slots: NO_SLOT throughout; codes: 0 throughout. For the others see write_cells in voronoi.cl.
@@ -580,9 +582,9 @@ kernel void write_corners(int n, int points, int triangle_count, int hull_count,
           vstore2(unscaled(corner_of(k, corners), unscale), to, vertices);
       }
       const int in = enters(code);
-      const double2 at = point_on_edge(edge.p, edge.q, in, next_clip_edge(in, clip),
-                                       code & BEGINS_AT_VERTEX ? edge.tail : -1, clip, nearness_bound, corners, input,
-                                       centres);
+      const double2 at =
+          point_on_edge(edge.p, edge.q, in, next_clip_edge(in, clip), code & BEGINS_AT_VERTEX ? edge.tail : -1, clip,
+                        nearness_bound, corners, input, centres);
       vstore2(unscaled(at, unscale), to, vertices);
     }
   }

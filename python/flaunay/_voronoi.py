@@ -8,7 +8,7 @@ from typing import Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
+from flaunay import _cells, _flaunay, _triangulators
 from flaunay._arrays import FloatArray, summary
 from flaunay._delaunay import Delaunay
 
@@ -69,6 +69,7 @@ class Voronoi:
 
     ndim = 2
     furthest_site = False
+    clipped = _cells.clipped
 
     def __init__(self, points: npt.ArrayLike, device: Optional[str] = None) -> None:
         self.delaunay = tri = Delaunay(points, device=device)

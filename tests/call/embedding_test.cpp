@@ -615,16 +615,16 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
       {"use_workspace", [&t] { t.use_workspace(nullptr); }},
       {"voronoi", [=, &t, &xy, &mesh] { t.voronoi(xy.data(), n, mesh); }},
       {"clipped voronoi",
-       [=, &t, &xy, &mesh] { t.clipped_voronoi(xy.data(), n, mesh, kTriangle.data(), kTriangle.size() / 2); }},
+       [=, &t, &xy, &mesh] {
+         t.clipped_voronoi(xy.data(), n, mesh, kTriangle.data(), kTriangle.size() / 2);
+       }},
       {"clipped voronoi on device",
        [=, &t, &on_device, &enqueue] {
          t.clipped_voronoi(points, on_device, kTriangle.data(), kTriangle.size() / 2, *clipped, enqueue);
        }},
       {"relax", [=, &t, &xy] { t.relax(xy.data(), n, kTriangle.data(), kTriangle.size() / 2); }},
       {"relax on device",
-       [=, &t, &enqueue] {
-         t.relax(points, kTriangle.data(), kTriangle.size() / 2, 1, *relaxed, enqueue);
-       }},
+       [=, &t, &enqueue] { t.relax(points, kTriangle.data(), kTriangle.size() / 2, 1, *relaxed, enqueue); }},
       {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
       {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
       {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
@@ -1000,7 +1000,8 @@ TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
   embedded().triangulate(points, on_device, kAll, on_own());
   embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own());
   EXPECT_EQ(result.vertex_count, cells.vertices.size() / 2);
-  EXPECT_TRUE(same(embedder().download<double>(result.vertices.memory(), cells.vertices.size()), cells.vertices));
+  EXPECT_TRUE(
+      same(embedder().download<double>(result.vertices.memory(), cells.vertices.size()), cells.vertices));
   EXPECT_TRUE(same(embedder().download<std::int32_t>(result.offsets.memory(), n + 1), cells.offsets));
   EXPECT_TRUE(same(embedder().download<double>(result.areas.memory(), n), cells.areas));
   const std::vector<double> centroids = embedder().download<double>(result.centroids.memory(), 2 * n);
@@ -1010,9 +1011,9 @@ TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
     EXPECT_EQ(centroids[2 * i + 1], cells.centroids[2 * i + 1]);
   }
   result.areas = result.centroids;
-  expect_usage_error(
-      {"two things"},
-      [&] { embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own()); });
+  expect_usage_error({"two things"}, [&] {
+    embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own());
+  });
 }
 
 TEST(SmallRelaxOnDevice, IsThatOfTheHost) {

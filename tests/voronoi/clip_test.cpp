@@ -199,7 +199,7 @@ void check_measures(const std::vector<Place>& corners, double area, const Place&
   const mpq_class extent = diameter(corners);
   // Beyond what doubles can hold.
   if (extent * extent > mpq_class(0x1p1020) || extent * extent < mpq_class(0x1p-960)) return;
-  const mpq_class rounding = mpq_class(0x1p-52) * mpq_class(static_cast<double>(corners.size() + 4));
+  const mpq_class rounding = mpq_class(0x1p-50) * mpq_class(static_cast<double>(corners.size()));
   EXPECT_LE(abs(2 * mpq_class(area) - exact.twice), extent * extent * rounding);
   EXPECT_GE(area, 0);
   // Corners that are rounded may be on a line, or beyond.
