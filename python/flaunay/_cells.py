@@ -70,7 +70,12 @@ class ClippedVoronoi:
         centroids: _Doubles,
         bounds: _Doubles,
     ) -> None:
-        self.vertices, self.offsets, self.areas, self.centroids = vertices, offsets, areas, centroids
+        self.vertices, self.offsets, self.areas, self.centroids = (
+            vertices,
+            offsets,
+            areas,
+            centroids,
+        )
         self.bounds = bounds
 
     def __repr__(self) -> str:
@@ -185,7 +190,7 @@ def voronoi_polygons(
     >>> import flaunay
     >>> for polygon in flaunay.voronoi_polygons([[1, 1], [3, 1]], (0, 0, 4, 2)):
     ...     print(polygon.tolist())
-    [[0.0, 2.0], [0.0, 0.0], [2.0, 0.0], [2.0, 2.0]]
+    [[2.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0]]
     [[2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0]]
     """
     from flaunay._voronoi import Voronoi
