@@ -1018,6 +1018,69 @@ static void test_voronoi(void) {
   flaunay_triangulation_destroy(mesh);
 }
 
+static double total(const double* values, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i) sum += values[i];
+  return sum;
+}
+
+static void test_clipped_voronoi(void) {
+  const double box[] = {0, 0, 3, 0, 3, 3, 0, 3}, bow[] = {0, 0, 3, 3, 3, 0, 0, 3};
+  flaunay_triangulation* mesh = NULL;
+  flaunay_clipped_voronoi* cells = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, box, 4, &cells) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_clipped_voronoi_point_count(cells) == 4);
+  const int32_t* offsets = flaunay_clipped_voronoi_offsets(cells);
+  CHECK(offsets[0] == 0 && (size_t)offsets[4] == flaunay_clipped_voronoi_vertex_count(cells));
+  CHECK(fabs(total(flaunay_clipped_voronoi_areas(cells), 4) - 9) < 1e-12);
+  for (size_t i = 0; i < 4; ++i) {
+    CHECK(offsets[i + 1] - offsets[i] >= 3);
+    CHECK(flaunay_clipped_voronoi_centroids(cells)[2 * i] > 0);
+  }
+  const double* vertices = flaunay_clipped_voronoi_vertices(cells);
+  for (int32_t v = 0; v < 2 * offsets[4]; ++v) CHECK(vertices[v] >= 0 && vertices[v] <= 3);
+  flaunay_clipped_voronoi_destroy(cells);
+  CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, bow, 4, &cells), FLAUNAY_ERROR_INPUT,
+              "corner 2"));
+  CHECK(cells == NULL);
+  CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, NULL, 4, &cells), FLAUNAY_ERROR_USAGE,
+              "null"));
+  CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 3, mesh, box, 4, &cells), FLAUNAY_ERROR_USAGE,
+              "points"));
+  CHECK(flaunay_clipped_voronoi_vertices(NULL) == NULL && flaunay_clipped_voronoi_point_count(NULL) == 0);
+  flaunay_clipped_voronoi_destroy(NULL);
+  flaunay_triangulation_destroy(mesh);
+}
+
+static void test_relax(void) {
+  const double box[] = {0, 0, 4, 0, 4, 4, 0, 4};
+  double points[] = {1, 1, 1, 3, 9, 9}, expected[] = {2, 1, 2, 3, 9, 9};
+  // The third point's cell does not meet the box.
+  REQUIRE(flaunay_relax(triangulator, points, 3, box, 4, 1, points) == FLAUNAY_SUCCESS);
+  for (size_t c = 0; c < 6; ++c) CHECK(fabs(points[c] - expected[c]) < 1e-12);
+  CHECK(fails(flaunay_relax(triangulator, points, 3, box, 2, 1, points), FLAUNAY_ERROR_INPUT, "2 corners"));
+  CHECK(fails(flaunay_relax(triangulator, points, 3, box, 4, 1, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(fails(flaunay_relax(NULL, points, 3, box, 4, 1, points), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(flaunay_relax(triangulator, NULL, 0, box, 4, 1, NULL) == FLAUNAY_SUCCESS);
+}
+
+static void test_relax_on_device(void) {
+  const double box[] = {0, 0, 4, 0, 4, 4, 0, 4}, points[] = {1, 1, 1, 3};
+  const flaunay_device_points input = {.memory = make_buffer(context, sizeof points, points), .count = 2};
+  const flaunay_enqueue enqueue = {.queue = queue};
+  cl_mem relaxed = NULL;
+  REQUIRE(flaunay_relax_device(triangulator, &input, box, 4, 2, &enqueue, &relaxed) == FLAUNAY_SUCCESS);
+  double found[4] = {0};
+  REQUIRE(clEnqueueReadBuffer(queue, relaxed, CL_TRUE, 0, sizeof found, found, 0, NULL, NULL) == CL_SUCCESS);
+  CHECK(fabs(found[0] - 2) < 1e-12 && fabs(found[1] - 1) < 1e-12 && fabs(found[3] - 3) < 1e-12);
+  cl_mem same = input.memory;
+  CHECK(fails(flaunay_relax_device(triangulator, &input, box, 4, 2, &enqueue, &same), FLAUNAY_ERROR_USAGE,
+              "two things"));
+  clReleaseMemObject(relaxed);
+  clReleaseMemObject(input.memory);
+}
+
 static void test_locator(void) {
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   flaunay_triangulation* mesh = NULL;
@@ -1629,8 +1692,11 @@ static void test_all(void) {
   test_bad_queues();
   test_out_of_memory();
   test_voronoi();
+  test_clipped_voronoi();
+  test_relax();
   test_locator();
   test_derived_on_device();
+  test_relax_on_device();
   test_chunks_in_arrays();
   test_chunks_to_files();
   test_chunks_in_files();

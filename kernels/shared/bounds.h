@@ -12,12 +12,13 @@ BEGIN_SHARED
 
 // The error of a computed determinant is below its bound times the sum of its terms' magnitudes. A bound of 0 says that
 // coordinates are so coarse that nothing is rounded. The first two are Shewchuk's (1997); the derivations of the others
-// stand at hull_depth, angle_compared and nearness_filtered.
+// stand at hull_depth, angle_compared, nearness_filtered and centre_side_filtered.
 #define ORIENT_BOUND ((3.0 + 16.0 * ROUNDOFF) * ROUNDOFF)
 #define CIRCLE_BOUND ((10.0 + 96.0 * ROUNDOFF) * ROUNDOFF)
 #define HULL_DEPTH_BOUND (10.0 * ROUNDOFF)
 #define ANGLE_BOUND (11.0 * ROUNDOFF)
 #define NEARNESS_BOUND (6.0 * ROUNDOFF)
+#define CENTRE_SIDE_BOUND (12.0 * ROUNDOFF)
 
 // Triangulated points: coordinates below 2^250 that are multiples of 2^-255. No product of four overflows, and none
 // underflows.

@@ -34,6 +34,12 @@ INTEGER_CONSTANT(RINGS_TIES, 1);       // how many of them found cocircular poin
 INTEGER_CONSTANT(RINGS_BROKEN, 2);     // seams that could not be sewn, which is an error of the program
 INTEGER_CONSTANT(RINGS_NUMBERS, 3);
 
+// An edge of a clip polygon, in so many bits; all bits: strictly inside of all edges.
+INTEGER_CONSTANT(CLIP_BITS, 14);
+INTEGER_CONSTANT(STRICTLY_INSIDE, (1 << CLIP_BITS) - 1);
+// An edge that stands in no cell's list.
+INTEGER_CONSTANT(NO_SLOT, -0x7fffffff);
+
 // The account of all coordinates: the places of its numbers, and what they are before any coordinate is seen.
 INTEGER_CONSTANT(INSPECT_LARGEST, 0);  // the largest exponent of a leading bit
 INTEGER_CONSTANT(INSPECT_LOWEST, 1);   // the lowest exponent of a set bit

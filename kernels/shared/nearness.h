@@ -30,6 +30,16 @@ static inline void expansion_add_product(expansion* e, double2 f, double2 g) {
   }
 }
 
+// The dot product, of differences as two_sum gives them.
+static inline void nearness_expansion(double2 abx, double2 aby, double2 qax, double2 qay, double2 qbx, double2 qby,
+                                      expansion* sum) {
+  sum->size = 0;
+  expansion_add_product(sum, abx, qax);
+  expansion_add_product(sum, abx, qbx);
+  expansion_add_product(sum, aby, qay);
+  expansion_add_product(sum, aby, qby);
+}
+
 OUT_OF_LINE static inline int nearness_exact(double2 a, double2 b, double2 q) {
   const double2 abx = two_sum(a.x, -b.x), aby = two_sum(a.y, -b.y);
   const double2 qax = two_sum(a.x, -q.x), qay = two_sum(a.y, -q.y);
@@ -43,11 +53,7 @@ OUT_OF_LINE static inline int nearness_exact(double2 a, double2 b, double2 q) {
       is_integer(qay, factor, &qayi) & is_integer(qbx, factor, &qbxi) & is_integer(qby, factor, &qbyi))
     return sign_of_128(sum_128(product_128(abxi, qaxi + qbxi), product_128(abyi, qayi + qbyi)));
   expansion sum;
-  sum.size = 0;
-  expansion_add_product(&sum, abx, qax);
-  expansion_add_product(&sum, abx, qbx);
-  expansion_add_product(&sum, aby, qay);
-  expansion_add_product(&sum, aby, qby);
+  nearness_expansion(abx, aby, qax, qay, qbx, qby, &sum);
   return expansion_sign(&sum);
 }
 

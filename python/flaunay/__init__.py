@@ -15,6 +15,7 @@ device does one call after the other. OpenCL does not survive a fork: in a child
 used it, calls run on the host, and calls that name a device raise ``DeviceError``.
 """
 
+from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
@@ -32,6 +33,7 @@ from flaunay._voronoi import Voronoi
 
 __all__ = [
     "ChunkedTriangulation",
+    "ClippedVoronoi",
     "CloughTocherInterpolator",
     "Delaunay",
     "DeviceError",
@@ -48,7 +50,9 @@ __all__ = [
     "devices",
     "griddata",
     "modes",
+    "relax",
     "triangulate",
     "triangulate_chunks",
     "triangulate_device",
+    "voronoi_polygons",
 ]

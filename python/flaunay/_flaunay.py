@@ -685,6 +685,68 @@ def voronoi(
     )
 
 
+class _ClippedVoronoi(Handle):
+    _destroy = library.clipped_voronoi_destroy
+
+
+def clipped_voronoi(
+    triangulator: Triangulator,
+    points: _Doubles,
+    triangles: _Indices,
+    neighbors: _Indices,
+    hull: _Indices,
+    representatives: _Indices,
+    corners: _Doubles,
+) -> tuple[_Doubles, _Indices, _Doubles, _Doubles]:
+    """The vertices of clipped cells, their offsets, the cells' areas and centroids."""
+    n = _count_points(points)
+    points, corners = _as_doubles(points), _as_doubles(corners)
+    primal = _triangulation_of(n, triangles, neighbors, hull, representatives)
+    result = _ClippedVoronoi()
+    with triangulator.turn:
+        check(
+            library.voronoi_clip(
+                triangulator.pointer,
+                _address_of(points),
+                n,
+                primal.pointer,
+                _address_of(corners),
+                len(corners),
+                result.place,
+            )
+        )
+    of = result.pointer
+    vertices = (library.clipped_voronoi_vertex_count(of), 2)
+    return (
+        _view(result, library.clipped_voronoi_vertices(of), vertices, _FLOAT64),
+        _view(result, library.clipped_voronoi_offsets(of), (n + 1,), _INT32),
+        _view(result, library.clipped_voronoi_areas(of), (n,), _FLOAT64),
+        _view(result, library.clipped_voronoi_centroids(of), (n, 2), _FLOAT64),
+    )
+
+
+def relax(
+    triangulator: Triangulator, points: _Doubles, corners: _Doubles, iterations: int
+) -> _Doubles:
+    """Points after so many iterations of Lloyd's method."""
+    n = _count_points(points)
+    points, corners = _as_doubles(points), _as_doubles(corners)
+    relaxed = np.empty((n, 2), np.float64)
+    with triangulator.turn:
+        check(
+            library.relax(
+                triangulator.pointer,
+                _address_of(points),
+                n,
+                _address_of(corners),
+                len(corners),
+                iterations,
+                _address_of(relaxed),
+            )
+        )
+    return relaxed
+
+
 class Locator(DeviceHandle):
     """Answers queries on a triangulation, in the turns of its triangulator."""
 

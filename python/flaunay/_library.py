@@ -332,6 +332,17 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "voronoi_cell_offsets": (c_void_p, [c_void_p]),
     "voronoi_cells": (c_void_p, [c_void_p]),
     "voronoi_unbounded": (c_void_p, [c_void_p]),
+    "voronoi_clip": (
+        c_int,
+        [c_void_p, c_void_p, c_size_t, c_void_p, c_void_p, c_size_t, c_void_p],
+    ),
+    "clipped_voronoi_destroy": (None, [c_void_p]),
+    "clipped_voronoi_vertex_count": (c_size_t, [c_void_p]),
+    "clipped_voronoi_vertices": (c_void_p, [c_void_p]),
+    "clipped_voronoi_offsets": (c_void_p, [c_void_p]),
+    "clipped_voronoi_areas": (c_void_p, [c_void_p]),
+    "clipped_voronoi_centroids": (c_void_p, [c_void_p]),
+    "relax": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, c_void_p]),
     "locator_create": (
         c_int,
         [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p, c_void_p],

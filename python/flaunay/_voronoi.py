@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _cocircular, _flaunay, _triangulators
+from flaunay import _cells, _cocircular, _flaunay, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -84,6 +84,7 @@ class Voronoi:
 
     ndim = 2
     furthest_site = False
+    clipped = _cells.clipped
 
     def __init__(
         self,

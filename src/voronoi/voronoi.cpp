@@ -4,7 +4,6 @@
 #include "launchers/voronoi/voronoi.cl.hpp"
 
 namespace flaunay::voronoi {
-namespace {
 
 void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
                          const Buffer<cl_double>& circumcentres) {
@@ -14,26 +13,34 @@ void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
                                                                             .centres = circumcentres});
 }
 
-void write_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result) {
+Walks measure_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffer<cl_uint>& sizes) {
   const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
-  const auto ahead = runtime.arena().allocate<cl_int>(3 * triangles);
-  const auto firsts = runtime.arena().allocate<cl_uchar>(triangles);
-  runtime.map(triangles, kernels::link_corners{.neighbors = mesh.neighbors, .ahead = ahead});
-  // The prefix sums of the sizes are the offsets, which replace the sizes in place.
-  const auto offsets = result.cell_offsets.as<cl_uint>();
-  runtime.fill(offsets, n + 1, cl_uint{0});
+  const Walks walks{runtime.arena().allocate<cl_int>(3 * triangles),
+                    runtime.arena().allocate<cl_uchar>(triangles)};
+  runtime.map(triangles, kernels::link_corners{.neighbors = mesh.neighbors, .ahead = walks.ahead});
+  runtime.fill(sizes, n + 1, cl_uint{0});
   runtime.chunks(triangles, runtime.sizes().chunk(triangles),
                  kernels::measure_cells{.points = n,
                                         .triangles = mesh.triangles,
                                         .neighbors = mesh.neighbors,
-                                        .ahead = ahead,
-                                        .sizes = offsets,
-                                        .firsts = firsts});
+                                        .ahead = walks.ahead,
+                                        .sizes = sizes,
+                                        .firsts = walks.firsts});
+  return walks;
+}
+
+namespace {
+
+void write_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result) {
+  const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
+  // The prefix sums of the sizes are the offsets, which replace the sizes in place.
+  const auto offsets = result.cell_offsets.as<cl_uint>();
+  const Walks walks = measure_cells(runtime, mesh, offsets);
   host::exclusive_scan(runtime, offsets, n, offsets);
   runtime.chunks(triangles, runtime.sizes().chunk(triangles),
                  kernels::write_cells{.triangles = mesh.triangles,
-                                      .ahead = ahead,
-                                      .firsts = firsts,
+                                      .ahead = walks.ahead,
+                                      .firsts = walks.firsts,
                                       .offsets = offsets,
                                       .cells = result.cells});
 }

@@ -21,4 +21,18 @@ struct Buffers {
 /// cell of d triangles takes O(d log d) steps, of which one work-item does O(d).
 void compute(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result);
 
+/// Computes the circumcentres of all triangles: 2 per triangle.
+void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
+                         const Buffer<cl_double>& circumcentres);
+
+/// The ways around the vertices, from corner to corner; see kernels/voronoi/voronoi.cl.
+struct Walks {
+  Buffer<cl_int> ahead{};     ///< 3 per triangle: the same vertex in the next triangle around it, or -1
+  Buffer<cl_uchar> firsts{};  ///< 1 per triangle: the set of its corners at which cells begin
+};
+
+/// Links corners and writes to sizes, n + 1, the number of triangles of each cell and a 0. The walks come
+/// from the runtime's arena.
+Walks measure_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffer<cl_uint>& sizes);
+
 }  // namespace flaunay::voronoi

@@ -594,6 +594,8 @@ TEST(Embedding, TwoThreadsInOneContext) {
   }
 }
 
+const Coordinates kTriangle = {0, 0, 1, 0, 0, 1};
+
 /// Every call that uses a triangulator's memory or queue, by name.
 std::vector<std::pair<std::string, std::function<void()>>> calls_on(
     Triangulator& t, Locator& locator, const Coordinates& xy, const Triangulation& mesh, const Memory& memory,
@@ -601,6 +603,8 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
   const std::size_t n = xy.size() / 2;
   const auto buffer = std::make_shared<DeviceBuffer>();
   const auto dual = std::make_shared<DeviceVoronoi>();
+  const auto clipped = std::make_shared<DeviceClippedVoronoi>();
+  const auto relaxed = std::make_shared<DeviceBuffer>();
   const auto narrow = std::make_shared<std::vector<float>>(xy.begin(), xy.end());
   const DevicePoints points = points_in(memory, n);
   return {
@@ -610,6 +614,17 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
        [=, &t, &on_device, &enqueue] { t.triangulate(points, on_device, kAll, enqueue); }},
       {"use_workspace", [&t] { t.use_workspace(nullptr); }},
       {"voronoi", [=, &t, &xy, &mesh] { t.voronoi(xy.data(), n, mesh); }},
+      {"clipped voronoi",
+       [=, &t, &xy, &mesh] {
+         t.clipped_voronoi(xy.data(), n, mesh, kTriangle.data(), kTriangle.size() / 2);
+       }},
+      {"clipped voronoi on device",
+       [=, &t, &on_device, &enqueue] {
+         t.clipped_voronoi(points, on_device, kTriangle.data(), kTriangle.size() / 2, *clipped, enqueue);
+       }},
+      {"relax", [=, &t, &xy] { t.relax(xy.data(), n, kTriangle.data(), kTriangle.size() / 2); }},
+      {"relax on device",
+       [=, &t, &enqueue] { t.relax(points, kTriangle.data(), kTriangle.size() / 2, 1, *relaxed, enqueue); }},
       {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
       {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
       {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
@@ -1026,6 +1041,52 @@ TEST(SmallVoronoi, OfTheHostAndOfTheDevice) {
   EXPECT_TRUE(same(embedder().download<std::uint8_t>(result.unbounded.memory(), n), dual.unbounded));
   EXPECT_TRUE(
       triangulator().voronoi(nullptr, 0, triangulator().triangulate(q.points.data(), 0)).cells.empty());
+}
+
+TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
+  const Queried q;
+  const Coordinates corners = {-1, 0, 0.5, -1, 2, 0.25, 0.5, 2};
+  const std::size_t n = q.offsets.back();
+  const Triangulation mesh = expected_of(q.points, q.offsets);
+  const ClippedVoronoi cells = triangulator().clipped_voronoi(q.points.data(), n, mesh, corners.data(), 4);
+  ASSERT_EQ(cells.offsets.size(), n + 1);
+  const Memory memory = embedder().upload(q.points);
+  DevicePoints points = points_in(memory, n);
+  points.offsets = q.offsets;
+  DeviceTriangulation on_device;
+  DeviceClippedVoronoi result;
+  embedded().triangulate(points, on_device, kAll, on_own());
+  embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own());
+  EXPECT_EQ(result.vertex_count, cells.vertices.size() / 2);
+  EXPECT_TRUE(
+      same(embedder().download<double>(result.vertices.memory(), cells.vertices.size()), cells.vertices));
+  EXPECT_TRUE(same(embedder().download<std::int32_t>(result.offsets.memory(), n + 1), cells.offsets));
+  EXPECT_TRUE(same(embedder().download<double>(result.areas.memory(), n), cells.areas));
+  const std::vector<double> centroids = embedder().download<double>(result.centroids.memory(), 2 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (cells.offsets[i] == cells.offsets[i + 1]) continue;
+    EXPECT_EQ(centroids[2 * i], cells.centroids[2 * i]);
+    EXPECT_EQ(centroids[2 * i + 1], cells.centroids[2 * i + 1]);
+  }
+  result.areas = result.centroids;
+  expect_usage_error({"two things"}, [&] {
+    embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own());
+  });
+}
+
+TEST(SmallRelaxOnDevice, IsThatOfTheHost) {
+  const std::size_t n = 200;
+  const Coordinates points = make_fixture("uniform", n, 31), corners = {0, 0, 1, 0, 1, 1, 0, 1};
+  const Coordinates expected = triangulator().relax(points.data(), n, corners.data(), 4, 5);
+  const Memory memory = embedder().upload(points);
+  DeviceBuffer relaxed;
+  embedded().relax(points_in(memory, n), corners.data(), 4, 5, relaxed, on_own());
+  EXPECT_TRUE(same(embedder().download<double>(relaxed.memory(), 2 * n), expected));
+  EXPECT_TRUE(same(embedder().download<double>(memory.get(), 2 * n), points));
+  DevicePoints sets = points_in(memory, n);
+  sets.offsets = {0, 100, n};
+  expect_usage_error({"several sets"},
+                     [&] { embedded().relax(sets, corners.data(), 4, 5, relaxed, on_own()); });
 }
 
 TEST(SmallEmbeddingMisuse, Buffers) {

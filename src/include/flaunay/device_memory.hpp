@@ -112,4 +112,14 @@ struct DeviceVoronoi {
   DeviceBuffer unbounded;      ///< Voronoi::unbounded, uchar, n bytes
 };
 
+/// The clipped Voronoi cells of n points in device memory. For n points and v vertices, the caller's buffers
+/// must have the sizes given here. v is known when the call returns: about 6 per point, as a rule.
+struct DeviceClippedVoronoi {
+  DeviceBuffer vertices;         ///< ClippedVoronoi::vertices, double2, 16 v bytes
+  DeviceBuffer offsets;          ///< ClippedVoronoi::offsets, int32, 4 (n + 1) bytes
+  DeviceBuffer areas;            ///< ClippedVoronoi::areas, double, 8 n bytes
+  DeviceBuffer centroids;        ///< ClippedVoronoi::centroids, double2, 16 n bytes
+  std::size_t vertex_count = 0;  ///< v
+};
+
 }  // namespace flaunay

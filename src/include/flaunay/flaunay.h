@@ -128,6 +128,8 @@ typedef struct flaunay_device_triangulation flaunay_device_triangulation;
 typedef struct flaunay_voronoi flaunay_voronoi;
 /// The dual of a triangulation, in device memory.
 typedef struct flaunay_device_voronoi flaunay_device_voronoi;
+/// The cells of the dual, clipped to a convex polygon, in host memory.
+typedef struct flaunay_clipped_voronoi flaunay_clipped_voronoi;
 /// Answers queries on a triangulation: containing triangle, nearest point, interpolated value.
 typedef struct flaunay_locator flaunay_locator;
 /// The OpenCL devices of the machine.
@@ -701,6 +703,48 @@ FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* 
                                                           const flaunay_device_triangulation* triangulation,
                                                           const flaunay_enqueue* enqueue,
                                                           flaunay_device_voronoi* result);
+
+// ---- Clipped Voronoi cells and relaxation
+
+/// Computes the Voronoi cells of these n points, clipped to a convex polygon: x0 y0 x1 y1 ... for 3 to 16,383
+/// corners, counter-clockwise. A corner may lie on the line through its neighbours; cells do not have it
+/// then. What vertices cells have is decided exactly; their coordinates are rounded. The triangulation must
+/// have neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
+/// message that names a corner. The caller destroys the result.
+FLAUNAY_API flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
+                                                size_t n, const flaunay_triangulation* triangulation,
+                                                const double* corners, size_t corner_count,
+                                                flaunay_clipped_voronoi** cells);
+/// Frees the arrays.
+FLAUNAY_API void flaunay_clipped_voronoi_destroy(flaunay_clipped_voronoi* cells);
+/// n, the number of points.
+FLAUNAY_API size_t flaunay_clipped_voronoi_point_count(const flaunay_clipped_voronoi* cells);
+/// v, the number of vertices of all cells.
+FLAUNAY_API size_t flaunay_clipped_voronoi_vertex_count(const flaunay_clipped_voronoi* cells);
+/// 2 v values, the vertices of each cell counter-clockwise. Those that cells share are the same to the last
+/// bit.
+FLAUNAY_API const double* flaunay_clipped_voronoi_vertices(const flaunay_clipped_voronoi* cells);
+/// n + 1 values: the cell of point i has vertices [offsets[i], offsets[i + 1]). Points that another point
+/// represents have none, nor have points whose cells have no area in the polygon.
+FLAUNAY_API const int32_t* flaunay_clipped_voronoi_offsets(const flaunay_clipped_voronoi* cells);
+/// n values; 0 for points without vertices.
+FLAUNAY_API const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells);
+/// 2 n values; NaN for points without vertices.
+FLAUNAY_API const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells);
+
+/// Relaxes n points by Lloyd's method: each moves to the centroid of its Voronoi cell clipped to the polygon,
+/// `iterations` times. A point without a cell stays where it is in that iteration. relaxed: room for 2 n
+/// values, which may be coordinates itself. Errors are those of flaunay_triangulate and flaunay_voronoi_clip.
+FLAUNAY_API flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* coordinates,
+                                         size_t n, const double* corners, size_t corner_count,
+                                         size_t iterations, double* relaxed);
+/// Relaxes points in device memory. *relaxed: the caller's buffer, double2, 16 n bytes, another one than that
+/// of the points; if it is NULL, it receives a new one, as in flaunay_locator_locate_device. The work is
+/// enqueued like that of flaunay_triangulate_device, with the same errors; points stay on the device.
+FLAUNAY_API flaunay_status flaunay_relax_device(flaunay_triangulator* triangulator,
+                                                const flaunay_device_points* points, const double* corners,
+                                                size_t corner_count, size_t iterations,
+                                                const flaunay_enqueue* enqueue, cl_mem* relaxed);
 
 // ---- Queries
 

@@ -156,6 +156,7 @@ FLAUNAY_API std::vector<DeviceInfo> list_devices(bool self_test = false);
 // Types for points and results in device memory. Include flaunay/device_memory.hpp to use them.
 struct DevicePoints;
 struct DeviceTriangulation;
+struct DeviceClippedVoronoi;
 struct DeviceVoronoi;
 struct Enqueue;
 struct Parts;
@@ -180,6 +181,19 @@ struct Voronoi {
   std::vector<std::int32_t> cells;
   /// n values: 1 for points on the hull and for all points of a set on one line, otherwise 0.
   std::vector<std::uint8_t> unbounded;
+};
+
+/// The Voronoi cells of n points, clipped to a convex polygon.
+struct ClippedVoronoi {
+  /// x and y per vertex of a cell, counter-clockwise. They are rounded; which vertices a cell has was decided
+  /// by exact predicates, and vertices that cells share are the same to the last bit.
+  std::vector<double> vertices;
+  /// n + 1 values: the cell of point i has vertices [offsets[i], offsets[i + 1]). Points that another point
+  /// represents have none, nor have points whose cells have no area in the polygon. Other cells have at least
+  /// three, no two of which are the same point before rounding.
+  std::vector<std::int32_t> offsets;
+  std::vector<double> areas;      ///< n values; 0 for points without vertices
+  std::vector<double> centroids;  ///< x and y per point; NaN for points without vertices
 };
 
 /// Computes triangulations, on one device or on the host. It owns the compiled kernels, the working memory
@@ -278,6 +292,35 @@ class FLAUNAY_API Triangulator {
   /// representatives. The work is enqueued like that of triangulate for device memory, with the same errors.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
                const Enqueue& enqueue = own_queue());
+
+  /// Computes the Voronoi cells of these n points, in one or more sets, clipped to a convex polygon: corners
+  /// has x0 y0 x1 y1 ... for 3 to 16,383 corners, counter-clockwise. A corner may lie on the line through its
+  /// neighbours; cells do not have it then. What vertices cells have is decided exactly. Any points do: two,
+  /// points on one line, or one, whose cell is the polygon. Throws Error(usage) for a triangulation without
+  /// neighbours or of another number of points, and Error(input), which names a corner, for a polygon that is
+  /// not finite, not convex, or not counter-clockwise, or that together with the points exceeds the range of
+  /// magnitudes. O(n log m) work for m corners, and O(m) for each Voronoi edge across the polygon's border.
+  ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation,
+                                 const double* corners, std::size_t corner_count);
+  /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors,
+  /// hull and representatives; the corners are in host memory. The host waits twice; otherwise the work is
+  /// enqueued like that of triangulate for device memory, with the same errors.
+  void clipped_voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
+                       const double* corners, std::size_t corner_count, DeviceClippedVoronoi& result,
+                       const Enqueue& enqueue = own_queue());
+
+  /// Relaxes one set of n points, which may be no triangulation's, by Lloyd's method: each point moves to the
+  /// centroid of its Voronoi cell clipped to the polygon, `iterations` times. Returns the points, x0 y0 x1 y1
+  /// ... A point without a cell stays where it is in that iteration: of equal points all but the first, and
+  /// points outside of the polygon whose cells do not meet it. Other points outside move inside. On a device,
+  /// the points stay there between iterations. Throws what triangulate and clipped_voronoi throw.
+  std::vector<double> relax(const double* coordinates, std::size_t n, const double* corners,
+                            std::size_t corner_count, std::size_t iterations = 1);
+  /// Relaxes one set of points in device memory; result: double2, 16 bytes per point, another buffer than
+  /// that of the points. The host waits as often per iteration as triangulate does, and three times more; the
+  /// points do not travel. Otherwise the work is enqueued like that of triangulate, with the same errors.
+  void relax(const DevicePoints& points, const double* corners, std::size_t corner_count,
+             std::size_t iterations, DeviceBuffer& result, const Enqueue& enqueue = own_queue());
 
  private:
   friend class Locator;

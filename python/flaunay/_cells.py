@@ -1,0 +1,235 @@
+"""Voronoi cells clipped to a box or a convex polygon, and relaxation by them."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _flaunay, _triangulators
+from flaunay._arrays import as_floats, as_points, summary
+from flaunay._errors import UsageError
+
+if TYPE_CHECKING:
+    from flaunay._voronoi import Voronoi
+
+_Doubles = npt.NDArray[np.float64]
+
+
+def _corners_of(bounds: Any) -> _Doubles:
+    """The corners of a box or polygon, counter-clockwise, without a last one that repeats the first."""
+    exterior = getattr(bounds, "exterior", None)
+    given = bounds if exterior is None else exterior.coords
+    corners = np.asarray(as_floats(given, "bounds"), np.float64)
+    if corners.shape == (4,):
+        x0, y0, x1, y1 = corners
+        if not (x0 < x1 and y0 < y1):
+            raise UsageError(f"bounds must be xmin < xmax and ymin < ymax, not {corners.tolist()}")
+        return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    if corners.ndim != 2 or corners.shape[1] != 2:
+        raise UsageError(
+            "bounds must be (xmin, ymin, xmax, ymax) or the corners of a convex polygon, of shape (m, 2), "
+            f"not of shape {corners.shape}"
+        )
+    if len(corners) > 1 and (corners[0] == corners[-1]).all():
+        corners = corners[:-1]
+    # The library decides exactly whether it is convex; here only which way around it goes.
+    across = corners - corners[:1]
+    with np.errstate(all="ignore"):
+        area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
+    return corners[::-1] if area < 0 else corners
+
+
+class ClippedVoronoi:
+    """The Voronoi cells of points, clipped to a box or a convex polygon. `Voronoi.clipped` makes it.
+
+    Which vertices a cell has is decided exactly; their coordinates are rounded. Vertices that cells
+    share are the same to the last bit.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (nvertices, 2)
+        Cell i has ``vertices[offsets[i]:offsets[i + 1]]``, counter-clockwise. It has none if its point
+        equals an earlier one, or if the cell has no area within the bounds; otherwise three at least.
+    offsets : ndarray of int32, shape (npoints + 1,)
+    areas : ndarray of float64, shape (npoints,)
+        0 for cells without vertices.
+    centroids : ndarray of float64, shape (npoints, 2)
+        NaN for cells without vertices.
+    bounds : ndarray of float64, shape (m, 2)
+        The corners of the box or polygon, counter-clockwise.
+    """
+
+    def __init__(
+        self,
+        vertices: _Doubles,
+        offsets: npt.NDArray[np.int32],
+        areas: _Doubles,
+        centroids: _Doubles,
+        bounds: _Doubles,
+    ) -> None:
+        self.vertices, self.offsets, self.areas, self.centroids = (
+            vertices,
+            offsets,
+            areas,
+            centroids,
+        )
+        self.bounds = bounds
+
+    def __repr__(self) -> str:
+        return summary(self, points=len(self.areas), vertices=len(self.vertices))
+
+    def polygon(self, i: int) -> _Doubles:
+        """The vertices of cell i, counter-clockwise, shape (k, 2); k is 0 if there are none.
+
+        Raises IndexError for a cell that does not exist. Negative numbers count from the end.
+        """
+        n, i = len(self.areas), operator.index(i)
+        if not -n <= i < n:
+            raise IndexError(f"cell {i} of {n}")
+        i %= n
+        return self.vertices[self.offsets[i] : self.offsets[i + 1]]
+
+    def polygons(self) -> list[_Doubles]:
+        """The vertices of all cells, one array per point."""
+        return np.split(self.vertices, self.offsets[1:-1]) if len(self.areas) else []
+
+    def to_shapely(self) -> npt.NDArray[np.object_]:
+        """An array of one shapely.Polygon per point, empty polygons for cells without vertices.
+
+        Needs shapely 2. A geopandas.GeoSeries takes the array as it is.
+        """
+        import shapely  # the caller's, and slow to import
+
+        has_cell = np.diff(self.offsets) > 0
+        # Shapely's rings end where they begin.
+        sizes = np.diff(self.offsets)[has_cell] + 1
+        ends = np.cumsum(sizes)
+        at = np.arange(ends[-1] if len(ends) else 0) - np.repeat(np.arange(len(ends)), sizes)
+        at[ends - 1] = self.offsets[:-1][has_cell]
+        ring = np.repeat(np.arange(len(sizes)), sizes)
+        polygons = np.full(len(self.areas), shapely.Polygon(), dtype=object)
+        polygons[has_cell] = shapely.polygons(shapely.linearrings(self.vertices[at], indices=ring))
+        return polygons
+
+
+def clipped(voronoi: Voronoi, bounds: Any) -> ClippedVoronoi:
+    """The cells, clipped to a box or a convex polygon.
+
+    Parameters
+    ----------
+    bounds : array_like or shapely.Polygon
+        ``(xmin, ymin, xmax, ymax)``, or the corners of a convex polygon, shape (m, 2), in either
+        direction; a last corner that repeats the first does not count.
+
+    Returns
+    -------
+    ClippedVoronoi
+
+    Raises
+    ------
+    UsageError
+        If the bounds are neither.
+    InputError
+        If the polygon is not convex, or not finite; the message names a corner.
+
+    Notes
+    -----
+    Points may lie outside, on one line, or be few: one point has the whole polygon.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> vor = flaunay.Voronoi([[1, 1], [3, 1], [2, 4]])
+    >>> cells = vor.clipped((0, 0, 4, 4))
+    >>> float(cells.areas.sum())
+    16.0
+    >>> len(cells.polygon(0))
+    4
+    """
+    tri, corners = voronoi.delaunay, _corners_of(bounds)
+    arrays = _flaunay.clipped_voronoi(
+        _triangulators.of_device(tri._device),
+        np.asarray(tri.points, np.float64),
+        tri.simplices,
+        tri.neighbors,
+        tri.hull,
+        tri.representatives,
+        corners,
+    )
+    return ClippedVoronoi(*arrays, bounds=corners)
+
+
+def voronoi_polygons(
+    points: npt.ArrayLike, bounds: Any, as_shapely: bool = False, device: Optional[str] = None
+) -> Any:
+    """The Voronoi cell of each point as a polygon, clipped to a box or a convex polygon.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2)
+        As of `Delaunay`.
+    bounds : array_like or shapely.Polygon
+        As of `Voronoi.clipped`.
+    as_shapely : bool, default False
+        Whether to make polygons of shapely.
+    device : str, optional
+        As of `triangulate`.
+
+    Returns
+    -------
+    list of ndarray of float64, shape (k, 2)
+        One per point, counter-clockwise. ``shapely.Polygon`` takes each as it is; empty for a point that
+        equals an earlier one or whose cell does not meet the bounds. Or, with as_shapely, an array of
+        shapely polygons, which ``geopandas.GeoSeries`` takes as it is.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> for polygon in flaunay.voronoi_polygons([[1, 1], [3, 1]], (0, 0, 4, 2)):
+    ...     print(polygon.tolist())
+    [[2.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0]]
+    [[2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0]]
+    """
+    from flaunay._voronoi import Voronoi
+
+    cells = clipped(Voronoi(points, device=device), bounds)
+    return cells.to_shapely() if as_shapely else cells.polygons()
+
+
+def relax(
+    points: npt.ArrayLike, bounds: Any, iterations: int = 1, device: Optional[str] = None
+) -> _Doubles:
+    """Points spread evenly by Lloyd's method: each moves to the centroid of its clipped Voronoi cell.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2)
+        As of `Delaunay`; they are not changed.
+    bounds : array_like or shapely.Polygon
+        As of `Voronoi.clipped`.
+    iterations : int, default 1
+        How often the points move. On a device, they stay there in between.
+    device : str, optional
+        As of `triangulate`.
+
+    Returns
+    -------
+    ndarray of float64, shape (npoints, 2)
+        A point that has no cell stays where it is: one that equals an earlier point, or one outside of
+        the bounds whose cell does not meet them.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.relax([[0, 0], [0.5, 0.5]], (0, 0, 4, 4), iterations=50).round(2)
+    array([[1.33, 1.33],
+           [2.67, 2.67]])
+    """
+    times = operator.index(iterations)
+    if times < 0:
+        raise UsageError(f"iterations must not be negative: {times}")
+    given = np.asarray(as_points(points), np.float64)
+    return _flaunay.relax(_triangulators.of_device(device), given, _corners_of(bounds), times)

@@ -1,0 +1,115 @@
+"""Clipped cells and relaxation; shapely's answers where it is installed."""
+
+import numpy as np
+import pytest
+
+import flaunay
+
+BOX = (0.0, 0.0, 1.0, 1.0)
+
+
+@pytest.fixture
+def points(random):
+    return random.uniform(-0.1, 1.1, (200, 2))
+
+
+def area(polygon):
+    x, y = polygon.T
+    return 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+
+
+def test_cells_tile_the_box(points):
+    cells = flaunay.Voronoi(points).clipped(BOX)
+    assert cells.areas.sum() == pytest.approx(1, abs=1e-12)
+    assert cells.vertices.min() == 0 and cells.vertices.max() == 1
+    for i in range(len(points)):
+        polygon = cells.polygon(i)
+        assert len(polygon) == 0 or len(polygon) >= 3
+        if len(polygon):
+            assert area(polygon) == pytest.approx(cells.areas[i], abs=1e-14)
+            nearest = np.argmin(((points - cells.centroids[i]) ** 2).sum(axis=1))
+            assert nearest == i
+        else:
+            assert np.isnan(cells.centroids[i]).all()
+
+
+def test_a_polygon_in_either_direction_closed_or_not(points):
+    voronoi = flaunay.Voronoi(points)
+    corners = np.array([[0, 0], [1, 0.25], [0.75, 1], [0.25, 0.75]])
+    expected = voronoi.clipped(corners)
+    for same in (corners[::-1], np.vstack([corners, corners[:1]]), corners.tolist()):
+        cells = voronoi.clipped(same)
+        assert cells.areas == pytest.approx(expected.areas)
+    assert expected.areas.sum() == pytest.approx(area(corners))
+
+
+def test_few_points():
+    assert flaunay.voronoi_polygons(np.empty((0, 2)), BOX) == []
+    (alone,) = flaunay.voronoi_polygons([[5, 5]], BOX)
+    assert area(alone) == 1
+    strips = flaunay.voronoi_polygons([[0.25, 0], [0.75, 0], [0.75, 0], [9, 0]], BOX)
+    assert [len(strip) for strip in strips] == [4, 4, 0, 0]
+
+
+def test_polygons_by_number(points):
+    cells = flaunay.Voronoi(points).clipped(BOX)
+    assert (cells.polygon(-1) == cells.polygon(len(points) - 1)).all()
+    assert [len(p) for p in cells.polygons()] == np.diff(cells.offsets).tolist()
+    for wrong in (len(points), -len(points) - 1):
+        with pytest.raises(IndexError):
+            cells.polygon(wrong)
+
+
+@pytest.mark.parametrize(
+    "bounds, error, message",
+    [
+        ((0, 0, 0, 1), flaunay.UsageError, "xmin < xmax"),
+        ([[0, 0, 1]], flaunay.UsageError, "shape"),
+        ([[0, 0], [1, 0]], flaunay.InputError, "2 corners"),
+        ([[0, 0], [4, 0], [1, 1], [0, 4]], flaunay.InputError, "corner 2"),
+        ([[0, 0], [4, 0], [1, np.inf]], flaunay.InputError, "not finite at corner 2"),
+    ],
+)
+def test_bounds_that_are_none(bounds, error, message):
+    with pytest.raises(error, match=message):
+        flaunay.voronoi_polygons([[0, 0], [1, 1]], bounds)
+    with pytest.raises(error, match=message):
+        flaunay.relax([[0, 0], [1, 1]], bounds)
+
+
+def test_relaxation_evens_out_areas(points):
+    before = flaunay.Voronoi(points).clipped(BOX).areas
+    copy = points.copy()
+    relaxed = flaunay.relax(points, BOX, iterations=20)
+    assert (points == copy).all()
+    has_cell = before > 0
+    after = flaunay.Voronoi(relaxed).clipped(BOX).areas[has_cell]
+    assert after.std() < 0.5 * before[has_cell].std()
+    # Without a cell it stays; in later iterations it may have one.
+    once = flaunay.relax(points, BOX)
+    assert (once[~has_cell] == points[~has_cell]).all()
+    assert (once[has_cell] != points[has_cell]).any()
+
+
+def test_relaxation_step_by_step(points):
+    at = points
+    for _ in range(3):
+        cells = flaunay.Voronoi(at).clipped(BOX)
+        at = np.where(np.isnan(cells.centroids), at, cells.centroids)
+    assert (flaunay.relax(points, BOX, iterations=3) == at).all()
+    assert (flaunay.relax(points, BOX, iterations=0) == points).all()
+    with pytest.raises(flaunay.UsageError):
+        flaunay.relax(points, BOX, iterations=-1)
+
+
+def test_shapely_takes_them(points):
+    shapely = pytest.importorskip("shapely", minversion="2.0")
+    polygons = flaunay.voronoi_polygons(points, shapely.box(*BOX), as_shapely=True)
+    assert len(polygons) == len(points)
+    assert shapely.is_valid(polygons).all()
+    assert shapely.union_all(polygons).area == pytest.approx(1)
+    # Neighbours share their vertices to the last bit.
+    assert shapely.coverage_is_valid(polygons[~shapely.is_empty(polygons)])
+    cells = flaunay.Voronoi(points).clipped(BOX)
+    assert shapely.area(polygons) == pytest.approx(cells.areas, abs=1e-14)
+    assert len(flaunay.Voronoi(np.empty((0, 2))).clipped(BOX).to_shapely()) == 0

@@ -1,0 +1,82 @@
+// The C interface to clipped Voronoi cells and to relaxation.
+#include <CL/cl.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::guarded;
+using c::read;
+using c::required;
+
+struct flaunay_clipped_voronoi {
+  ClippedVoronoi cpp;
+};
+
+flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+                                    const flaunay_triangulation* triangulation, const double* corners,
+                                    size_t corner_count, flaunay_clipped_voronoi** cells) {
+  return create(cells, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const Triangulation& primal = required(triangulation, "the triangulation").cpp;
+    return std::make_unique<flaunay_clipped_voronoi>(
+        flaunay_clipped_voronoi{cpp.clipped_voronoi(coordinates, n, primal, corners, corner_count)});
+  });
+}
+
+void flaunay_clipped_voronoi_destroy(flaunay_clipped_voronoi* cells) { delete cells; }
+
+size_t flaunay_clipped_voronoi_point_count(const flaunay_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return handle.cpp.areas.size(); });
+}
+
+size_t flaunay_clipped_voronoi_vertex_count(const flaunay_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return handle.cpp.vertices.size() / 2; });
+}
+
+const double* flaunay_clipped_voronoi_vertices(const flaunay_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.vertices); });
+}
+
+const int32_t* flaunay_clipped_voronoi_offsets(const flaunay_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.offsets); });
+}
+
+const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.areas); });
+}
+
+const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.centroids); });
+}
+
+flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+                             const double* corners, size_t corner_count, size_t iterations, double* relaxed) {
+  return guarded([&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    if (n > 0) required(relaxed, "the array of relaxed points");
+    const std::vector<double> moved = cpp.relax(coordinates, n, corners, corner_count, iterations);
+    std::copy(moved.begin(), moved.end(), relaxed);
+  });
+}
+
+flaunay_status flaunay_relax_device(flaunay_triangulator* triangulator, const flaunay_device_points* points,
+                                    const double* corners, size_t corner_count, size_t iterations,
+                                    const flaunay_enqueue* enqueue, cl_mem* relaxed) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    DeviceBuffer buffer = c::to_buffer(required(relaxed, "the pointer to the buffer of relaxed points"));
+    cpp.relax(c::to_points(points), corners, corner_count, iterations, buffer, queued);
+    if (*relaxed == nullptr && buffer.memory() != nullptr) {
+      clRetainMemObject(buffer.memory());
+      *relaxed = buffer.memory();
+    }
+  });
+}
