@@ -14,6 +14,7 @@ device does one call after the other. OpenCL does not survive a fork: in a child
 used it, calls run on the host, and calls that name a device raise ``DeviceError``.
 """
 
+from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
@@ -24,6 +25,7 @@ from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 
 __all__ = [
+    "AlphaShape",
     "ChunkedTriangulation",
     "Delaunay",
     "DeviceError",
@@ -35,6 +37,7 @@ __all__ = [
     "UsageError",
     "Voronoi",
     "__version__",
+    "alpha_shape",
     "devices",
     "modes",
     "triangulate",

@@ -13,6 +13,8 @@ import numpy.typing as npt
 from flaunay import _flaunay, _triangulators
 from flaunay._arrays import FloatArray, as_floats, as_points, summary
 from flaunay._errors import UsageError
+from flaunay._export import TriangleExports
+from flaunay._plot import TrianglePlots
 from flaunay._triangulation import triangulate
 
 Indices = npt.NDArray[np.int32]
@@ -36,7 +38,7 @@ def _as_queries(xi: npt.ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
     return np.asarray(queries, np.float64).reshape(-1, 2), queries.shape[:-1]
 
 
-class Delaunay:
+class Delaunay(TrianglePlots, TriangleExports):
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
     What `scipy.spatial.Delaunay` has and this has not: more than two dimensions, the options of
