@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     import matplotlib.patches
 
     from flaunay._alpha_shape import AlphaShape
+    from flaunay._delaunay import Delaunay
 
+Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
 
@@ -91,6 +93,143 @@ class TrianglePlots(TriangleGraphs):
         look = _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:blue"})
         lines = _segments(self.points, self.edges, look)
         axes.add_collection(lines)
+        axes.autoscale_view()
+        return lines
+
+
+Bounds = Sequence[float]
+
+# Of the points' extent, what a plot without bounds shows around them.
+_MARGIN = 0.1
+
+
+def _checked_bounds(bounds: Bounds) -> tuple[Doubles, Doubles]:
+    """The lower left and the upper right corner."""
+    box = np.asarray(bounds, np.float64)
+    if box.shape != (4,) or not (box[2:] > box[:2]).all() or not np.isfinite(box).all():
+        raise UsageError(f"bounds must be (xmin, ymin, xmax, ymax), not {bounds!r}")
+    return box[:2], box[2:]
+
+
+def _box_around(points: Doubles) -> tuple[Doubles, Doubles]:
+    """The points' box and a margin on all sides, also if it is a point or a line."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = _MARGIN * float((high - low).max()) or 1.0
+    return low - margin, high + margin
+
+
+def _clipped_to_box(
+    start: Doubles, step: Doubles, first: Doubles, last: Doubles, box: tuple[Doubles, Doubles]
+) -> Doubles:
+    """The parts in a box of the lines start + t step for t from `first` to `last`, which may be infinite.
+
+    By the method of Liang and Barsky; those without a part in the box are left out.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        enters, leaves = (np.where(step > 0, *pair) for pair in (box, box[::-1]))
+        t = np.stack([(enters - start) / step, (leaves - start) / step])
+    # A line along an axis is inside for all t, or for none.
+    inside = (start >= box[0]) & (start <= box[1])
+    still = step == 0
+    t[0][still] = np.where(inside[still], -np.inf, np.inf)
+    t[1][still] = np.inf
+    begin, end = np.maximum(first, t[0].max(axis=1)), np.minimum(last, t[1].min(axis=1))
+    kept = begin < end
+    return np.stack([start[kept] + t[kept, None] * step[kept] for t in (begin, end)], axis=1)
+
+
+def _bisectors(a: Doubles, b: Doubles) -> tuple[Doubles, Doubles]:
+    """Points and directions of the lines between a and b."""
+    across = b - a
+    return (a + b) / 2, np.stack([across[:, 1], -across[:, 0]], axis=1)
+
+
+def _ridges_in_box(vor: VoronoiPlots, box: tuple[Doubles, Doubles]) -> Doubles:
+    """The Voronoi edges in a box, shape (k, 2, 2)."""
+    tri = vor.delaunay
+    points = np.asarray(tri.points, np.float64)
+    if tri.nsimplex == 0:
+        # Of points on one line, edges are lines.
+        start, step = _bisectors(points[tri.hull[:-1]], points[tri.hull[1:]])
+        everywhere = np.full(len(start), np.inf)
+        return _clipped_to_box(start, step, -everywhere, everywhere, box)
+    ends = np.asarray(vor.ridge_vertices)
+    endless = ends[:, 0] < 0
+    a, b = (points[np.asarray(vor.ridge_points)[endless, k]] for k in range(2))
+    middle, outward = _bisectors(a, b)
+    inner = points[tri.hull].mean(axis=0)
+    outward *= np.sign(((middle - inner) * outward).sum(axis=1))[:, None]
+    start = vor.vertices[ends[:, 1]]
+    step = vor.vertices[ends[:, 0]] - start
+    step[endless] = outward
+    last = np.where(endless, np.inf, 1.0)
+    return _clipped_to_box(start, step, np.zeros(len(ends)), last, box)
+
+
+class VoronoiPlots:
+    """`Voronoi` on Matplotlib's axes."""
+
+    points: FloatArray
+    vertices: Doubles
+
+    if TYPE_CHECKING:
+        delaunay: Delaunay
+
+        @property
+        def ridge_points(self) -> Indices: ...
+        @property
+        def ridge_vertices(self) -> Indices: ...
+
+    def plot(
+        self,
+        ax: Optional[matplotlib.axes.Axes] = None,
+        bounds: Optional[Bounds] = None,
+        **style: Any,
+    ) -> matplotlib.collections.LineCollection:
+        """Draws the edges of the cells, each once, clipped to a box.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        bounds : (xmin, ymin, xmax, ymax), optional
+            The box. Without it, that of the points with a margin of a tenth.
+        **style
+            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
+
+        Returns
+        -------
+        matplotlib.collections.LineCollection
+            The parts of the edges that lie in the box.
+
+        Raises
+        ------
+        UsageError
+            For bounds that are none.
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay, matplotlib
+        >>> matplotlib.use("Agg")
+        >>> vor = flaunay.Voronoi([[0, 0], [2, 0], [0, 2]])
+        >>> lines = vor.plot(bounds=(0, 0, 2, 2))
+        >>> [line.tolist() for line in lines.get_segments()]
+        [[[1.0, 1.0], [2.0, 2.0]], [[1.0, 1.0], [0.0, 1.0]], [[1.0, 1.0], [1.0, 0.0]]]
+        """
+        axes = _axes(ax, "Voronoi.plot")
+        points = np.asarray(self.points, np.float64)
+        if bounds is not None:
+            box = _checked_bounds(bounds)
+        else:
+            box = _box_around(points if len(points) else np.zeros((1, 2)))
+        look = _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:green"})
+        lines: matplotlib.collections.LineCollection = optional(
+            "matplotlib.collections", "Voronoi.plot"
+        ).LineCollection(_ridges_in_box(self, box), **look)
+        axes.add_collection(lines)
+        axes.update_datalim(np.stack(box))
         axes.autoscale_view()
         return lines
 

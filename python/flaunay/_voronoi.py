@@ -11,11 +11,12 @@ import numpy.typing as npt
 from flaunay import _flaunay, _triangulators
 from flaunay._arrays import FloatArray, summary
 from flaunay._delaunay import Delaunay
+from flaunay._plot import VoronoiPlots
 
 Indices = npt.NDArray[np.int32]
 
 
-class Voronoi:
+class Voronoi(VoronoiPlots):
     """The Voronoi diagram of points in the plane, with the attributes of SciPy's.
 
     It has a vertex for each Delaunay triangle. Where more than three points are cocircular, vertices
