@@ -14,7 +14,7 @@ import numpy as np
 
 # Text on an empty page has less than this part of pixels of other colours, and a single-coloured map fewer colours.
 DRAWN = 0.02
-COLOURS = 16
+COLOURS = 4
 
 
 def problem(picture):
