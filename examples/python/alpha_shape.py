@@ -8,6 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 from matplotlib.font_manager import FontProperties
 from matplotlib.path import Path
 from matplotlib.textpath import TextPath
@@ -15,7 +16,7 @@ from matplotlib.textpath import TextPath
 import flaunay
 
 
-def points_in_text(text: str, spacing: float) -> np.ndarray:
+def points_in_text(text: str, spacing: float) -> npt.NDArray[np.float64]:
     """Points of a jittered grid that lie in the letters."""
     outline = TextPath((0, 0), text, size=100, prop=FontProperties(family="serif", weight="bold"))
     low, high = outline.get_extents().get_points()
@@ -25,7 +26,7 @@ def points_in_text(text: str, spacing: float) -> np.ndarray:
     # Letters are polygons and their holes: a point is inside if it is in an odd number of them.
     polygons = [Path(polygon) for polygon in outline.to_polygons()]
     times_inside = np.sum([polygon.contains_points(points) for polygon in polygons], axis=0)
-    return points[times_inside % 2 == 1]
+    return np.asarray(points[times_inside % 2 == 1])
 
 
 def main(path: str) -> None:

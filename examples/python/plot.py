@@ -22,11 +22,11 @@ def main(path: str) -> None:
     tri.plot(axes, color="#9ecae1", linewidth=0.8, label="Delaunay triangulation")
     gabriel = tri.points[tri.edges[tri.is_gabriel]]
     axes.add_collection(
-        LineCollection(gabriel, color="#4292c6", linewidth=1, label="Gabriel graph")
+        LineCollection(list(gabriel), color="#4292c6", linewidth=1, label="Gabriel graph")
     )
     tree = tri.points[tri.spanning_tree]
     axes.add_collection(
-        LineCollection(tree, color="#d94801", linewidth=1.8, label="minimum spanning tree")
+        LineCollection(list(tree), color="#d94801", linewidth=1.8, label="minimum spanning tree")
     )
     ring = points[np.append(tri.hull, tri.hull[0])]
     axes.plot(*ring.T, color="#08306b", linewidth=2, label="convex hull")

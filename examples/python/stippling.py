@@ -10,9 +10,9 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.cbook
-import matplotlib.image
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 
 import flaunay
 
@@ -20,16 +20,17 @@ DOTS = 16_000
 ROUNDS = 20
 
 
-def photograph() -> np.ndarray:
+def photograph() -> npt.NDArray[np.float64]:
     """Grace Hopper, as Matplotlib ships her, as darkness from 0 to 1."""
-    with matplotlib.cbook.get_sample_data("grace_hopper.jpg") as file:
-        colours = matplotlib.image.imread(file, format="jpg") / 255
-    brightness = colours @ [0.299, 0.587, 0.114]
+    path = matplotlib.cbook.get_sample_data("grace_hopper.jpg", asfileobj=False)
+    brightness = plt.imread(str(path)) / 255 @ [0.299, 0.587, 0.114]
     # Each pixel as four, so that the smallest cells have enough of them.
     return 1 - brightness[:470, 60:470].repeat(2, axis=0).repeat(2, axis=1)
 
 
-def stipple(weights: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def stipple(
+    weights: npt.NDArray[np.float64], random: np.random.Generator
+) -> npt.NDArray[np.float64]:
     """Places for dots, as many per area as the pixels weigh."""
     height, width = weights.shape
     column, row = np.meshgrid(np.arange(width) + 0.5, height - np.arange(height) - 0.5)
