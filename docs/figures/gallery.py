@@ -4,13 +4,25 @@
 The folder PICTURES is one that tests/gallery.py has filled. Writes palette images beside this program.
 """
 
+import io
 import pathlib
 import sys
 
 from PIL import Image
 
-COLOURS = 48
-WIDTH = 560
+WIDTH = 640
+BYTES = 150_000
+COLOURS = (256, 128, 64, 32, 16)
+
+
+def palette_image(picture):
+    """The file's bytes with as many colours as fit."""
+    for colours in COLOURS:
+        buffer = io.BytesIO()
+        picture.quantize(colours, dither=Image.Dither.NONE).save(buffer, "png", optimize=True)
+        if buffer.tell() <= BYTES:
+            break
+    return buffer.getvalue()
 
 
 def main(pictures):
@@ -20,7 +32,7 @@ def main(pictures):
             height = round(picture.height * WIDTH / picture.width)
             picture = picture.resize((WIDTH, height), Image.LANCZOS)
         small = pathlib.Path(__file__).parent / f"gallery-{path.name.replace('_', '-')}"
-        picture.quantize(COLOURS, dither=Image.Dither.NONE).save(small, optimize=True)
+        small.write_bytes(palette_image(picture))
         print(f"{small.name}: {small.stat().st_size // 1000} kB")
 
 
