@@ -22,6 +22,10 @@ with open("pyproject.toml", "rb") as file:
 pip=("$python" -m pip --disable-pip-version-check --no-input)
 "${pip[@]}" install --quiet "${build_requirements[@]}"
 "${pip[@]}" install --quiet --no-build-isolation .
+# What triangulations are handed over to, in versions for the system's NumPy. The test of PyVista runs where that is
+# installed: it brings all of VTK.
+numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
+"${pip[@]}" install --quiet meshio networkx shapely "numpy==$numpy"
 
 # The programs in the guide.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md

@@ -15,6 +15,7 @@ device does one call after the other. OpenCL does not survive a fork: in a child
 used it, calls run on the host, and calls that name a device raise ``DeviceError``.
 """
 
+from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
@@ -32,6 +33,7 @@ from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 
 __all__ = [
+    "AlphaShape",
     "ChunkedTriangulation",
     "ClippedVoronoi",
     "CloughTocherInterpolator",
@@ -47,6 +49,7 @@ __all__ = [
     "UsageError",
     "Voronoi",
     "__version__",
+    "alpha_shape",
     "devices",
     "griddata",
     "modes",

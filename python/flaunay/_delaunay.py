@@ -24,6 +24,8 @@ from flaunay._arrays import (
     summary,
 )
 from flaunay._errors import InputError, UsageError
+from flaunay._export import TriangleExports
+from flaunay._plot import TrianglePlots
 from flaunay._triangulation import arrays_of_mesh
 
 if TYPE_CHECKING:
@@ -79,7 +81,7 @@ def _given(answers: _Answers, out: Optional[_Answers]) -> _Answers:
     return out
 
 
-class Delaunay:
+class Delaunay(TrianglePlots, TriangleExports):
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
     `scipy.spatial.Delaunay` can be replaced by it, in two dimensions; where both give an answer, this one

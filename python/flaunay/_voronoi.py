@@ -12,11 +12,12 @@ from flaunay import _cells, _cocircular, _flaunay, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
+from flaunay._plot import VoronoiPlots
 
 Indices = npt.NDArray[np.int32]
 
 
-class Voronoi:
+class Voronoi(VoronoiPlots):
     """The Voronoi diagram of points in the plane, with the attributes of SciPy's.
 
     It has a vertex for each Delaunay triangle. Where more than three points are cocircular, vertices

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Terrain from scattered heights, interpolated in triangles: interpolation.py PICTURE.png"""
+
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.cbook
+import matplotlib.pyplot as plt
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import LightSource
+
+import flaunay
+
+HEIGHTS = 4000
+
+
+def terrain() -> npt.NDArray[np.float64]:
+    """The hills at Jacksboro, Tennessee, which Matplotlib ships: metres on a grid."""
+    path = matplotlib.cbook.get_sample_data("jacksboro_fault_dem.npz", asfileobj=False)
+    with np.load(path) as data:
+        return np.asarray(data["elevation"], np.float64)
+
+
+def shaded(heights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Colours by height, with light from the north-west."""
+    light = LightSource(azdeg=315, altdeg=40)
+    known = np.nan_to_num(heights, nan=np.nanmin(heights))
+    colours = light.shade(
+        known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=100, vmax=1050, blend_mode="soft"
+    )
+    colours[np.isnan(heights)] = 1
+    return colours
+
+
+def main(path: str) -> None:
+    truth = terrain()
+    height, width = truth.shape
+    random = np.random.default_rng(2)
+    # Distinct places of the grid, of which the heights are known.
+    places = random.choice(truth.size, HEIGHTS, replace=False)
+    points = np.stack(np.divmod(places, width), axis=1).astype(np.float64)
+    values = truth.ravel()[places]
+    grid = np.moveaxis(np.mgrid[:height, :width], 0, -1)
+
+    surface = flaunay.Delaunay(points).interpolate(values, grid)
+    error = np.sqrt(np.nanmean((surface - truth) ** 2))
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.3), layout="constrained")
+    left.imshow(shaded(truth))
+    left.plot(points[:, 1], points[:, 0], ".", color="black", markersize=0.8)
+    left.set_title(f"terrain, and {HEIGHTS:,} places in it")
+    right.imshow(shaded(surface))
+    right.set_title(f"linear interpolation: {error:.1f} m off")
+    for axes in (left, right):
+        axes.set_axis_off()
+    figure.savefig(path, dpi=100)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
+    main(sys.argv[1])

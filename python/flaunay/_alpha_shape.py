@@ -1,0 +1,407 @@
+"""Alpha shapes: the outline of a cloud of points."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._accurate import signs_of_turns
+from flaunay._arrays import summary
+from flaunay._delaunay import Delaunay
+from flaunay._errors import UsageError
+from flaunay._graphs import minimum_spanning_forest
+from flaunay._optional import optional
+from flaunay._plot import AlphaShapeArtists, draw_alpha_shape
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import shapely
+
+Indices = npt.NDArray[np.int32]
+Mask = npt.NDArray[np.bool_]
+
+
+class AlphaShape:
+    """An alpha shape of points in the plane. `alpha_shape` makes it.
+
+    Attributes
+    ----------
+    delaunay : Delaunay
+        The triangulation that it is a part of.
+    alpha : float
+        The radius.
+    inside : ndarray of bool, shape (nsimplex,)
+        Which of ``delaunay.simplices`` are in the shape: those whose circumradius is at most alpha.
+    """
+
+    def __init__(self, delaunay: Delaunay, alpha: float) -> None:
+        self.delaunay = delaunay
+        self.alpha = alpha
+        self.inside: Mask = delaunay.circumradii <= alpha
+        self.inside.flags.writeable = False
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.delaunay.npoints, triangles=len(self.simplices))
+
+    @property
+    def simplices(self) -> Indices:
+        """The triangles of the shape, int32, shape (m, 3)."""
+        triangles: Indices = self.delaunay.simplices[self.inside]
+        return triangles
+
+    @cached_property
+    def area(self) -> float:
+        """The area of the triangles."""
+        a, b, c = (self.delaunay.points[self.simplices[:, k]].astype(np.float64) for k in range(3))
+        u, v = b - a, c - a
+        return float((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2)
+
+    @cached_property
+    def _boundary(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """The triangles at the boundary, and their corners opposite to it."""
+        beyond = self.delaunay.neighbors
+        is_boundary = self.inside[:, None] & ~((beyond >= 0) & self.inside[beyond])
+        triangle, corner = np.nonzero(is_boundary)
+        return triangle, corner
+
+    @cached_property
+    def edges(self) -> Indices:
+        """The boundary of the triangles, int32, shape (k, 2).
+
+        Each edge is directed: the triangles are to its left.
+        """
+        triangle, corner = self._boundary
+        ends = [self.delaunay.simplices[triangle, (corner + k) % 3] for k in (1, 2)]
+        edges: Indices = np.stack(ends, axis=1)
+        return edges
+
+    @cached_property
+    def singular_edges(self) -> Indices:
+        """Edges of the general alpha shape that have no triangles, int32, shape (k, 2).
+
+        They are at most 2 alpha long, no other point is in the disc that has them as diameter, and
+        neither of their triangles is in the shape.
+        """
+        tri = self.delaunay
+        sides = tri.edge_simplices
+        taken = tri.is_gabriel & (tri.edge_lengths / 2 <= self.alpha)
+        if tri.nsimplex:
+            taken &= ~((sides >= 0) & self.inside[sides]).any(axis=1)
+        edges: Indices = tri.edges[taken]
+        return edges
+
+    @cached_property
+    def isolated(self) -> Indices:
+        """Points in no triangle and no singular edge, int32, increasing.
+
+        Points that equal an earlier one are not listed.
+        """
+        alone = self.delaunay.representatives == np.arange(self.delaunay.npoints)
+        alone[self.simplices] = False
+        alone[self.singular_edges] = False
+        return np.flatnonzero(alone).astype(np.int32)
+
+    def _following(self) -> npt.NDArray[np.intp]:
+        """For each boundary edge the next one around the same triangles.
+
+        Found by turning around the edge's end, through triangles, until one has no neighbour inside. So
+        at a point where parts of the shape touch, each part goes on with its own edges.
+        """
+        corners, neighbors = self.delaunay.simplices, self.delaunay.neighbors
+        edge_of = np.full(corners.shape, -1, np.int64)
+        edge_of[self._boundary] = np.arange(len(self.edges))
+        following = np.empty(len(self.edges), np.intp)
+        turning = np.arange(len(self.edges))
+        end = self.edges[:, 1]
+        triangle, corner = self._boundary
+        # The side that leaves the end is opposite to the next corner.
+        corner = (corner + 1) % 3
+        while turning.size:
+            found = edge_of[triangle, corner]
+            is_found = found >= 0
+            following[turning[is_found]] = found[is_found]
+            turning = turning[~is_found]
+            triangle = neighbors[triangle[~is_found], corner[~is_found]].astype(np.intp)
+            at_end = np.argmax(corners[triangle] == end[turning, None], axis=1)
+            # From corner k the next side, counter-clockwise, is opposite to corner k - 1.
+            corner = (at_end + 2) % 3
+        return following
+
+    @cached_property
+    def _cycles(self) -> tuple[list[Indices], npt.NDArray[np.intp]]:
+        """The rings, and a triangle of each."""
+        following = self._following().tolist()
+        starts = self.edges[:, 0].tolist()
+        triangles = self._boundary[0]
+        done = bytearray(len(starts))
+        rings: list[Indices] = []
+        members: list[int] = []
+        for first in range(len(starts)):
+            if done[first]:
+                continue
+            path: list[int] = []
+            place: dict[int, int] = {}
+            edge = first
+            while True:
+                start = starts[edge]
+                # A point that is met again closes a ring, so that no ring touches itself.
+                if start in place:
+                    ring = np.array(path[place[start] :], np.int32)
+                    del path[place[start] :]
+                    for point in ring.tolist():
+                        del place[point]
+                    rings.append(np.roll(ring, -int(np.argmin(ring))))
+                    members.append(triangles[first])
+                if done[edge]:
+                    break
+                done[edge] = 1
+                place[start] = len(path)
+                path.append(start)
+                edge = following[edge]
+        order = sorted(range(len(rings)), key=lambda k: int(rings[k][0]))
+        return [rings[k] for k in order], np.array(members, np.intp)[order]
+
+    @cached_property
+    def _is_outer(self) -> Mask:
+        """Which rings turn counter-clockwise, exactly: the turns at their lexicographically smallest points."""
+        rings, _ = self._cycles
+        if not rings:
+            return np.empty(0, np.bool_)
+        points = self.delaunay.points.astype(np.float64)
+        sizes = np.array([len(ring) for ring in rings])
+        members = np.concatenate(rings)
+        ring_of = np.repeat(np.arange(len(rings)), sizes)
+        order = np.lexsort((points[members, 1], points[members, 0], ring_of))
+        starts = np.cumsum(sizes) - sizes
+        smallest = order[starts]
+        before, after = (
+            points[members[starts + (smallest - starts + step) % sizes]] for step in (-1, 1)
+        )
+        outer: Mask = signs_of_turns(before, points[members[smallest]], after) > 0
+        return outer
+
+    def rings(self) -> list[Indices]:
+        """The boundary as closed rings of points.
+
+        Returns
+        -------
+        list of ndarray of int32
+            Indices of points. Outer rings are counter-clockwise, holes clockwise. Each begins with its
+            smallest index, which is not repeated at the end, and the rings are in the order of these. No
+            ring meets a point twice: where the boundary touches itself, there are several rings.
+
+        Notes
+        -----
+        O(k) work for k boundary edges.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> points = [[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2]]
+        >>> [ring.tolist() for ring in flaunay.alpha_shape(points, 3).rings()]
+        [[0, 1, 2, 3]]
+        """
+        return list(self._cycles[0])
+
+    @cached_property
+    def _components(self) -> npt.NDArray[np.int32]:
+        """For each triangle of the triangulation its component of the shape; others have one each."""
+        csgraph = optional("scipy.sparse.csgraph", "AlphaShape.polygons")
+        sparse = optional("scipy.sparse", "AlphaShape.polygons")
+        first, second = _inner_sides(self.delaunay).T
+        both = self.inside[first] & self.inside[second]
+        n = self.delaunay.nsimplex
+        graph = sparse.coo_array(
+            (np.ones(int(both.sum()), np.int8), (first[both], second[both])), shape=(n, n)
+        )
+        labels: npt.NDArray[np.int32] = csgraph.connected_components(graph, directed=False)[1]
+        return labels
+
+    def polygons(self) -> list[list[Indices]]:
+        """The components of the shape, each with its outer ring first and then its holes.
+
+        Triangles are in one component if one can go from one to the other across common edges.
+
+        Returns
+        -------
+        list of list of ndarray of int32
+            Rings as `rings` has them, valid as polygons of the Simple Features standard. Needs SciPy.
+
+        Raises
+        ------
+        ImportError
+            Without SciPy.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> points = [[0, 0], [1, 0], [0, 1], [9, 9], [9, 8], [8, 9]]
+        >>> [[ring.tolist() for ring in part] for part in flaunay.alpha_shape(points, 1).polygons()]
+        [[[0, 1, 2]], [[3, 5, 4]]]
+        """
+        rings, triangles = self._cycles
+        if not rings:
+            return []
+        component = self._components[triangles]
+        # Within a component, which begins where its outer ring does, outer rings first.
+        order = np.lexsort((np.arange(len(rings)), ~self._is_outer, component))
+        parts = np.split(order, np.flatnonzero(np.diff(component[order])) + 1)
+        return [
+            [rings[k] for k in part.tolist()]
+            for part in sorted(parts, key=lambda part: int(part[0]))
+        ]
+
+    def to_shapely(self) -> shapely.MultiPolygon:
+        """The triangles of the shape as one geometry of Shapely.
+
+        Returns
+        -------
+        shapely.MultiPolygon
+            With a polygon for each component. Needs SciPy and Shapely 2.
+
+        Raises
+        ------
+        ImportError
+            Without these.
+        """
+        geometry = optional("shapely", "AlphaShape.to_shapely")
+        points = self.delaunay.points
+        polygons: shapely.MultiPolygon = geometry.MultiPolygon(
+            [
+                geometry.Polygon(points[outer], [points[hole] for hole in holes])
+                for outer, *holes in self.polygons()
+            ]
+        )
+        return polygons
+
+    def plot(self, ax: Optional[matplotlib.axes.Axes] = None, **style: Any) -> AlphaShapeArtists:
+        """Draws the triangles as one area with its boundary, and what has no triangles as lines and dots.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        **style
+            As `matplotlib.patches.PathPatch` takes it, such as ``facecolor``. Lines and dots have the
+            colour of ``edgecolor``.
+
+        Returns
+        -------
+        patch : matplotlib.patches.PathPatch
+            The rings.
+        lines : matplotlib.collections.LineCollection
+            The singular edges.
+        dots : matplotlib.lines.Line2D
+            The isolated points.
+
+        Raises
+        ------
+        ImportError
+            Without Matplotlib.
+        """
+        return draw_alpha_shape(self, ax, style)
+
+
+def _inner_sides(tri: Delaunay) -> Indices:
+    """The two simplices at each edge that has two."""
+    sides = tri.edge_simplices
+    inner: Indices = sides[sides[:, 0] >= 0]
+    return inner
+
+
+def _covering_alpha(tri: Delaunay) -> float:
+    """The smallest alpha whose triangles have all points and are one component; infinite if none is."""
+    if tri.nsimplex == 0:
+        return np.inf
+    radii = tri.circumradii
+    # A point is covered as soon as the smallest of its triangles is there, which is written last.
+    order = np.argsort(radii)[::-1]
+    smallest = np.zeros(tri.npoints)
+    smallest[tri.simplices[order]] = radii[order, None]
+    covered = smallest.max()
+    # With growing alpha each triangle is a new component, and each edge of a minimum spanning tree joins two, when
+    # the larger of its triangles is there.
+    sides = _inner_sides(tri)
+    joins = radii[sides].max(axis=1)
+    joins = np.sort(joins[minimum_spanning_forest(sides, joins, tri.nsimplex)])
+    candidates = np.unique(radii)
+    parts = np.searchsorted(radii[order[::-1]], candidates, "right")
+    components = parts - np.searchsorted(joins, candidates, "right")
+    fits = (candidates >= covered) & (components == 1)
+    return float(candidates[np.argmax(fits)])
+
+
+def alpha_shape(
+    points: Union[npt.ArrayLike, Delaunay], alpha: Union[float, str] = "auto", **options: Any
+) -> AlphaShape:
+    """The alpha shape of points in the plane: their outline, as a disc of radius alpha sees it.
+
+    Everything that a disc of this radius can reach without touching a point is cut away. With a large alpha
+    the convex hull is left, with a small one only the points.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2), or Delaunay
+        The points, or their triangulation.
+    alpha : float or "auto"
+        The radius, not negative; ``inf`` gives the convex hull. ``"auto"`` takes the smallest radius
+        for which every point is in a triangle, and the triangles are one component: one can go from
+        each to each across common edges.
+    **options
+        As `Delaunay` takes them, such as ``device``. Not with a triangulation.
+
+    Returns
+    -------
+    AlphaShape
+
+    Raises
+    ------
+    UsageError
+        For an alpha that is negative or no number.
+    UsageError, InputError, DeviceError
+        As of `Delaunay`.
+    ImportError
+        For ``"auto"`` without SciPy.
+
+    Notes
+    -----
+    alpha is the radius, as in Edelsbrunner and Mücke (1994) and in MATLAB. In Edelsbrunner, Kirkpatrick and
+    Seidel (1983) it is minus one over the radius, in the package alphashape one over the radius, and in
+    CGAL the radius squared.
+
+    `AlphaShape.simplices`, `edges`, `rings`, `polygons` and `area` describe the triangles, which CGAL
+    calls the regularised alpha shape. The general one also has `singular_edges` and `isolated` points.
+
+    The triangulation is exact. Radii are computed with a relative error below 2**-45, and half lengths
+    with one below 2**-51, so a triangle or an edge whose radius is closer to alpha than that may be
+    in the shape or not. ``"auto"`` is the smallest such radius exactly as computed.
+
+    O(n log n) work.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> points = [[0, 0], [1, 0], [0, 1], [9, 9]]
+    >>> shape = flaunay.alpha_shape(points, alpha=1)
+    >>> shape.simplices
+    array([[0, 1, 2]], dtype=int32)
+    >>> shape.isolated
+    array([3], dtype=int32)
+    """
+    if isinstance(points, Delaunay):
+        if options:
+            raise UsageError(f"{next(iter(options))} is for points, not for a triangulation")
+        tri = points
+    else:
+        tri = Delaunay(points, **options)
+    if isinstance(alpha, str):
+        if alpha != "auto":
+            raise UsageError(f"alpha must be a number or 'auto', not {alpha!r}")
+        return AlphaShape(tri, _covering_alpha(tri))
+    radius = float(alpha)
+    if not radius >= 0:
+        raise UsageError(f"alpha must not be negative, nor NaN: {radius}")
+    return AlphaShape(tri, radius)

@@ -1,0 +1,141 @@
+"""Triangulations for other packages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Mapping, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import FloatArray
+from flaunay._errors import UsageError
+from flaunay._optional import optional
+
+if TYPE_CHECKING:
+    import matplotlib.tri
+    import meshio
+    import pyvista
+
+Indices = npt.NDArray[np.int32]
+Data = Mapping[str, npt.ArrayLike]
+
+
+def _checked(data: Optional[Data], n: int, name: str) -> dict[str, npt.NDArray[Any]]:
+    """Arrays of one row for each of n; UsageError for others."""
+    arrays = {key: np.asarray(value) for key, value in (data or {}).items()}
+    for key, array in arrays.items():
+        if array.ndim == 0 or len(array) != n:
+            raise UsageError(f"{name}[{key!r}] must have the shape ({n}, ...), not {array.shape}")
+    return arrays
+
+
+class TriangleExports:
+    """`Delaunay` for other packages, each imported when it is asked for."""
+
+    points: FloatArray
+    simplices: Indices
+
+    def to_matplotlib(self) -> matplotlib.tri.Triangulation:
+        """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
+
+        Returns
+        -------
+        matplotlib.tri.Triangulation
+            Made of these triangles, so Matplotlib runs no triangulation of its own. It has none if
+            there are no simplices, which Matplotlib refuses.
+
+        Raises
+        ------
+        UsageError
+            If there are no simplices.
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_matplotlib().triangles
+        array([[0, 1, 2]], dtype=int32)
+        """
+        if len(self.simplices) == 0:
+            raise UsageError("Matplotlib takes no triangulation without triangles")
+        triangulations = optional("matplotlib.tri", "Delaunay.to_matplotlib")
+        x, y = self.points.T
+        result: matplotlib.tri.Triangulation = triangulations.Triangulation(x, y, self.simplices)
+        return result
+
+    def to_meshio(
+        self, point_data: Optional[Data] = None, cell_data: Optional[Data] = None
+    ) -> meshio.Mesh:
+        """The triangulation as a mesh of meshio, which writes VTK, XDMF, Gmsh, STL and other files.
+
+        Parameters
+        ----------
+        point_data, cell_data : mapping of str to array_like, optional
+            What points and simplices have, one row for each.
+
+        Returns
+        -------
+        meshio.Mesh
+            With copies of the arrays, points in two dimensions, and one block of triangles.
+
+        Raises
+        ------
+        UsageError
+            For data of another length.
+        ImportError
+            Without meshio.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_meshio(point_data={"height": [1, 2, 3]}).write("hills.vtk")  # doctest: +SKIP
+        """
+        of_points = _checked(point_data, len(self.points), "point_data")
+        of_cells = _checked(cell_data, len(self.simplices), "cell_data")
+        mesh: meshio.Mesh = optional("meshio", "Delaunay.to_meshio").Mesh(
+            self.points.copy(),
+            [("triangle", self.simplices.copy())],
+            point_data=of_points,
+            cell_data={name: [array] for name, array in of_cells.items()},
+        )
+        return mesh
+
+    def to_pyvista(self, z: Optional[npt.ArrayLike] = None) -> pyvista.PolyData:
+        """The triangulation as a surface of PyVista.
+
+        Parameters
+        ----------
+        z : array_like, shape (npoints,), optional
+            Heights of the points; zero without.
+
+        Returns
+        -------
+        pyvista.PolyData
+            With copies of the arrays.
+
+        Raises
+        ------
+        UsageError
+            For another number of heights than of points.
+        ImportError
+            Without PyVista.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_pyvista(z=[0, 1, 2]).plot()  # doctest: +SKIP
+        """
+        n = len(self.points)
+        heights = np.zeros(n) if z is None else np.asarray(z)
+        if heights.shape != (n,):
+            raise UsageError(f"z must have the shape ({n},), not {heights.shape}")
+        sizes = np.full((len(self.simplices), 1), 3, np.int32)
+        surface: pyvista.PolyData = optional("pyvista", "Delaunay.to_pyvista").PolyData(
+            np.column_stack([self.points, heights]),
+            faces=np.hstack([sizes, self.simplices]).ravel(),
+        )
+        return surface

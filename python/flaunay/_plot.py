@@ -1,0 +1,276 @@
+"""Triangulations, Voronoi diagrams and alpha shapes on Matplotlib's axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Optional, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import FloatArray
+from flaunay._errors import UsageError
+from flaunay._graphs import TriangleGraphs
+from flaunay._optional import optional
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.collections
+    import matplotlib.lines
+    import matplotlib.patches
+
+    from flaunay._alpha_shape import AlphaShape
+    from flaunay._delaunay import Delaunay
+
+Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+
+def _axes(ax: Optional[matplotlib.axes.Axes], purpose: str) -> matplotlib.axes.Axes:
+    """The axes given, or else the current ones, with one scale for x and y."""
+    pyplot = optional("matplotlib.pyplot", purpose)
+    if ax is not None:
+        return ax
+    current: matplotlib.axes.Axes = pyplot.gca()
+    current.set_aspect("equal")
+    return current
+
+
+# Names that Matplotlib has for the same thing.
+_WIDTH = ("linewidth", "linewidths", "lw")
+_COLOR = ("color", "colors", "edgecolor", "edgecolors", "ec", "array")
+
+
+def _with_defaults(style: dict[str, Any], defaults: dict[tuple[str, ...], Any]) -> dict[str, Any]:
+    """The style, with what it does not say under any of its names."""
+    missing = {names[0]: v for names, v in defaults.items() if not set(names) & set(style)}
+    return {**missing, **style}
+
+
+def _segments(
+    points: FloatArray, edges: Indices, style: dict[str, Any]
+) -> matplotlib.collections.LineCollection:
+    collections = optional("matplotlib.collections", "plot")
+    lines: matplotlib.collections.LineCollection = collections.LineCollection(
+        points[edges], **style
+    )
+    return lines
+
+
+class TrianglePlots(TriangleGraphs):
+    """`Delaunay` on Matplotlib's axes."""
+
+    def plot(
+        self, ax: Optional[matplotlib.axes.Axes] = None, **style: Any
+    ) -> matplotlib.collections.LineCollection:
+        """Draws the edges, each once.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        **style
+            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
+
+        Returns
+        -------
+        matplotlib.collections.LineCollection
+            One line for each of `edges`, in their order, so ``array=tri.edge_lengths`` colours them.
+
+        Raises
+        ------
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay, matplotlib
+        >>> matplotlib.use("Agg")
+        >>> lines = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]]).plot(color="tab:red")
+        >>> len(lines.get_segments())
+        3
+        """
+        axes = _axes(ax, "Delaunay.plot")
+        look = _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:blue"})
+        lines = _segments(self.points, self.edges, look)
+        axes.add_collection(lines)
+        axes.autoscale_view()
+        return lines
+
+
+Bounds = Sequence[float]
+
+# Of the points' extent, what a plot without bounds shows around them.
+_MARGIN = 0.1
+
+
+def _checked_bounds(bounds: Bounds) -> tuple[Doubles, Doubles]:
+    """The lower left and the upper right corner."""
+    box = np.asarray(bounds, np.float64)
+    if box.shape != (4,) or not (box[2:] > box[:2]).all() or not np.isfinite(box).all():
+        raise UsageError(f"bounds must be (xmin, ymin, xmax, ymax), not {bounds!r}")
+    return box[:2], box[2:]
+
+
+def _box_around(points: Doubles) -> tuple[Doubles, Doubles]:
+    """The points' box and a margin on all sides, also if it is a point or a line."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = _MARGIN * float((high - low).max()) or 1.0
+    return low - margin, high + margin
+
+
+def _clipped_to_box(
+    start: Doubles, step: Doubles, first: Doubles, last: Doubles, box: tuple[Doubles, Doubles]
+) -> Doubles:
+    """The parts in a box of the lines start + t step for t from `first` to `last`, which may be infinite.
+
+    By the method of Liang and Barsky; those without a part in the box are left out.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        enters, leaves = (np.where(step > 0, *pair) for pair in (box, box[::-1]))
+        t = np.stack([(enters - start) / step, (leaves - start) / step])
+    # A line along an axis is inside for all t, or for none.
+    inside = (start >= box[0]) & (start <= box[1])
+    still = step == 0
+    t[0][still] = np.where(inside[still], -np.inf, np.inf)
+    t[1][still] = np.inf
+    begin, end = np.maximum(first, t[0].max(axis=1)), np.minimum(last, t[1].min(axis=1))
+    kept = begin < end
+    return np.stack([start[kept] + t[kept, None] * step[kept] for t in (begin, end)], axis=1)
+
+
+def _bisectors(a: Doubles, b: Doubles) -> tuple[Doubles, Doubles]:
+    """Points and directions of the lines between a and b."""
+    across = b - a
+    return (a + b) / 2, np.stack([across[:, 1], -across[:, 0]], axis=1)
+
+
+def _ridges_in_box(vor: VoronoiPlots, box: tuple[Doubles, Doubles]) -> Doubles:
+    """The Voronoi edges in a box, shape (k, 2, 2)."""
+    tri = vor.delaunay
+    points = np.asarray(tri.points, np.float64)
+    if tri.nsimplex == 0:
+        # Of points on one line, edges are lines.
+        start, step = _bisectors(points[tri.hull[:-1]], points[tri.hull[1:]])
+        everywhere = np.full(len(start), np.inf)
+        return _clipped_to_box(start, step, -everywhere, everywhere, box)
+    ends = np.asarray(vor.ridge_vertices)
+    endless = ends[:, 0] < 0
+    a, b = (points[np.asarray(vor.ridge_points)[endless, k]] for k in range(2))
+    middle, outward = _bisectors(a, b)
+    inner = points[tri.hull].mean(axis=0)
+    outward *= np.sign(((middle - inner) * outward).sum(axis=1))[:, None]
+    start = vor.vertices[ends[:, 1]]
+    step = vor.vertices[ends[:, 0]] - start
+    step[endless] = outward
+    last = np.where(endless, np.inf, 1.0)
+    return _clipped_to_box(start, step, np.zeros(len(ends)), last, box)
+
+
+class VoronoiPlots:
+    """`Voronoi` on Matplotlib's axes."""
+
+    points: FloatArray
+    vertices: Doubles
+
+    if TYPE_CHECKING:
+        delaunay: Delaunay
+
+        @property
+        def ridge_points(self) -> Indices: ...
+        @property
+        def ridge_vertices(self) -> Indices: ...
+
+    def plot(
+        self,
+        ax: Optional[matplotlib.axes.Axes] = None,
+        bounds: Optional[Bounds] = None,
+        **style: Any,
+    ) -> matplotlib.collections.LineCollection:
+        """Draws the edges of the cells, each once, clipped to a box.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        bounds : (xmin, ymin, xmax, ymax), optional
+            The box. Without it, that of the points with a margin of a tenth.
+        **style
+            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
+
+        Returns
+        -------
+        matplotlib.collections.LineCollection
+            The parts of the edges that lie in the box.
+
+        Raises
+        ------
+        UsageError
+            For bounds that are none.
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay, matplotlib
+        >>> matplotlib.use("Agg")
+        >>> vor = flaunay.Voronoi([[0, 0], [2, 0], [0, 2]])
+        >>> lines = vor.plot(bounds=(0, 0, 2, 2))
+        >>> [line.tolist() for line in lines.get_segments()]
+        [[[1.0, 1.0], [2.0, 2.0]], [[1.0, 1.0], [0.0, 1.0]], [[1.0, 1.0], [1.0, 0.0]]]
+        """
+        axes = _axes(ax, "Voronoi.plot")
+        points = np.asarray(self.points, np.float64)
+        if bounds is not None:
+            box = _checked_bounds(bounds)
+        else:
+            box = _box_around(points if len(points) else np.zeros((1, 2)))
+        look = _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:green"})
+        lines: matplotlib.collections.LineCollection = optional(
+            "matplotlib.collections", "Voronoi.plot"
+        ).LineCollection(_ridges_in_box(self, box), **look)
+        axes.add_collection(lines)
+        axes.update_datalim(np.stack(box))
+        axes.autoscale_view()
+        return lines
+
+
+AlphaShapeArtists = tuple[
+    "matplotlib.patches.PathPatch",
+    "matplotlib.collections.LineCollection",
+    "matplotlib.lines.Line2D",
+]
+
+
+def draw_alpha_shape(
+    shape: AlphaShape, ax: Optional[matplotlib.axes.Axes], style: dict[str, Any]
+) -> AlphaShapeArtists:
+    """As `AlphaShape.plot` says."""
+    axes = _axes(ax, "AlphaShape.plot")
+    paths = optional("matplotlib.path", "AlphaShape.plot")
+    patches = optional("matplotlib.patches", "AlphaShape.plot")
+    points = shape.delaunay.points
+    look = {
+        "facecolor": "tab:blue",
+        "alpha": 0.6,
+        "edgecolor": "tab:blue",
+        "linewidth": 1.0,
+        **style,
+    }
+    # One path of all rings: holes turn the other way, so they stay empty.
+    rings = shape.rings()
+    closed = [points[np.append(ring, ring[0])] for ring in rings]
+    codes = [
+        [paths.Path.MOVETO] + [paths.Path.LINETO] * (len(r) - 1) + [paths.Path.CLOSEPOLY]
+        for r in rings
+    ]
+    path = paths.Path(
+        np.concatenate([np.empty((0, 2)), *closed]), np.concatenate([np.empty(0, np.uint8), *codes])
+    )
+    patch: matplotlib.patches.PathPatch = patches.PathPatch(path, **look)
+    axes.add_patch(patch)
+    plain = {"color": look["edgecolor"], "linewidth": look["linewidth"]}
+    lines = _segments(points, shape.singular_edges, plain)
+    axes.add_collection(lines)
+    (dots,) = axes.plot(*points[shape.isolated].T, ".", color=look["edgecolor"], markersize=3)
+    axes.autoscale_view()
+    return patch, lines, dots

@@ -1,0 +1,96 @@
+"""Signs of dot products and turns beside rational numbers, and circumradii too."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from flaunay._accurate import circumradii_of, signs_of_dots, signs_of_turns
+
+
+def near_the_middle(a, b, random):
+    return (a + b) / 2
+
+
+def far_off(a, b, random):
+    return np.abs(b).max() * random.random(b.shape)
+
+
+def near_an_end(a, b, random):
+    return b + 1e-9 * far_off(a, b, random)
+
+
+def turned(a, b, random):
+    """So that the angle at a is a right one but for rounding."""
+    return a + (b - a)[:, ::-1] * [1, -1]
+
+
+THIRDS = [near_the_middle, near_an_end, far_off, turned]
+
+
+@pytest.fixture(params=[1, 1e-310, 4e307, 1e15, 3])
+def triples(request, random):
+    """Points a and b, of a magnitude, and others that are in a special place to them."""
+    a, b = request.param * random.uniform(-1, 1, (2, 100, 2))
+    if request.param == 3:  # whole numbers, whose products are exact
+        a, b = np.round(a), np.round(b)
+    with np.errstate(over="ignore"):
+        return [(a, b, third(a, b, random)) for third in THIRDS]
+
+
+def rational(*arrays):
+    for row in zip(*(array.tolist() for array in arrays)):
+        yield [tuple(map(Fraction, point)) for point in row]
+
+
+def dot(a, b, c):
+    return (a[0] - c[0]) * (b[0] - c[0]) + (a[1] - c[1]) * (b[1] - c[1])
+
+
+def cross(a, b, c):
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def sign(number):
+    return (number > 0) - (number < 0)
+
+
+def test_signs_are_those_of_rational_numbers(triples):
+    seen = set()
+    for a, b, c in triples:
+        for p, q, r in (a, b, c), (c, b, a), (b, c, a):
+            expected = [sign(dot(*row)) for row in rational(p, q, r)]
+            assert signs_of_dots(p, q, r).tolist() == expected
+            seen.update(expected)
+            assert signs_of_turns(p, q, r).tolist() == [
+                sign(cross(*row)) for row in rational(p, q, r)
+            ]
+    assert seen >= {-1, 1}
+
+
+def test_right_angles_are_zero(random):
+    """Also where the differences are rounded, so that only rational numbers can tell."""
+    a = np.array([[0.0, 0.0], [0.1, 0.7], [1e-200, 0.0], [1e150, 0.0]])
+    b = a + [[3.0, 4.0], [0.0, 1.0], [1e-200, 0.0], [1e150, 0.0]]
+    c = a + [[-4.0, 3.0], [1.0, 0.0], [0.0, 1e-200], [0.0, 1e150]]
+    assert signs_of_dots(b, c, a).tolist() == [0, 0, 0, 0]
+    assert signs_of_turns(a, b, a + 2 * (b - a)).tolist() == [0, 0, 0, 0]
+    third = np.nextafter(c, np.inf)
+    assert (signs_of_dots(b, third, a) > 0).all()
+
+
+def test_circumradii_are_exact_to_45_bits(triples):
+    for a, b, c in triples:
+        for radius, (p, q, r) in zip(circumradii_of(a, b, c).tolist(), rational(a, b, c)):
+            area = cross(p, q, r)
+            if area == 0:
+                assert radius == np.inf
+                continue
+            squares = [dot(s, s, t) for s, t in ((p, q), (q, r), (r, p))]
+            expected = squares[0] * squares[1] * squares[2] / (4 * area * area)
+            if radius == np.inf:
+                assert expected > Fraction(1.7e308) ** 2
+            # What is subnormal has fewer bits.
+            elif radius > 1e-290:
+                # Of squares, the error is twice as large.
+                assert abs(Fraction(radius) ** 2 / expected - 1) < Fraction(2, 2**45)
