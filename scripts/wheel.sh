@@ -22,7 +22,7 @@ if [[ -n $release ]]; then
   if [[ ! -e $root/made ]]; then
     rm -rf "$root"
     debootstrap --variant=minbase \
-      --include=ca-certificates,g++,libboost-dev,libfmt-dev,opencl-headers,python3,python3-pip,python3-venv \
+      --include=ca-certificates,g++,libboost-dev,opencl-headers,python3,python3-pip,python3-venv \
       "$release" "$root" >/dev/null
     touch "$root/made"
   fi
@@ -30,6 +30,9 @@ if [[ -n $release ]]; then
   for file in /etc/hosts /etc/resolv.conf /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
     if [[ -e $file ]]; then cp "$file" "$root$file"; fi
   done
+  # Of fmt, flaunay compiles the headers in, and needs newer ones than an old release has.
+  dpkg --listfiles libfmt-dev libfmt9 | grep -E '^/usr/(include|lib)/' | tar --create --no-recursion --files-from=- 2>/dev/null |
+    tar --extract --directory="$root"
   rm -rf "$root/flaunay/build/wheels"
   mkdir -p "$root/flaunay"
   git ls-files -z --cached --others --exclude-standard | xargs -0 ls -d 2>/dev/null |

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any, Union
 
 import numpy as np
@@ -47,13 +48,19 @@ def _as_array(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
         raise UsageError(f"{name} are no array of numbers: {error}") from error
 
 
+def is_masked(given: object) -> bool:
+    """Whether it is a masked array. NumPy imports its module, which takes milliseconds, when one is first made."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(given, masked.MaskedArray)
+
+
 def as_floats(given: npt.ArrayLike, name: str) -> FloatArray:
     """A C-contiguous, aligned array of float32 or float64, copied only if it is none already.
 
     Numbers of any other type become float64; those that are not exactly one are an error, and so is
     what is no real number, an array of objects included.
     """
-    if isinstance(given, np.ma.MaskedArray):
+    if is_masked(given):
         raise UsageError(f"{name} cannot be a masked array")
     array = _as_array(given, name)
     if array.size == 0 and array.dtype.kind == "O":
