@@ -91,7 +91,8 @@ Platforms platforms_of(const std::string& driver) {
 
 // The drivers that are installed, as the loader finds them: the first line of each file *.icd.
 std::vector<std::string> installed_drivers() {
-  const char* const given = std::getenv("OCL_ICD_VENDORS");
+  const char* given = std::getenv("OCL_ICD_VENDORS");
+  if (given == nullptr) given = std::getenv("OPENCL_VENDOR_PATH");
   const fs::path place = given != nullptr ? given : "/etc/OpenCL/vendors";
   std::vector<fs::path> files;
   std::error_code error;

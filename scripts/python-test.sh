@@ -21,7 +21,10 @@ with open("pyproject.toml", "rb") as file:
 ((${#build_requirements[@]} > 0))
 pip=("$python" -m pip --disable-pip-version-check --no-input)
 "${pip[@]}" install --quiet "${build_requirements[@]}"
-"${pip[@]}" install --quiet --no-build-isolation .
+# The wheel is kept for scripts/wheel-test.sh.
+rm -rf build/python-wheel
+"${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel .
+"${pip[@]}" install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
 
 # The programs in the guide.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md

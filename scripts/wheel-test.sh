@@ -41,8 +41,11 @@ if $bare; then
   cp "$wheel" "$root/flaunay"
   cp scripts/wheel-test.sh "$root/flaunay/scripts"
   cp tests/wheel/check.py "$root/flaunay/tests/wheel"
-  mkdir -p "$root/dev/shm" && mount -t tmpfs tmpfs "$root/dev/shm"
-  trap 'umount "$root/dev/shm"' EXIT
+  # As every running Debian has them.
+  mkdir -p "$root/dev/shm"
+  trap 'umount "$root/dev/shm" "$root/proc"' EXIT
+  mount -t tmpfs tmpfs "$root/dev/shm"
+  mount -t proc proc "$root/proc"
   for option in '' --pocl; do
     chroot "$root" /flaunay/scripts/wheel-test.sh $option "/flaunay/$(basename "$wheel")" /usr/bin/python3
   done

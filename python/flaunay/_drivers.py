@@ -39,7 +39,7 @@ def add_drivers() -> None:
     site = None if "OCL_ICD_VENDORS" in os.environ else _site_of(_PACKAGE)
     if site is None:
         return
-    for file in sorted(glob.glob(os.path.join(site, _FILES))):
+    for file in sorted(glob.glob(os.path.join(glob.escape(site), _FILES))):
         with open(file, encoding="utf-8") as lines:
             driver = os.path.join(os.path.dirname(file), lines.readline().strip())
         if os.path.exists(driver):

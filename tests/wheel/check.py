@@ -36,7 +36,14 @@ def main():
         assert "no OpenCL platform" in str(error), error
         devices = []
     for name in sys.argv[1:]:
-        result = flaunay.triangulate(points, device=name)
+        assert devices
+        try:
+            result = flaunay.triangulate(points, device=name)
+        except flaunay.DeviceError as error:
+            # PoCL 3.0, the last on PyPI, cannot compile for processors that are newer than itself.
+            assert "unknown target CPU" in str(error), error
+            print(f"{name}: it does not know this processor")
+            continue
         assert np.array_equal(result.triangles, tri.simplices)
         assert result.statistics["device"] != "host", result.statistics
     print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}, devices: {devices or 'none'}")
