@@ -1,13 +1,28 @@
 // The OpenCL functions that flaunay calls. They load the ICD loader, libOpenCL, when they are first called
 // and pass the call on. So programs start without it and can run on machines that have no OpenCL, where no
-// platform is found.
+// platform is found. If drivers are installed without the loader, calls go where it would pass them on.
+#include "host/opencl_loader.hpp"
+
 #include <CL/cl.h>
+#include <CL/cl_icd.h>
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <string>
+#include <system_error>
 #include <tuple>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace {
+
+namespace fs = std::filesystem;
 
 template <typename Function>
 struct Signature;
@@ -16,12 +31,6 @@ struct Signature<R(P...)> {
   using Result = R;
   template <std::size_t k>
   using Parameter = std::tuple_element_t<k, std::tuple<P...>>;
-  // Stands in for a function that no library has. Nothing but clGetPlatformIDs can be called then, as
-  // everything else needs a platform.
-  static R missing(P...) {
-    if constexpr (std::is_same_v<R, cl_int>) return -1001;  // CL_PLATFORM_NOT_FOUND_KHR
-    if constexpr (!std::is_same_v<R, cl_int>) return nullptr;
-  }
 };
 
 // A library that was loaded before comes first: it may have been put there to watch the calls.
@@ -33,17 +42,148 @@ Function* find(const char* name) {
   }();
   void* found = dlsym(RTLD_DEFAULT, name);
   if (found == nullptr && library != nullptr) found = dlsym(library, name);
-  return found != nullptr ? reinterpret_cast<Function*>(found) : &Signature<Function>::missing;
+  return reinterpret_cast<Function*>(found);
+}
+
+// The driver's functions for an object, which every object of OpenCL has in its first word (cl_khr_icd); null
+// for no object.
+template <typename Object>
+const cl_icd_dispatch* functions_of(Object* object) {
+  return object != nullptr ? *reinterpret_cast<const cl_icd_dispatch* const*>(object) : nullptr;
+}
+
+// Where the arguments of a function have such an object.
+template <typename Object, typename... Others>
+const cl_icd_dispatch* functions_for(Object* object, Others...) {
+  return functions_of(object);
+}
+const cl_icd_dispatch* functions_for(cl_uint count, const cl_event* events) {
+  return count > 0 && events != nullptr ? functions_of(*events) : nullptr;
+}
+template <typename... Others>
+const cl_icd_dispatch* functions_for(const cl_context_properties*, cl_uint count, const cl_device_id* devices,
+                                     Others...) {
+  return count > 0 && devices != nullptr ? functions_of(*devices) : nullptr;
+}
+
+// What a function answers if there is no OpenCL.
+template <typename Result>
+Result missing() {
+  if constexpr (std::is_same_v<Result, cl_int>) return -1001;  // CL_PLATFORM_NOT_FOUND_KHR
+  if constexpr (!std::is_same_v<Result, cl_int>) return nullptr;
+}
+
+using Platforms = std::vector<cl_platform_id>;
+
+// The platforms of a driver; none if it cannot be loaded or is none.
+Platforms platforms_of(const std::string& driver) {
+  using Find = void* (*)(const char*);
+  void* const library = dlopen(driver.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr) return {};
+  const auto find_extension = reinterpret_cast<Find>(dlsym(library, "clGetExtensionFunctionAddress"));
+  if (find_extension == nullptr) return {};
+  const auto list = reinterpret_cast<decltype(&clGetPlatformIDs)>(find_extension("clIcdGetPlatformIDsKHR"));
+  cl_uint count = 0;
+  if (list == nullptr || list(0, nullptr, &count) != CL_SUCCESS) return {};
+  Platforms found(count);
+  return list(count, found.data(), nullptr) == CL_SUCCESS ? found : Platforms();
+}
+
+// The drivers that are installed, as the loader finds them: the first line of each file *.icd.
+std::vector<std::string> installed_drivers() {
+  const char* given = std::getenv("OCL_ICD_VENDORS");
+  if (given == nullptr) given = std::getenv("OPENCL_VENDOR_PATH");
+  const fs::path place = given != nullptr ? given : "/etc/OpenCL/vendors";
+  std::vector<fs::path> files;
+  std::error_code error;
+  if (fs::is_directory(place, error)) {
+    for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
+      files.push_back(entry->path());
+    }
+  } else {
+    files.push_back(place);
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> drivers;
+  for (const fs::path& file : files) {
+    std::string driver;
+    if (file.extension() == ".icd" && std::getline(std::ifstream(file), driver)) drivers.push_back(driver);
+  }
+  return drivers;
+}
+
+Platforms installed_platforms() {
+  if (const auto list = find<decltype(clGetPlatformIDs)>("clGetPlatformIDs")) {
+    cl_uint count = 0;
+    if (list(0, nullptr, &count) != CL_SUCCESS) return {};
+    Platforms found(count);
+    return list(count, found.data(), nullptr) == CL_SUCCESS ? found : Platforms();
+  }
+  Platforms all;
+  for (const std::string& driver : installed_drivers()) {
+    const Platforms found = platforms_of(driver);
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+std::string name_of(cl_platform_id platform) {
+  std::size_t bytes = 0;
+  const auto* const functions = functions_of(platform);
+  if (functions->clGetPlatformInfo(platform, CL_PLATFORM_NAME, 0, nullptr, &bytes) != CL_SUCCESS) return "";
+  std::string name(bytes, '\0');
+  functions->clGetPlatformInfo(platform, CL_PLATFORM_NAME, bytes, name.data(), nullptr);
+  return name.c_str();
+}
+
+struct AddedDriver {
+  std::string platform, path;
+  bool is_loaded = false;
+  Platforms platforms;
+};
+
+std::mutex added_mutex;
+std::vector<AddedDriver>& added_drivers() {
+  // Never destroyed, since destructors of other objects may call OpenCL.
+  static auto& drivers = *new std::vector<AddedDriver>();
+  return drivers;
+}
+
+Platforms all_platforms() {
+  Platforms all = installed_platforms();
+  const std::lock_guard lock(added_mutex);
+  for (AddedDriver& driver : added_drivers()) {
+    const auto is_it = [&](cl_platform_id platform) { return name_of(platform) == driver.platform; };
+    if (std::any_of(all.begin(), all.end(), is_it)) continue;
+    if (!std::exchange(driver.is_loaded, true)) driver.platforms = platforms_of(driver.path);
+    all.insert(all.end(), driver.platforms.begin(), driver.platforms.end());
+  }
+  return all;
 }
 
 }  // namespace
 
+namespace flaunay::host {
+
+void add_driver(const std::string& platform, const std::string& path) {
+  const std::lock_guard lock(added_mutex);
+  for (const AddedDriver& driver : added_drivers()) {
+    if (driver.path == path) return;
+  }
+  added_drivers().push_back({platform, path, false, {}});
+}
+
+}  // namespace flaunay::host
+
 #define RESULT(name) Signature<decltype(name)>::Result CL_API_CALL
 #define PARAMETER(name, k) Signature<decltype(name)>::Parameter<k> p##k
-#define PASS_ON(name, ...)                                     \
-  {                                                            \
-    static auto* const function = find<decltype(name)>(#name); \
-    return function(__VA_ARGS__);                              \
+#define PASS_ON(name, ...)                                               \
+  {                                                                      \
+    static auto* const function = find<decltype(name)>(#name);           \
+    if (function != nullptr) return function(__VA_ARGS__);               \
+    const cl_icd_dispatch* const functions = functions_for(__VA_ARGS__); \
+    if (functions != nullptr) return functions->name(__VA_ARGS__);       \
+    return missing<Signature<decltype(name)>::Result>();                 \
   }
 #define PARAMETERS_1(name) PARAMETER(name, 0)
 #define PARAMETERS_2(name) PARAMETERS_1(name), PARAMETER(name, 1)
@@ -86,7 +226,6 @@ FUNCTION_1(clRetainMemObject)
 FUNCTION_1(clRetainProgram)
 FUNCTION_2(clWaitForEvents)
 FUNCTION_3(clCreateKernel)
-FUNCTION_3(clGetPlatformIDs)
 FUNCTION_3(clSetMemObjectDestructorCallback)
 FUNCTION_4(clCreateCommandQueue)
 FUNCTION_4(clEnqueueBarrierWithWaitList)
@@ -117,4 +256,15 @@ FUNCTION_9(clEnqueueNDRangeKernel)
 FUNCTION_9(clEnqueueReadBuffer)
 FUNCTION_9(clEnqueueWriteBuffer)
 FUNCTION_10(clEnqueueMapBuffer)
+
+cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* places, cl_uint* count) {
+  try {
+    const Platforms all = all_platforms();
+    if (count != nullptr) *count = static_cast<cl_uint>(all.size());
+    if (places != nullptr) std::copy_n(all.begin(), std::min<std::size_t>(capacity, all.size()), places);
+    return all.empty() ? -1001 : CL_SUCCESS;  // CL_PLATFORM_NOT_FOUND_KHR
+  } catch (...) {
+    return CL_OUT_OF_HOST_MEMORY;
+  }
+}
 }

@@ -21,7 +21,10 @@ with open("pyproject.toml", "rb") as file:
 ((${#build_requirements[@]} > 0))
 pip=("$python" -m pip --disable-pip-version-check --no-input)
 "${pip[@]}" install --quiet "${build_requirements[@]}"
-"${pip[@]}" install --quiet --no-build-isolation .
+# The wheel is kept for scripts/wheel-test.sh.
+rm -rf build/python-wheel
+"${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel .
+"${pip[@]}" install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
 # What triangulations are handed over to, in versions for the system's NumPy. The test of PyVista runs where that is
 # installed: it brings all of VTK.
 numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"

@@ -154,6 +154,19 @@ static void test_devices(void) {
   flaunay_device_list_destroy(list);
 }
 
+static void test_added_drivers(void) {
+  flaunay_device_list *before = NULL, *after = NULL;
+  REQUIRE(flaunay_device_list_create(0, &before) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_add_driver("Nobody's platform", "/nowhere/libdriver.so") == FLAUNAY_SUCCESS);
+  CHECK(flaunay_add_driver("Nobody's platform", "libm.so.6") == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_add_driver(NULL, "libm.so.6"), FLAUNAY_ERROR_USAGE, "name"));
+  CHECK(fails(flaunay_add_driver("Nobody's platform", NULL), FLAUNAY_ERROR_USAGE, "path"));
+  REQUIRE(flaunay_device_list_create(0, &after) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_list_count(after) == flaunay_device_list_count(before));
+  flaunay_device_list_destroy(before);
+  flaunay_device_list_destroy(after);
+}
+
 static void test_devices_that_are_none(void) {
   flaunay_triangulator* none = triangulator;
   CHECK(fails(flaunay_triangulator_create("no such device", &none), FLAUNAY_ERROR_DEVICE, "no such device"));
@@ -1659,6 +1672,7 @@ static void test_all(void) {
   set_up();
   test_errors_are_of_threads();
   test_devices();
+  test_added_drivers();
   test_devices_that_are_none();
   test_square();
   test_neighbors_and_halfedges();

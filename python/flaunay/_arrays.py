@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Mapping
-from typing import Any, Optional, Protocol, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Optional, Protocol, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay._errors import UsageError
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeGuard
 
 FloatArray = Union[npt.NDArray[np.float32], npt.NDArray[np.float64]]
 _Array = TypeVar("_Array", bound=npt.NDArray[Any])
@@ -65,6 +69,12 @@ def _as_doubles(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.float64]:
     return doubles
 
 
+def is_masked(given: object) -> TypeGuard[np.ma.MaskedArray[Any, Any]]:
+    """Whether it is a masked array. NumPy imports its module, which takes milliseconds, when one is first made."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(given, masked.MaskedArray)
+
+
 def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any]:
     """The numbers of a masked array; UsageError if one is masked, since leaving points out would renumber the rest."""
     masked = np.argwhere(np.ma.getmaskarray(given))
@@ -113,7 +123,7 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     """What numpy makes of it; UsageError, with numpy's words, if it cannot, as of a list of unequal rows."""
     if type(given) is np.ndarray:
         return given
-    if isinstance(given, np.ma.MaskedArray):
+    if is_masked(given):
         return _of_masked(given, name)
     library = type(given).__module__.partition(".")[0]
     try:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import FloatArray, as_points, check_points_shape, summary
+from flaunay._arrays import FloatArray, as_points, check_points_shape, is_masked, summary
 from flaunay._errors import UsageError
 
 Indices = Union[npt.NDArray[np.int32], npt.NDArray[np.int64]]
@@ -73,8 +73,7 @@ class ChunkedTriangulation:
 
 def _as_source(points: npt.ArrayLike) -> FloatArray:
     """An array of float64 or float32 as it is, whatever its strides; anything else as `triangulate` takes it."""
-    is_masked = isinstance(points, np.ma.MaskedArray)
-    if isinstance(points, np.ndarray) and points.dtype in _COORDINATES and not is_masked:
+    if isinstance(points, np.ndarray) and points.dtype in _COORDINATES and not is_masked(points):
         check_points_shape(points)
         return points
     return as_points(points)

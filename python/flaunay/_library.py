@@ -270,6 +270,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "last_error_code": (c_int, []),
     "last_error_call": (c_char_p, []),
     "version": (c_char_p, []),
+    "add_driver": (c_int, [c_char_p, c_char_p]),
     "device_list_create": (c_int, [c_int, c_void_p]),
     "device_list_destroy": (None, [c_void_p]),
     "device_list_count": (c_size_t, [c_void_p]),

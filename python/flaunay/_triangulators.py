@@ -9,7 +9,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-from flaunay import _flaunay
+from flaunay import _drivers, _flaunay
 from flaunay._errors import DeviceError
 
 if TYPE_CHECKING:
@@ -36,6 +36,10 @@ def _after_fork() -> None:
     global _forked, _lock
     _lock = threading.Lock()
     _forked = _used
+    # A thread that is not here any more may have been at work in one of these.
+    keep((_by_name.copy(), _by_handles.copy()))
+    _by_name.clear()
+    _by_handles.clear()
 
 
 os.register_at_fork(after_in_child=_after_fork)
@@ -57,6 +61,7 @@ def check_process() -> None:
             "start it by multiprocessing's 'spawn' or 'forkserver', or name no device"
         )
     _used = True
+    _drivers.add_drivers()
 
 
 def of_device(device: Optional[str]) -> _flaunay.Triangulator:

@@ -5,6 +5,7 @@
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "host/opencl_loader.hpp"
 
 using namespace flaunay;
 
@@ -52,6 +53,12 @@ const char* flaunay_version(void) { return version(); }
 
 flaunay_status flaunay_device_list_create(int self_test, flaunay_device_list** list) {
   return create(list, [&] { return std::make_unique<flaunay_device_list>(list_devices(self_test != 0)); });
+}
+
+flaunay_status flaunay_add_driver(const char* platform, const char* path) {
+  return guarded([&] {
+    host::add_driver(&required(platform, "the platform's name"), &required(path, "the path of the driver"));
+  });
 }
 
 void flaunay_device_list_destroy(flaunay_device_list* list) { delete list; }

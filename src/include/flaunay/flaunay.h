@@ -427,6 +427,10 @@ FLAUNAY_API const char* flaunay_version(void);
 /// builds and runs the arithmetic self test on each device that has fp64, which takes some seconds per
 /// device. FLAUNAY_ERROR_DEVICE if there is no OpenCL platform.
 FLAUNAY_API flaunay_status flaunay_device_list_create(int self_test, flaunay_device_list** list);
+/// Adds an OpenCL driver that comes with a program to those of the system: the shared library at `path`. If
+/// the system has a platform of the name `platform`, the driver is not used. To be called before devices are
+/// listed or used; a driver that cannot be loaded has no devices.
+FLAUNAY_API flaunay_status flaunay_add_driver(const char* platform, const char* path);
 /// Frees the list. Like every destroy function, it accepts NULL.
 FLAUNAY_API void flaunay_device_list_destroy(flaunay_device_list* list);
 /// The number of devices.

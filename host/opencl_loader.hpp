@@ -1,0 +1,12 @@
+// Drivers of OpenCL beside those that are installed.
+#pragma once
+
+#include <string>
+
+namespace flaunay::host {
+
+/// Adds the platforms of a driver, a shared library, to those of the system from now on, unless the system
+/// has a platform of that name. It is loaded when platforms are listed; if that fails, it has none.
+void add_driver(const std::string& platform, const std::string& path);
+
+}  // namespace flaunay::host

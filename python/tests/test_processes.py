@@ -1,0 +1,86 @@
+"""Calls on host arrays work in other processes, however they came about."""
+
+import multiprocessing
+import os
+import threading
+
+import numpy as np
+import pytest
+
+import flaunay
+
+
+def everything_on_the_host(seed):
+    """What calls on arrays in host memory return."""
+    points = np.random.default_rng(seed).random((3000, 2))
+    tri = flaunay.Delaunay(points)
+    queries = points[:100] + 1e-3
+    vor = flaunay.Voronoi(points)
+    return [
+        tri.simplices,
+        tri.find_simplex(queries),
+        tri.nearest(queries),
+        tri.interpolate(points[:, 0], queries),
+        vor.vertices,
+        vor.cells,
+        flaunay.triangulate(points.astype(np.float32), segments=[0, 1000, 3000]).triangles,
+        flaunay.triangulate(points, mode="dwyer").hull,
+        flaunay.triangulate_chunks(points, triangles=True, chunk_points=1000).triangles,
+    ]
+
+
+def are_same(results, expected):
+    return len(results) == len(expected) and all(
+        np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(results, expected)
+    )
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+def test_workers(method):
+    expected = [everything_on_the_host(seed) for seed in range(3)]
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        results = pool.map_async(everything_on_the_host, range(3)).get(120)
+    assert all(map(are_same, results, expected))
+
+
+def test_results_that_a_child_inherits():
+    points = np.random.default_rng(1).random((3000, 2))
+    tri = flaunay.Delaunay(points)
+    expected = tri.nearest(points)
+    child = os.fork()
+    if child == 0:
+        try:
+            os._exit(0 if np.array_equal(tri.nearest(points), expected) else 1)
+        finally:
+            os._exit(2)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    assert np.array_equal(tri.nearest(points), expected)
+
+
+@pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")
+def test_a_fork_while_another_thread_is_at_work():
+    points = np.random.default_rng(1).random((50000, 2))
+    expected = everything_on_the_host(1)
+    done = threading.Event()
+
+    def work():
+        while not done.is_set():
+            flaunay.triangulate(points)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    try:
+        for _ in range(5):
+            process = multiprocessing.get_context("fork").Process(
+                target=check_and_exit, args=(expected,)
+            )
+            process.start()
+            process.join(60)
+            assert process.exitcode == 0
+    finally:
+        done.set()
+        thread.join()
+
+
+def check_and_exit(expected):
+    assert are_same(everything_on_the_host(1), expected)
