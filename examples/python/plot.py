@@ -18,7 +18,7 @@ def draw_cells(axes: matplotlib.axes.Axes, vor: flaunay.Voronoi) -> None:
     bounded = vor.ridge_vertices[:, 0] >= 0
     ridges = vor.vertices[vor.ridge_vertices[bounded]]
     axes.add_collection(
-        LineCollection(ridges, colors="tab:green", linewidths=0.6, label="Voronoi cells")
+        LineCollection(list(ridges), colors="tab:green", linewidths=0.6, label="Voronoi cells")
     )
 
 
