@@ -11,11 +11,16 @@ and SciPy.
 
 import argparse
 import json
+import os
 import platform
 import statistics
 import subprocess
 import sys
 import time
+
+# SciPy factors a 2 by 2 matrix per triangle by OpenBLAS, whose threads only wait for each other: on a machine that is
+# busy, for seconds.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import scipy
@@ -53,6 +58,12 @@ def commit():
     return subprocess.run(command, capture_output=True, text=True).stdout.strip()
 
 
+def host():
+    with open("/proc/cpuinfo") as file:
+        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
+    return f"{names[0] if names else platform.machine()}, {len(names)} hardware threads"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--points", type=int, default=100_000)
@@ -60,6 +71,7 @@ def main():
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--json", help="write the record here")
     given = parser.parse_args()
+    measured_commit = commit()
     rng = np.random.default_rng(1)
     points = rng.random((given.points, 2))
     values = np.sin(7 * points[:, 0]) * np.cos(5 * points[:, 1])
@@ -100,9 +112,9 @@ def main():
             )
     record = {
         "command": " ".join(["bench/interpolation.py", *sys.argv[1:]]),
-        "commit": commit(),
+        "commit": measured_commit,
         "device": flaunay.triangulate(points).statistics["device"],
-        "machine": platform.machine(),
+        "host": host(),
         "driver": f"native kernels; Python {platform.python_version()}, NumPy {np.__version__}, "
         f"SciPy {scipy.__version__}",
         "points": given.points,
