@@ -1055,19 +1055,19 @@ static void test_clipped_voronoi(void) {
 
 static void test_relax(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4};
-  double points[] = {1, 1, 1, 3, 9, 9}, expected[] = {2, 1, 2, 3, 9, 9};
+  double places[] = {1, 1, 1, 3, 9, 9}, expected[] = {2, 1, 2, 3, 9, 9};
   // The third point's cell does not meet the box.
-  REQUIRE(flaunay_relax(triangulator, points, 3, box, 4, 1, points) == FLAUNAY_SUCCESS);
-  for (size_t c = 0; c < 6; ++c) CHECK(fabs(points[c] - expected[c]) < 1e-12);
-  CHECK(fails(flaunay_relax(triangulator, points, 3, box, 2, 1, points), FLAUNAY_ERROR_INPUT, "2 corners"));
-  CHECK(fails(flaunay_relax(triangulator, points, 3, box, 4, 1, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
-  CHECK(fails(flaunay_relax(NULL, points, 3, box, 4, 1, points), FLAUNAY_ERROR_USAGE, "NULL"));
+  REQUIRE(flaunay_relax(triangulator, places, 3, box, 4, 1, places) == FLAUNAY_SUCCESS);
+  for (size_t c = 0; c < 6; ++c) CHECK(fabs(places[c] - expected[c]) < 1e-12);
+  CHECK(fails(flaunay_relax(triangulator, places, 3, box, 2, 1, places), FLAUNAY_ERROR_INPUT, "2 corners"));
+  CHECK(fails(flaunay_relax(triangulator, places, 3, box, 4, 1, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(fails(flaunay_relax(NULL, places, 3, box, 4, 1, places), FLAUNAY_ERROR_USAGE, "NULL"));
   CHECK(flaunay_relax(triangulator, NULL, 0, box, 4, 1, NULL) == FLAUNAY_SUCCESS);
 }
 
 static void test_relax_on_device(void) {
-  const double box[] = {0, 0, 4, 0, 4, 4, 0, 4}, points[] = {1, 1, 1, 3};
-  const flaunay_device_points input = {.memory = make_buffer(context, sizeof points, points), .count = 2};
+  const double box[] = {0, 0, 4, 0, 4, 4, 0, 4}, places[] = {1, 1, 1, 3};
+  const flaunay_device_points input = {.memory = make_buffer(context, sizeof places, places), .count = 2};
   const flaunay_enqueue enqueue = {.queue = queue};
   cl_mem relaxed = NULL;
   REQUIRE(flaunay_relax_device(triangulator, &input, box, 4, 2, &enqueue, &relaxed) == FLAUNAY_SUCCESS);
