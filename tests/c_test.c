@@ -1042,7 +1042,7 @@ static void test_clipped_voronoi(void) {
   for (int32_t v = 0; v < 2 * offsets[4]; ++v) CHECK(vertices[v] >= 0 && vertices[v] <= 3);
   flaunay_clipped_voronoi_destroy(cells);
   CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, bow, 4, &cells), FLAUNAY_ERROR_INPUT,
-              "corner 2"));
+              "corner 1"));
   CHECK(cells == NULL);
   CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, NULL, 4, &cells), FLAUNAY_ERROR_USAGE,
               "null"));
