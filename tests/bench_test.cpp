@@ -421,6 +421,15 @@ TEST_F(BenchTest, SecondEmbeddedCallsAllocateNothing) {
   }
 }
 
+TEST_F(BenchTest, CellsAreBesideATriangulation) {
+  const auto record = run_well("cells --sizes 300,500 --iterations 2");
+  ASSERT_EQ(record["results"].size(), 2u * 4);
+  for (const auto& row : record["results"]) {
+    EXPECT_GT(row.value("seconds_median", 0.0), 0);
+    EXPECT_GT(row.value("of_triangulate", 0.0), 0);
+  }
+}
+
 TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
   const auto record = run_well("threads --sizes 500,1000 --counts 1,2,3 --modes flattened,partition");
   expect_entries(record);

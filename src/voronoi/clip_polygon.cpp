@@ -32,12 +32,9 @@ std::vector<Point> scaled_corners(const double* corners, std::size_t count,
 bool turns_left(const geometry::Predicates& predicates, Point a, Point b, Point c, std::size_t i) {
   if (b == c) throw bad("has corner {} twice in a row", i);
   const int turn = predicates.orient(a, b, c);
-  if (turn < 0) {
-    throw bad("turns right at corner {}, ({:.17g}, {:.17g}): it must be convex and counter-clockwise", i, b.x,
-              b.y);
-  }
+  if (turn < 0) throw bad("turns right at corner {}: it must be convex and counter-clockwise", i);
   if (turn == 0 && kernel::comes_before(a, b) != kernel::comes_before(b, c)) {
-    throw bad("goes back at corner {}, ({:.17g}, {:.17g}): it must be convex", i, b.x, b.y);
+    throw bad("goes back at corner {}: it must be convex", i);
   }
   return turn > 0;
 }

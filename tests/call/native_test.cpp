@@ -170,6 +170,8 @@ TEST_F(SmallNative, ErrorsAreAsOnADevice) {
   }
 }
 
+const Coordinates kClip = {0.125, 0, 3, 0.5, 0.25, 4};
+
 TEST_F(SmallNative, VoronoiDiagramsAndQueriesAreAsOnADevice) {
   FixtureRandom random(14);
   for (const std::size_t n : {1, 2, 3, 50, 3000}) {
@@ -177,6 +179,8 @@ TEST_F(SmallNative, VoronoiDiagramsAndQueriesAreAsOnADevice) {
       const Coordinates queries = reals(20000, random);  // enough to be sorted
       const Triangulation mesh = triangulate(on_device(), points, {0, n});
       const Voronoi dual = on_device().voronoi(points.data(), n, mesh);
+      const ClippedVoronoi cells = on_device().clipped_voronoi(points.data(), n, mesh, kClip.data(), 3);
+      const Coordinates relaxed = on_device().relax(points.data(), n, kClip.data(), 3, 2);
       Locator locator(on_device(), points.data(), n, mesh);
       std::vector<double> values(n, 1.5);
       for (Triangulator* used : {&on_host(), &free_to_choose()}) {
@@ -185,6 +189,11 @@ TEST_F(SmallNative, VoronoiDiagramsAndQueriesAreAsOnADevice) {
         EXPECT_TRUE(same(own.cell_offsets, dual.cell_offsets));
         EXPECT_TRUE(same(own.cells, dual.cells));
         EXPECT_TRUE(same(own.unbounded, dual.unbounded));
+        const ClippedVoronoi own_cells = used->clipped_voronoi(points.data(), n, mesh, kClip.data(), 3);
+        EXPECT_TRUE(same(own_cells.vertices, cells.vertices));
+        EXPECT_TRUE(same(own_cells.offsets, cells.offsets));
+        EXPECT_TRUE(same(own_cells.areas, cells.areas));
+        EXPECT_TRUE(same(used->relax(points.data(), n, kClip.data(), 3, 2), relaxed));
         Locator other(*used, points.data(), n, mesh);
         EXPECT_TRUE(same(other.locate(queries.data(), 20000), locator.locate(queries.data(), 20000)));
         EXPECT_TRUE(same(other.nearest(queries.data(), 20000), locator.nearest(queries.data(), 20000)));

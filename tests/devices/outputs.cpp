@@ -76,6 +76,12 @@ class Outputs {
     print_part(prefix, "circumcentres", voronoi.circumcentres);
     print_part(prefix, "cells", voronoi.cells);
     print_part(prefix, "unbounded", voronoi.unbounded);
+    const Coordinates box = {-0.5, -0.5, 0.75, -0.5, 0.75, 0.5, -0.5, 0.5};
+    const ClippedVoronoi cells =
+        triangulator_.clipped_voronoi(points.data(), n, mesh, box.data(), box.size() / 2);
+    print_part(prefix, "clipped vertices", cells.vertices);
+    print_part(prefix, "clipped offsets", cells.offsets);
+    print_part(prefix, "clipped areas", cells.areas);
     Coordinates queries = points;
     for (std::size_t k = 2; k < points.size(); ++k) queries.push_back(points[k] / 2 + points[k - 2] / 2);
     Locator locator(triangulator_, points.data(), n, mesh);
