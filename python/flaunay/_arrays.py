@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Union
+from collections.abc import Iterator, Mapping
+from typing import Any, Optional, Protocol, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -10,9 +11,34 @@ import numpy.typing as npt
 from flaunay._errors import UsageError
 
 FloatArray = Union[npt.NDArray[np.float32], npt.NDArray[np.float64]]
+_Array = TypeVar("_Array", bound=npt.NDArray[Any])
+
+
+class SupportsDLPack(Protocol):
+    """An array of another library, as the array API standard has them."""
+
+    def __dlpack__(self) -> Any: ...
+    def __dlpack_device__(self) -> tuple[int, int]: ...
+
+
+ArrayLike = Union[npt.ArrayLike, SupportsDLPack]
+
+_FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
 
 # From this size on, numbers of another type may have more digits than a double.
 _BYTES_OF_DOUBLE = 8
+
+# DLPack's numbers of the kinds of memory that the host can read: its own, pinned by CUDA, by ROCm, managed by CUDA.
+_HOST_MEMORY = {1, 3, 11, 13}
+_DEVICE_MEMORY = {
+    2: "a CUDA device",
+    4: "an OpenCL device",
+    8: "a Metal device",
+    10: "a ROCm device",
+}
+
+# Rows of a part; a few arrays of so many doubles fit a processor's cache.
+_ROWS = 1 << 14
 
 _SINGULAR = {
     "points": "point",
@@ -39,39 +65,104 @@ def _as_doubles(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.float64]:
     return doubles
 
 
-def _as_array(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
-    """What numpy makes of it; UsageError, with numpy's words, if it cannot, as of a list of unequal rows."""
-    try:
+def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any]:
+    """The numbers of a masked array; UsageError if one is masked, since leaving points out would renumber the rest."""
+    masked = np.argwhere(np.ma.getmaskarray(given))
+    if len(masked):
+        hint = ", as points[~points.mask.any(axis=1)]" if name == "points" else ""
+        raise UsageError(
+            f"{name}{masked[0].tolist()} is masked: leave masked ones out before{hint}"
+        )
+    return np.ma.getdata(given)
+
+
+def _of_arrow(given: Any, name: str) -> npt.NDArray[Any]:
+    """The numbers of pyarrow: tables, columns, and columns of lists of one size, of which points have two each."""
+    if hasattr(given, "columns"):
+        return np.stack([np.asarray(column) for column in given.columns], axis=1)
+    if hasattr(given, "combine_chunks"):
+        given = given.combine_chunks()
+    size = getattr(given.type, "list_size", None)
+    if size is None:
         return np.asarray(given)
-    except ValueError as error:
+    # Also the null rows of a column have numbers.
+    if given.null_count or given.flatten().null_count:
+        raise UsageError(f"{name} have nulls: drop them before")
+    return np.asarray(given.flatten()).reshape(len(given), size)
+
+
+def _of_dlpack(given: Any) -> npt.NDArray[Any]:
+    # NumPy 1.22 has it under another name.
+    from_dlpack = getattr(np, "from_dlpack", None) or getattr(np, "_from_dlpack")
+    array: npt.NDArray[Any] = from_dlpack(given)
+    return array
+
+
+def _check_memory(given: Any, name: str) -> None:
+    """UsageError for an array that is in a device's memory."""
+    if type(given).__module__.partition(".")[0] == "pyopencl":
+        hint = "call triangulate_device, or " if name == "points" else ""
+        raise UsageError(f"{name} are in the memory of an OpenCL device: {hint}take {name}.get()")
+    kind = int(given.__dlpack_device__()[0]) if hasattr(given, "__dlpack_device__") else 1
+    if kind not in _HOST_MEMORY:
+        memory = _DEVICE_MEMORY.get(kind, "a device")
+        raise UsageError(f"{name} are in the memory of {memory}: copy them to the host before")
+
+
+def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
+    """What numpy makes of it; UsageError, with numpy's words, if it cannot, as of a list of unequal rows."""
+    if type(given) is np.ndarray:
+        return given
+    if isinstance(given, np.ma.MaskedArray):
+        return _of_masked(given, name)
+    library = type(given).__module__.partition(".")[0]
+    try:
+        if library == "pyarrow":
+            return _of_arrow(given, name)
+        _check_memory(given, name)
+        if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
+            return _of_dlpack(given)
+        array = np.asarray(given)
+        if array.dtype.kind == "O" and library == "pandas":
+            # Columns that may have missing values; those become NaN, which is an error where it matters.
+            return np.asarray(given.to_numpy(dtype=np.float64, na_value=np.nan))  # type: ignore[union-attr]
+        return array
+    except UsageError:
+        raise
+    except (ValueError, TypeError, RuntimeError, BufferError) as error:
         raise UsageError(f"{name} are no array of numbers: {error}") from error
 
 
-def as_floats(given: npt.ArrayLike, name: str) -> FloatArray:
+def as_floats(given: ArrayLike, name: str) -> FloatArray:
     """A C-contiguous, aligned array of float32 or float64, copied only if it is none already.
 
     Numbers of any other type become float64; those that are not exactly one are an error, and so is
     what is no real number, an array of objects included.
     """
-    if isinstance(given, np.ma.MaskedArray):
-        raise UsageError(f"{name} cannot be a masked array")
     array = _as_array(given, name)
     if array.size == 0 and array.dtype.kind == "O":
         array = array.astype(np.float64)
-    if array.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
+    if not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
+    if array.dtype not in _FLOATS:
         array = _as_doubles(array, name)
+    flags = array.flags
+    if flags.c_contiguous and flags.aligned:
+        return array
     return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
 
 
 def check_points_shape(points: FloatArray) -> None:
     """UsageError unless the shape is (n, 2)."""
     if points.ndim != 2:
-        raise UsageError(f"points must have the shape (n, 2), not {points.shape}")
+        raise UsageError(
+            f"points must have two dimensions, of the shape (n, 2), not {points.shape}"
+        )
     if points.shape[1] != 2:
         raise UsageError(f"points must be two-dimensional, but have {points.shape[1]} coordinates")
 
 
-def as_points(given: npt.ArrayLike) -> FloatArray:
+def as_points(given: ArrayLike) -> FloatArray:
     """Points of shape (n, 2); UsageError for any other shape."""
     points = as_floats(given, "points")
     check_points_shape(points)
@@ -86,6 +177,39 @@ def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
             f"segments must be integers in one dimension, not {array.dtype} of shape {array.shape}"
         )
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def frozen(array: _Array) -> _Array:
+    """The array, read-only from now on."""
+    array.setflags(write=False)
+    return array
+
+
+def freeze_all(state: Mapping[str, Any]) -> None:
+    """Makes an object's arrays read-only, which pickling forgets."""
+    for value in state.values():
+        for array in value if isinstance(value, tuple) else (value,):
+            if isinstance(array, np.ndarray):
+                frozen(array)
+
+
+def check_out(out: Any, dtype: npt.DTypeLike, shape: tuple[Optional[int], ...], name: str) -> None:
+    """UsageError unless results of a type and shape can be written to an array; None is any size."""
+    wanted = (
+        f"{np.dtype(dtype)} of shape ({', '.join('...' if k is None else str(k) for k in shape)})"
+    )
+    if not isinstance(out, np.ndarray):
+        raise UsageError(f"{name} must be an array of {wanted}, not {type(out).__name__}")
+    fits = out.ndim == len(shape) and all(k in (None, size) for k, size in zip(shape, out.shape))
+    if out.dtype != np.dtype(dtype) or not fits:
+        raise UsageError(f"{name} must be {wanted}, not {out.dtype} of shape {out.shape}")
+    if not out.flags.writeable:
+        raise UsageError(f"{name} is read-only")
+
+
+def slices(count: int) -> Iterator[slice]:
+    """Parts of so many rows, of which temporary arrays stay in a processor's cache."""
+    return (slice(first, first + _ROWS) for first in range(0, count, _ROWS))
 
 
 def names_of(**wanted: bool) -> set[str]:

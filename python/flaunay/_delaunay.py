@@ -2,23 +2,38 @@
 
 from __future__ import annotations
 
+import math
 import os
 import threading
-from functools import cached_property
-from typing import Any, Optional
+from collections.abc import Callable
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
-from flaunay._arrays import FloatArray, as_floats, as_points, summary
-from flaunay._errors import UsageError
+from flaunay import _flaunay, _scipy, _triangulators
+from flaunay._arrays import (
+    ArrayLike,
+    FloatArray,
+    as_floats,
+    as_points,
+    check_out,
+    freeze_all,
+    frozen,
+    summary,
+)
+from flaunay._errors import InputError, UsageError
 from flaunay._export import TriangleExports
 from flaunay._plot import TrianglePlots
-from flaunay._triangulation import triangulate
+from flaunay._triangulation import arrays_of_mesh
+
+if TYPE_CHECKING:
+    import scipy.spatial
 
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
+_Answers = TypeVar("_Answers", Indices, Doubles)
 
 
 def _check_points(indices: Indices, n: int, name: str) -> None:
@@ -30,7 +45,7 @@ def _check_points(indices: Indices, n: int, name: str) -> None:
         raise UsageError(f"{name} were changed: {indices[wrong[0]]} is none of the {n} points")
 
 
-def _as_queries(xi: npt.ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
+def _as_queries(xi: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
     """Points one after the other, and the shape in which there were as many."""
     queries = as_floats(xi, "xi")
     if queries.ndim == 0 or queries.shape[-1] != 2:
@@ -38,20 +53,52 @@ def _as_queries(xi: npt.ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
     return np.asarray(queries, np.float64).reshape(-1, 2), queries.shape[:-1]
 
 
+def _are_finite(queries: Doubles) -> npt.NDArray[np.bool_]:
+    return np.isfinite(queries[:, 0]) & np.isfinite(queries[:, 1])
+
+
+def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any) -> _Answers:
+    """What is asked about queries, and `nowhere` for those that are not finite.
+
+    Those are looked for only when the library has found one, so that others need not wait for it.
+    """
+    try:
+        return ask(queries)
+    except InputError:
+        finite = _are_finite(queries)
+        if finite.all():
+            raise
+    answers = ask(np.where(finite[:, None], queries, 0))
+    answers[~finite] = nowhere
+    return answers
+
+
+def _given(answers: _Answers, out: Optional[_Answers]) -> _Answers:
+    """The answers, in the caller's array if there is one."""
+    if out is None:
+        return answers
+    out[...] = answers
+    return out
+
+
 class Delaunay(TrianglePlots, TriangleExports):
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
-    What `scipy.spatial.Delaunay` has and this has not: more than two dimensions, the options of
-    Qhull, `furthest_site`, `incremental` with `add_points`, and the attributes that are about
-    Qhull's way to work (`equations`, `paraboloid_scale`, `transform` and others). Where both give an
-    answer, this one is exact.
+    `scipy.spatial.Delaunay` can be replaced by it, in two dimensions; where both give an answer, this one
+    is exact. All arrays are read-only, so that no change of them can make later queries wrong; take
+    copies to change them.
 
     Parameters
     ----------
     points : array_like, shape (npoints, 2)
         Coordinates, which are copied. float64 and float32 are taken as they are; other numbers become
         float64, and must be one exactly.
-    device : str, optional
+    furthest_site, incremental : bool
+        As SciPy has them: only False is possible.
+    qhull_options : str, optional
+        As SciPy has them. Those that are about precision, output and how Qhull works change nothing;
+        QJ is an error unless every point is a vertex, which it asks for; others are an error.
+    mode, device : str, optional
         As of `triangulate`.
 
     Attributes
@@ -97,21 +144,33 @@ class Delaunay(TrianglePlots, TriangleExports):
     array([-1, -1,  1], dtype=int32)
     """
 
-    def __init__(self, points: npt.ArrayLike, device: Optional[str] = None) -> None:
-        self.points: FloatArray = as_points(points).copy()
+    ndim = 2
+    furthest_site = False
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        furthest_site: bool = False,
+        incremental: bool = False,
+        qhull_options: Optional[str] = None,
+        *,
+        mode: str = "blocks",
+        device: Optional[str] = None,
+    ) -> None:
+        all_must_be_vertices = _scipy.check_options(furthest_site, incremental, qhull_options)
+        self.points: FloatArray = frozen(as_points(points).copy())
         self._device = device
         # With the process that made it.
         self._locator_or_none: Optional[tuple[_flaunay.Locator, int]] = None
         # Two threads that ask at the same time should not both make a locator.
         self._locator_lock = threading.Lock()
-        mesh = triangulate(self.points, device=device)
-        assert mesh.neighbors is not None
-        self.simplices: Indices = mesh.triangles
-        self.neighbors: Indices = mesh.neighbors
-        self.hull: Indices = mesh.hull
-        self.representatives: Indices = mesh.representatives
-
-    ndim = 2
+        mesh = arrays_of_mesh(self.points, None, {"neighbors"}, device, mode)
+        self.simplices: Indices = frozen(mesh["triangles"])
+        self.neighbors: Indices = frozen(mesh["neighbors"])
+        self.hull: Indices = frozen(mesh["hull"])
+        self.representatives: Indices = frozen(mesh["representatives"])
+        if all_must_be_vertices:
+            _scipy.check_all_are_vertices(self)
 
     def __repr__(self) -> str:
         return summary(
@@ -129,12 +188,12 @@ class Delaunay(TrianglePlots, TriangleExports):
     @cached_property
     def min_bound(self) -> FloatArray:
         """The smallest coordinates, shape (2,); NaN if there are no points."""
-        return np.min(self.points, axis=0) if self.npoints else np.full(2, np.nan)
+        return frozen(np.min(self.points, axis=0) if self.npoints else np.full(2, np.nan))
 
     @cached_property
     def max_bound(self) -> FloatArray:
         """The largest coordinates, shape (2,); NaN if there are no points."""
-        return np.max(self.points, axis=0) if self.npoints else np.full(2, np.nan)
+        return frozen(np.max(self.points, axis=0) if self.npoints else np.full(2, np.nan))
 
     @cached_property
     def convex_hull(self) -> Indices:
@@ -143,9 +202,9 @@ class Delaunay(TrianglePlots, TriangleExports):
         Counter-clockwise, as `hull` has their first points. Those of points on one line are none.
         """
         if self.nsimplex == 0:
-            return np.empty((0, 2), np.int32)
+            return frozen(np.empty((0, 2), np.int32))
         edges: Indices = np.stack([self.hull, np.roll(self.hull, -1)], axis=1)
-        return edges
+        return frozen(edges)
 
     @cached_property
     def coplanar(self) -> Indices:
@@ -159,7 +218,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         equal = self.representatives[points]
         simplices = _flaunay.first_triangles(self.simplices, self.npoints)[equal]
         rows: Indices = np.stack([points, simplices, equal], axis=1).astype(np.int32)
-        return rows
+        return frozen(rows)
 
     @cached_property
     def vertex_to_simplex(self) -> Indices:
@@ -169,7 +228,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         if there are no simplices.
         """
         _check_points(self.representatives, self.npoints, "representatives")
-        return _flaunay.first_triangles(self.simplices, self.npoints)[self.representatives]
+        return frozen(_flaunay.first_triangles(self.simplices, self.npoints)[self.representatives])
 
     @cached_property
     def vertex_neighbor_vertices(self) -> tuple[Indices, Indices]:
@@ -178,13 +237,129 @@ class Delaunay(TrianglePlots, TriangleExports):
         Those of point k are ``indices[indptr[k]:indptr[k + 1]]``, in increasing order. A point that
         another represents has none.
         """
-        return _flaunay.vertex_neighbors(self.simplices, self.hull, self.npoints)
+        starts, indices = _flaunay.vertex_neighbors(self.simplices, self.hull, self.npoints)
+        return frozen(starts), frozen(indices)
+
+    def _doubles(self) -> Doubles:
+        return np.asarray(self.points, np.float64)
+
+    @cached_property
+    def transform(self) -> Doubles:
+        """Affine transforms to barycentric coordinates, float64, shape (nsimplex, 3, 2), as SciPy has them.
+
+        The first two coordinates of a point x in simplex i are
+        ``transform[i, :2] @ (x - transform[i, 2])``, and the third is what they lack to 1. NaN for a
+        simplex that is so thin that floating point cannot say; `find_simplex` and `interpolate` are
+        exact for those too.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.transform[0, :2] @ ([1, 1] - tri.transform[0, 2])
+        array([0.5 , 0.25])
+        """
+        return frozen(_scipy.barycentric_transforms(self._doubles(), self.simplices))
+
+    @cached_property
+    def _paraboloid(self) -> tuple[float, float]:
+        return _scipy.paraboloid(self._doubles())
+
+    @property
+    def paraboloid_scale(self) -> float:
+        """The scale of the paraboloid to which `lift_points` lifts: SciPy's for its default options."""
+        return self._paraboloid[0]
+
+    @property
+    def paraboloid_shift(self) -> float:
+        """The shift of the paraboloid to which `lift_points` lifts: SciPy's for its default options."""
+        return self._paraboloid[1]
+
+    @cached_property
+    def equations(self) -> Doubles:
+        """The planes of the simplices on the paraboloid, float64, shape (nsimplex, 4).
+
+        Of each its unit normal, which points down, and its offset.
+        """
+        equations = _scipy.plane_equations(self._doubles(), self.simplices, *self._paraboloid)
+        return frozen(equations)
+
+    @cached_property
+    def good(self) -> Indices:
+        """1 for each simplex, int32, shape (nsimplex,): without options of Qhull, SciPy finds all of them good."""
+        return frozen(np.ones(self.nsimplex, np.int32))
+
+    def lift_points(self, x: ArrayLike) -> Doubles:
+        """Lifts points of shape (..., 2) to the paraboloid, shape (..., 3), as SciPy does.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [10, 0], [0, 10]])
+        >>> tri.lift_points([[0, 11]]).round(12)
+        array([[ 0., 11., 11.]])
+        """
+        points, shape = _as_queries(x)
+        return _scipy.lifted(points, *self._paraboloid).reshape(*shape, 3)
+
+    def plane_distance(self, xi: ArrayLike) -> Doubles:
+        """Distances of lifted points of shape (..., 2) to the planes of all simplices, shape (..., nsimplex).
+
+        Positive for the simplices whose circumcircles have the point inside.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.plane_distance([[1, 1], [5, 5]]) > 0
+        array([[ True],
+               [False]])
+        """
+        points, shape = _as_queries(xi)
+        heights = _scipy.lifted(points, *self._paraboloid) @ self.equations[:, :3].T
+        return (heights + self.equations[:, 3]).reshape(*shape, self.nsimplex)
+
+    def close(self) -> None:
+        """Gives back what queries hold in device memory; the next query makes it again."""
+        with self._locator_lock:
+            if self._locator_or_none is not None and self._locator_or_none[1] != os.getpid():
+                _triangulators.keep(self._locator_or_none)
+            self._locator_or_none = None
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
+        """Raises UsageError, as SciPy raises a RuntimeError without `incremental`: make a new triangulation."""
+        raise UsageError(
+            "points cannot be added: triangulate all of them again, "
+            "Delaunay(numpy.concatenate([tri.points, points]))"
+        )
+
+    def to_scipy(self) -> scipy.spatial.Delaunay:
+        """The same triangulation as a `scipy.spatial.Delaunay`, without a run of Qhull.
+
+        For what wants one, such as `scipy.interpolate.LinearNDInterpolator`. Its arrays are copies.
+
+        Raises
+        ------
+        UsageError
+            If there are no simplices: SciPy has no such triangulations.
+        ImportError
+            If there is no SciPy.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> import scipy.interpolate
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> scipy.interpolate.LinearNDInterpolator(tri.to_scipy(), [0, 8, 4])(1, 1)
+        array(3.)
+        """
+        return _scipy.to_scipy(self)
 
     @property
     def _locator(self) -> _flaunay.Locator:
-        found, process = self._locator_or_none or (None, 0)
-        if process == os.getpid():
-            return found
+        cached = self._locator_or_none
+        if cached is not None and cached[1] == os.getpid():
+            return cached[0]
         with self._locator_lock:
             if self._locator_or_none is None or self._locator_or_none[1] != os.getpid():
                 # A forked child must not use its parent's device, not even to release memory.
@@ -200,6 +375,12 @@ class Delaunay(TrianglePlots, TriangleExports):
                 self._locator_or_none = locator, os.getpid()
             return self._locator_or_none[0]
 
+    def _locate(self, queries: Doubles) -> Indices:
+        return self._locator.locate(queries)
+
+    def _nearest(self, queries: Doubles) -> Indices:
+        return self._locator.nearest(queries)
+
     def __getstate__(self) -> dict[str, Any]:
         # What is in device memory is made again where it is needed; a lock is the object's own.
         state = {**self.__dict__, "_locator_or_none": None}
@@ -209,28 +390,41 @@ class Delaunay(TrianglePlots, TriangleExports):
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._locator_lock = threading.Lock()
+        freeze_all(state)
 
-    def find_simplex(self, xi: npt.ArrayLike) -> Indices:
+    def find_simplex(
+        self,
+        xi: ArrayLike,
+        bruteforce: bool = False,
+        tol: Optional[float] = None,
+        out: Optional[Indices] = None,
+    ) -> Indices:
         """The simplices that points lie in, exactly.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2)
             Any points.
+        bruteforce : bool
+            Changes nothing: SciPy's other search finds nothing else here.
+        tol : float, optional
+            By how much the barycentric coordinates of a point outside of the hull may be negative in a
+            simplex at the hull. Without it nothing: `find_simplex` is exact, where SciPy has ``100 * eps``.
+        out : ndarray of int32, shape (...), optional
+            Where to write the result, by a copy.
 
         Returns
         -------
         ndarray of int32, shape (...)
             For each the simplex that it lies in, of several the one of the smallest index; -1 outside
-            of the hull.
+            of the hull, where NaN and infinite points are too.
 
         Raises
         ------
         UsageError
-            For a wrong shape, and what is no number.
+            For a wrong shape, what is no number, and a tolerance that is negative or NaN.
         InputError
-            For a point that is not finite, which SciPy puts outside, or of a magnitude too different
-            from the triangulation's.
+            For a point of a magnitude too different from the triangulation's.
 
         Notes
         -----
@@ -243,22 +437,32 @@ class Delaunay(TrianglePlots, TriangleExports):
         >>> tri.find_simplex([[1, 1], [3, 3]])
         array([ 0, -1], dtype=int32)
         """
+        if tol is not None and not tol >= 0:
+            raise UsageError(f"tol must be 0 or more, not {tol}")
         queries, shape = _as_queries(xi)
-        return self._locator.locate(queries).reshape(shape)
+        if out is not None:
+            check_out(out, np.int32, shape, "out")
+        found = _answers(self._locate, queries, -1)
+        if tol and self.nsimplex:
+            outside = np.flatnonzero((found < 0) & _are_finite(queries))
+            found[outside] = _scipy.simplices_near_hull(self, queries[outside], tol)
+        return _given(found.reshape(shape), out)
 
-    def nearest(self, xi: npt.ArrayLike) -> Indices:
+    def nearest(self, xi: ArrayLike, out: Optional[Indices] = None) -> Indices:
         """The points of the triangulation that are nearest to others, exactly.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2)
             Any points.
+        out : ndarray of int32, shape (...), optional
+            Where to write the result, by a copy.
 
         Returns
         -------
         ndarray of int32, shape (...)
             For each the index of the nearest point, of several the first in the order of x, then y;
-            -1 if the triangulation has no points.
+            -1 if the triangulation has no points, and for NaN and infinite points, to which none is nearest.
 
         Raises
         ------
@@ -273,9 +477,13 @@ class Delaunay(TrianglePlots, TriangleExports):
         array([1, 1], dtype=int32)
         """
         queries, shape = _as_queries(xi)
-        return self._locator.nearest(queries).reshape(shape)
+        if out is not None:
+            check_out(out, np.int32, shape, "out")
+        return _given(_answers(self._nearest, queries, -1).reshape(shape), out)
 
-    def interpolate(self, values: npt.ArrayLike, xi: npt.ArrayLike) -> Doubles:
+    def interpolate(
+        self, values: ArrayLike, xi: ArrayLike, out: Optional[Doubles] = None
+    ) -> Doubles:
         """Linear interpolation in the simplices, as `scipy.interpolate.LinearNDInterpolator`.
 
         Parameters
@@ -284,11 +492,13 @@ class Delaunay(TrianglePlots, TriangleExports):
             What the points have. Of equal points, the one of the smallest index counts.
         xi : array_like, shape (..., 2)
             Where to interpolate.
+        out : ndarray of float64, shape xi.shape[:-1] + values.shape[1:], optional
+            Where to write the result, by a copy.
 
         Returns
         -------
         ndarray of float64, shape xi.shape[:-1] + values.shape[1:]
-            NaN outside of the hull; at a point exactly its value.
+            NaN outside of the hull and for NaN and infinite points; at a point exactly its value.
 
         Raises
         ------
@@ -308,11 +518,12 @@ class Delaunay(TrianglePlots, TriangleExports):
             raise UsageError(
                 f"values must have the shape ({self.npoints}, ...), not {given.shape}: one for each point"
             )
-        # One call for each number that a point has.
-        columns = np.ascontiguousarray(given.reshape(self.npoints, -1).T) if given.size else None
         trailing = given.shape[1:]
-        result = np.empty((len(queries), int(np.prod(trailing))))
-        for k in range(result.shape[1]):
-            column = np.empty(0) if columns is None else columns[k]
-            result[:, k] = self._locator.interpolate(column, queries)
-        return result.reshape(shape + trailing)
+        if out is not None:
+            check_out(out, np.float64, shape + trailing, "out")
+        # One call for each number that a point has.
+        columns = np.ascontiguousarray(given.reshape(self.npoints, math.prod(trailing)).T)
+        result = np.empty((len(queries), len(columns)))
+        for k, column in enumerate(columns):
+            result[:, k] = _answers(partial(self._locator.interpolate, column), queries, np.nan)
+        return _given(result.reshape(shape + trailing), out)

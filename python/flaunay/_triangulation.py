@@ -2,15 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_points, as_segments, names_of, summary
+from flaunay._arrays import (
+    ArrayLike,
+    FloatArray,
+    as_points,
+    as_segments,
+    check_out,
+    names_of,
+    summary,
+)
 from flaunay._errors import UsageError
+
+Indices = npt.NDArray[np.int32]
+
+# The shapes of the arrays that `out` can have; None is the number of rows.
+_SHAPES: dict[str, tuple[Optional[int], ...]] = {
+    "triangles": (None, 3),
+    "neighbors": (None, 3),
+    "halfedges": (None,),
+    "hull": (None,),
+    "representatives": (None,),
+}
 
 _MODES_ON_HOST = {mode["name"] for mode in _flaunay.modes() if mode["on_host"]}
 
@@ -63,13 +83,65 @@ class Triangulation:
         )
 
 
+def _attributes(out: object) -> dict[str, Any]:
+    return {name: getattr(out, name, None) for name in _SHAPES}
+
+
+def _arrays_of(
+    out: Union[Mapping[str, Indices], Triangulation], wanted: set[str]
+) -> dict[str, Indices]:
+    """The arrays to write to; UsageError for one that nothing can be written to, or that nothing is written to."""
+    given: Mapping[str, Any] = out if isinstance(out, Mapping) else _attributes(out)
+    arrays = {name: array for name, array in given.items() if array is not None}
+    for name, array in arrays.items():
+        if name not in _SHAPES:
+            raise UsageError(f"out has {name!r}; there are {', '.join(_SHAPES)}")
+        if name in ("neighbors", "halfedges") and name not in wanted:
+            raise UsageError(f"out has {name}, but {name}=False")
+        check_out(array, np.int32, _SHAPES[name], f"out[{name!r}]")
+    return arrays
+
+
+def _write(result: dict[str, Any], arrays: dict[str, Indices]) -> None:
+    """Copies results to the caller's arrays and has their first rows in place of them."""
+    for name, array in arrays.items():
+        rows = len(result[name])
+        if len(array) < rows:
+            raise UsageError(f"out[{name!r}] has {len(array)} rows, but there are {rows}")
+    for name, array in arrays.items():
+        view = array[: len(result[name])]
+        view[...] = result[name]
+        result[name] = view
+
+
+def arrays_of_mesh(
+    coordinates: FloatArray,
+    offsets: Optional[npt.NDArray[np.int64]],
+    wanted: set[str],
+    device: Optional[str],
+    mode: str,
+) -> dict[str, Any]:
+    """What a `Triangulation` consists of, by its names. wanted: the optional arrays to compute."""
+    if not isinstance(mode, str):
+        names = ", ".join(row["name"] for row in _flaunay.modes())
+        raise UsageError(f"there is no mode {mode!r}; there are {names}")
+    if mode in _MODES_ON_HOST:
+        if device is not None:
+            raise UsageError(f"mode {mode} runs on the host and takes no device")
+        doubles = np.asarray(coordinates, dtype=np.float64)
+        return _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
+    triangulator = _triangulators.of_device(device)
+    return triangulator.triangulate(coordinates, offsets, mode, wanted)
+
+
 def triangulate(
-    points: npt.ArrayLike,
+    points: ArrayLike,
     segments: Optional[npt.ArrayLike] = None,
     device: Optional[str] = None,
     neighbors: bool = True,
     halfedges: bool = False,
     mode: str = "blocks",
+    out: Union[Mapping[str, Indices], Triangulation, None] = None,
 ) -> Triangulation:
     """Triangulates one set of points, or many sets in one call.
 
@@ -93,6 +165,10 @@ def triangulate(
     mode : str
         How to divide and conquer, by a name in `modes`. The triangles are the same in each mode; the
         order of the rows differs. Some modes run on the host and need no device.
+    out : mapping of str to ndarray of int32, or an object with such attributes, optional
+        Arrays for ``triangles``, ``neighbors``, ``halfedges``, ``hull`` and ``representatives``, or some of
+        them, with as many rows as there are results or more. n points have fewer than 2 n triangles. The
+        result has views of their first rows; it costs one copy.
 
     Returns
     -------
@@ -101,7 +177,8 @@ def triangulate(
     Raises
     ------
     UsageError
-        For a wrong shape, what is no number, segments that are none, an unknown mode.
+        For a wrong shape, what is no number, segments that are none, an unknown mode, arrays in `out`
+        that results cannot be written to.
     InputError
         For a point that is not finite, magnitudes too different to be exact, or too many points.
     DeviceError
@@ -133,17 +210,10 @@ def triangulate(
     coordinates = as_points(points)
     offsets = None if segments is None else as_segments(segments)
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
-    if not isinstance(mode, str):
-        names = ", ".join(row["name"] for row in _flaunay.modes())
-        raise UsageError(f"there is no mode {mode!r}; there are {names}")
-    if mode in _MODES_ON_HOST:
-        if device is not None:
-            raise UsageError(f"mode {mode} runs on the host and takes no device")
-        doubles = np.asarray(coordinates, dtype=np.float64)
-        result = _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
-    else:
-        triangulator = _triangulators.of_device(device)
-        result = triangulator.triangulate(coordinates, offsets, mode, wanted)
+    places = None if out is None else _arrays_of(out, wanted)
+    result = arrays_of_mesh(coordinates, offsets, wanted, device, mode)
+    if places:
+        _write(result, places)
     return Triangulation(**result)
 
 

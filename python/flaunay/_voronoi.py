@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
-from flaunay._arrays import FloatArray, summary
+from flaunay import _cocircular, _flaunay, _triangulators
+from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._delaunay import Delaunay
+from flaunay._errors import UsageError
 from flaunay._plot import VoronoiPlots
 
 Indices = npt.NDArray[np.int32]
@@ -20,13 +21,18 @@ class Voronoi(VoronoiPlots):
     """The Voronoi diagram of points in the plane, with the attributes of SciPy's.
 
     It has a vertex for each Delaunay triangle. Where more than three points are cocircular, vertices
-    coincide, and the ridges between them have no length; SciPy has one vertex there.
+    coincide, and the ridges between them have no length; with ``merge=True`` they are one vertex, as in
+    SciPy, and there are no such ridges. All arrays are read-only.
 
     Parameters
     ----------
     points : array_like, shape (npoints, 2)
         As of `Delaunay`.
-    device : str, optional
+    furthest_site, incremental, qhull_options
+        As of `Delaunay`.
+    merge : bool
+        Whether the vertices of triangles with the same circumcircle are one, which is decided exactly.
+    mode, device : str, optional
         As of `triangulate`.
 
     Attributes
@@ -35,8 +41,9 @@ class Voronoi(VoronoiPlots):
         The triangulation whose dual it is.
     points : ndarray of float64 or float32, shape (npoints, 2)
         The coordinates.
-    vertices : ndarray of float64, shape (nsimplex, 2)
-        The circumcentres of the triangles, rounded. What is adjacent does not depend on rounding.
+    vertices : ndarray of float64, shape (nvertices, 2)
+        The circumcentres of the triangles, rounded: those of all in their order, or with `merge` of the
+        first of each circumcircle. What is adjacent does not depend on rounding.
     cells : ndarray of int32
         Point i has the vertices ``cells[cell_offsets[i]:cell_offsets[i + 1]]``, counter-clockwise;
         of an unbounded cell from the hull edge that leaves the point to the one that arrives. None
@@ -66,23 +73,59 @@ class Voronoi(VoronoiPlots):
     array([[-1,  0],
            [-1,  0],
            [-1,  0]], dtype=int32)
+
+    A square has two triangles, and one circumcircle:
+
+    >>> square = [[0, 0], [2, 0], [0, 2], [2, 2]]
+    >>> len(flaunay.Voronoi(square).vertices)
+    2
+    >>> len(flaunay.Voronoi(square, merge=True).vertices)
+    1
     """
 
     ndim = 2
     furthest_site = False
 
-    def __init__(self, points: npt.ArrayLike, device: Optional[str] = None) -> None:
-        self.delaunay = tri = Delaunay(points, device=device)
+    def __init__(
+        self,
+        points: ArrayLike,
+        furthest_site: bool = False,
+        incremental: bool = False,
+        qhull_options: Optional[str] = None,
+        *,
+        merge: bool = False,
+        mode: str = "blocks",
+        device: Optional[str] = None,
+    ) -> None:
+        self.delaunay = tri = Delaunay(
+            points, furthest_site, incremental, qhull_options, mode=mode, device=device
+        )
         self.points: FloatArray = tri.points
-        self.vertices, self.cell_offsets, self.cells, unbounded = _flaunay.voronoi(
+        coordinates = np.asarray(tri.points, np.float64)
+        vertices, offsets, cells, unbounded = _flaunay.voronoi(
             _triangulators.of_device(device),
-            np.asarray(tri.points, np.float64),
+            coordinates,
             tri.simplices,
             tri.neighbors,
             tri.hull,
             tri.representatives,
         )
-        self.unbounded: npt.NDArray[np.bool_] = unbounded.view(np.bool_)
+        self.unbounded: npt.NDArray[np.bool_] = frozen(unbounded.view(np.bool_))
+        # The vertex of each triangle; None if it has its triangle's index.
+        self._vertex_of: Optional[Indices] = None
+        if merge:
+            first = _cocircular.same_circle(coordinates, tri.simplices, tri.neighbors)
+            distinct, numbers = np.unique(first, return_inverse=True)
+            vertices = vertices[distinct]
+            offsets, cells = _cocircular.merge_cells(numbers, offsets, cells, self.unbounded)
+            self._vertex_of = frozen(numbers.astype(np.int32))
+        self.vertices: npt.NDArray[np.float64] = frozen(vertices)
+        self.cell_offsets: Indices = frozen(offsets)
+        self.cells: Indices = frozen(cells)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, vertices=len(self.vertices))
@@ -109,7 +152,12 @@ class Voronoi(VoronoiPlots):
         triangle, corner = np.nonzero(neighbors < np.arange(len(corners))[:, None])
         ends = [corners[triangle, (corner + k) % 3] for k in (1, 2)]
         sides = [neighbors[triangle, corner], triangle.astype(np.int32)]
-        return np.stack(ends, axis=1), np.stack(sides, axis=1)
+        points, vertices = np.stack(ends, axis=1), np.stack(sides, axis=1)
+        if self._vertex_of is not None:
+            vertices = np.where(vertices < 0, -1, self._vertex_of[vertices]).astype(np.int32)
+            has_length = vertices[:, 0] != vertices[:, 1]
+            points, vertices = points[has_length], vertices[has_length]
+        return frozen(points), frozen(vertices)
 
     @property
     def ridge_points(self) -> Indices:
@@ -120,6 +168,19 @@ class Voronoi(VoronoiPlots):
     def ridge_vertices(self) -> Indices:
         """The two vertices of each ridge, int32, shape (nridges, 2); the first is -1 at infinity."""
         return self._ridges[1]
+
+    @cached_property
+    def ridge_dict(self) -> dict[tuple[int, int], list[int]]:
+        """For the two points of each ridge its vertices, as `ridge_points` and `ridge_vertices` have them.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> flaunay.Voronoi([[0, 0], [2, 0], [0, 2]]).ridge_dict[1, 2]
+        [-1, 0]
+        """
+        pairs: list[list[int]] = self.ridge_points.tolist()
+        return {(a, b): ends for (a, b), ends in zip(pairs, self.ridge_vertices.tolist())}
 
     @cached_property
     def regions(self) -> list[list[int]]:
@@ -137,6 +198,21 @@ class Voronoi(VoronoiPlots):
 
     @cached_property
     def point_region(self) -> npt.NDArray[np.intp]:
-        """For each point its place in `regions`, shape (npoints,); -1 if it has no cell."""
-        has_cell = np.diff(self.cell_offsets) > 0
-        return np.where(has_cell, np.arange(self.npoints), -1)
+        """For each point the place of its cell in `regions`, shape (npoints,); -1 if there is none.
+
+        For a point that equals an earlier one, that of the other.
+        """
+        representatives = self.delaunay.representatives
+        has_cell = np.diff(self.cell_offsets)[representatives] > 0
+        return frozen(np.where(has_cell, representatives, -1).astype(np.intp))
+
+    def close(self) -> None:
+        """Gives back what `delaunay` holds in device memory for queries."""
+        self.delaunay.close()
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
+        """Raises UsageError, as SciPy raises a RuntimeError without `incremental`: make a new diagram."""
+        raise UsageError(
+            "points cannot be added: make a new diagram of all of them, "
+            "Voronoi(numpy.concatenate([voronoi.points, points]))"
+        )

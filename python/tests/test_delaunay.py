@@ -1,5 +1,6 @@
 """flaunay.Delaunay beside scipy.spatial.Delaunay, and where it differs on purpose."""
 
+import copy
 import pickle
 
 import numpy as np
@@ -174,23 +175,111 @@ def test_points_are_a_copy(random):
     assert np.array_equal(tri.points, before)
 
 
-def test_results_are_writable():
-    tri = flaunay.Delaunay(FOUR)
-    for array in tri.simplices, tri.neighbors, tri.hull, tri.representatives, tri.convex_hull:
-        array[0] = 0
+ARRAYS = (
+    "points simplices neighbors hull representatives min_bound max_bound convex_hull coplanar "
+    "vertex_to_simplex transform equations good"
+).split()
 
 
-def test_it_can_be_pickled(random):
+def arrays_of(tri):
+    return [getattr(tri, name) for name in ARRAYS] + list(tri.vertex_neighbor_vertices)
+
+
+COPIES = {
+    "the object": lambda tri: tri,
+    "pickle": lambda tri: pickle.loads(pickle.dumps(tri)),
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+}
+
+
+@pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
+@pytest.mark.parametrize("points", [FOUR, FOUR[:2], FOUR[:0]], ids=["four", "two", "none"])
+def test_arrays_are_read_only(points, copied):
+    tri = flaunay.Delaunay(points)
+    for other in copied(tri), (arrays_of(tri), copied(tri))[1]:
+        for mine, array in zip(arrays_of(tri), arrays_of(other)):
+            assert np.array_equal(mine, array, equal_nan=True)
+            with pytest.raises(ValueError, match="read-only"):
+                array[...] = 0
+            with pytest.raises(ValueError, match="read-only"):
+                array.sort()
+            changed = array.copy()
+            changed[...] = 0
+
+
+def test_what_is_asked_of_qhull_and_changes_nothing(random):
+    points = random.random((50, 2))
+    expected = flaunay.Delaunay(points)
+    for options in None, "", "Qbb Qc Qz Q12", "Qt Qx Pp Q1 Q15 Qs", "QJ", "QJ Pp", "QJ1e-9 Qbb":
+        for tri in (
+            flaunay.Delaunay(points, False, False, options),
+            flaunay.Voronoi(points, qhull_options=options).delaunay,
+        ):
+            assert np.array_equal(tri.simplices, expected.simplices)
+    assert expected.furthest_site is False
+
+
+@pytest.mark.parametrize("make", [flaunay.Delaunay, flaunay.Voronoi])
+@pytest.mark.parametrize(
+    "given, message",
+    [
+        ({"furthest_site": True}, "furthest_site=True is not possible"),
+        ({"incremental": True}, "incremental=True is not possible: make a new triangulation"),
+        ({"qhull_options": "Qbb Qu"}, "Qu is furthest_site=True"),
+        ({"qhull_options": "C-0.1"}, "option C-0.1 is not known"),
+        ({"qhull_options": "QG4"}, "option QG4 is not known"),
+    ],
+)
+def test_what_is_asked_of_qhull_and_is_not_possible(make, given, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        make(FOUR, **given)
+
+
+def test_options_of_qhull_that_are_no_text():
+    with pytest.raises(TypeError, match="qhull_options must be a string, not bytes"):
+        flaunay.Delaunay(FOUR, qhull_options=b"Qbb")
+
+
+@pytest.mark.parametrize(
+    "points, message",
+    [
+        ([[0, 0], [1, 0], [0, 1], [1, 0]], "point 3 equals point 1"),
+        ([[0, 0], [1, 1], [2, 2]], "points have no triangles"),
+    ],
+)
+def test_joggled_input_where_a_point_is_no_vertex(points, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.Delaunay(points, qhull_options="QJ")
+
+
+def test_points_cannot_be_added_as_in_scipy_without_incremental():
+    for tri in flaunay.Delaunay(FOUR), flaunay.Voronoi(FOUR), scipy.spatial.Delaunay(FOUR):
+        with pytest.raises(RuntimeError):
+            tri.add_points([[3.0, 3.0]])
+
+
+def test_closing_leaves_everything_usable(random):
     tri = flaunay.Delaunay(random.random((50, 2)))
-    copy = pickle.loads(pickle.dumps(tri))
-    assert np.array_equal(tri.simplices, copy.simplices)
-    assert np.array_equal(tri.points, copy.points)
+    tri.close()
+    expected = tri.find_simplex([0.5, 0.5])
+    tri.close()
+    tri.close()
+    assert tri.find_simplex([0.5, 0.5]) == expected
 
 
-def test_what_scipy_takes_and_this_does_not():
-    for name in "furthest_site", "incremental", "qhull_options":
-        with pytest.raises(TypeError):
-            flaunay.Delaunay(FOUR, **{name: None})
+def test_modes(random):
+    points = random.random((300, 2))
+    expected = as_set(flaunay.Delaunay(points).simplices)
+    for mode in flaunay.modes():
+        tri = flaunay.Delaunay(points, mode=mode["name"])
+        assert as_set(tri.simplices) == expected
+        assert np.array_equal(
+            tri.simplices, flaunay.triangulate(points, mode=mode["name"]).triangles
+        )
+        assert len(flaunay.Voronoi(points, mode=mode["name"]).vertices) == len(expected)
+    with pytest.raises(flaunay.UsageError, match="no mode 'fast'"):
+        flaunay.Delaunay(points, mode="fast")
 
 
 @pytest.mark.parametrize("index", [-1, 100, 10**9, -(2**31)])
@@ -205,7 +294,9 @@ def test_what_scipy_takes_and_this_does_not():
 def test_indices_that_were_changed_to_no_point(random, name, attributes, index):
     tri = flaunay.Delaunay(random.random((100, 2)))
     for place in slice(None), -1:
-        getattr(tri, name)[place] = index
+        changed = getattr(tri, name).copy()
+        changed[place] = index
+        setattr(tri, name, changed)
         for attribute in attributes:
             with pytest.raises(flaunay.UsageError, match=f"{name} .*{index} is none of the 100"):
                 getattr(tri, attribute)
@@ -214,7 +305,7 @@ def test_indices_that_were_changed_to_no_point(random, name, attributes, index):
 def test_indices_that_were_changed_to_other_points(random):
     tri = flaunay.Delaunay(random.random((100, 2)))
     for name in "simplices", "hull", "representatives":
-        getattr(tri, name)[:] = 99
+        setattr(tri, name, np.full_like(getattr(tri, name), 99))
     starts, indices = tri.vertex_neighbor_vertices
     assert starts[99] == 0 and starts[100] == len(indices) and (indices == 99).all()
     assert (tri.vertex_to_simplex == 0).all()

@@ -126,10 +126,92 @@ def test_queries_that_are_no_numbers(points):
     tri = flaunay.Delaunay(points)
     with pytest.raises(flaunay.UsageError, match="real numbers"):
         tri.find_simplex([["a", "b"]])
-    for bad in np.nan, np.inf:
-        for ask in tri.find_simplex, tri.nearest, lambda xi: tri.interpolate(points[:, 0], xi):
-            with pytest.raises(flaunay.InputError, match="query 1 is not finite"):
-                ask([[0, 0], [bad, 0]])
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_queries_that_are_not_finite_are_nowhere(points, queries, bad):
+    tri, theirs = flaunay.Delaunay(points), scipy.spatial.Delaunay(points)
+    expected = tri.find_simplex(queries), tri.nearest(queries)
+    wrong = np.arange(len(queries)) % 7 == 3
+    given = queries.copy()
+    given[wrong, np.arange(wrong.sum()) % 2] = bad
+    assert (theirs.find_simplex(given)[wrong] == -1).all()
+    for found, other in zip((tri.find_simplex(given), tri.nearest(given)), expected):
+        assert found.dtype == np.int32
+        assert (found[wrong] == -1).all() and np.array_equal(found[~wrong], other[~wrong])
+    for values in points[:, 0], points:
+        other = scipy.interpolate.LinearNDInterpolator(theirs, values)(given)
+        np.testing.assert_allclose(tri.interpolate(values, given), other, rtol=1e-10, atol=1e-12)
+    assert tri.find_simplex([bad, 0.5]) == tri.nearest([bad, bad]) == -1
+    assert np.isnan(tri.interpolate(points[:, 0], [bad, 0.5]))
+    assert tri.find_simplex([bad, 0.5], tol=0.1) == -1
+
+
+def test_magnitudes_that_are_too_different_are_no_less_an_error(points):
+    tri = flaunay.Delaunay([[0, 0], [1e200, 0], [0, 1e200]])
+    for ask in tri.find_simplex, tri.nearest:
+        with pytest.raises(flaunay.InputError, match="query 1 is too fine"):
+            ask([[np.nan, 1], [1e-200, 0]])
+
+
+def test_brute_force_finds_the_same(points, queries):
+    tri = flaunay.Delaunay(points)
+    assert np.array_equal(
+        tri.find_simplex(queries, True), tri.find_simplex(queries, bruteforce=False)
+    )
+
+
+def test_tolerance(points, queries):
+    tri, theirs = flaunay.Delaunay(points), scipy.spatial.Delaunay(points)
+    exact = tri.find_simplex(queries)
+    assert np.array_equal(tri.find_simplex(queries, tol=0), exact)
+    # A little beyond the edges of the hull.
+    start, end = points[tri.convex_hull].transpose(1, 0, 2)
+    outwards = (end - start)[:, ::-1] * [1, -1] * 1e-7
+    near = (start + end) / 2 + outwards
+    assert (tri.find_simplex(near) == -1).all()
+    found = tri.find_simplex(near, tol=1e-3)
+    assert np.array_equal(
+        tri.simplices[found], tri.simplices[tri.find_simplex(near - 2 * outwards)]
+    )
+    assert np.array_equal(
+        np.sort(tri.simplices[found]),
+        np.sort(theirs.simplices[theirs.find_simplex(near, tol=1e-3)]),
+    )
+    assert (tri.find_simplex(near, tol=1e-12) == -1).all()
+    for tol in 1e-9, 1e-2:
+        mine, other = tri.find_simplex(queries, tol=tol), theirs.find_simplex(queries, tol=tol)
+        assert np.array_equal(mine[exact >= 0], exact[exact >= 0])
+        # SciPy ends at another simplex at times.
+        assert np.mean((mine < 0) == (other < 0)) > 0.99
+    for tol in -1e-9, np.nan:
+        with pytest.raises(flaunay.UsageError, match="tol must be 0 or more"):
+            tri.find_simplex(queries, tol=tol)
+
+
+def test_results_in_the_callers_arrays(points, queries):
+    tri = flaunay.Delaunay(points)
+    xi = queries.reshape(20, 25, 2)
+    for ask, dtype, shape in (
+        (tri.find_simplex, np.int32, (20, 25)),
+        (tri.nearest, np.int32, (20, 25)),
+        (lambda xi, out=None: tri.interpolate(points, xi, out=out), np.float64, (20, 25, 2)),
+    ):
+        out = np.empty(shape, dtype)
+        assert ask(xi, out=out) is out and np.array_equal(out, ask(xi), equal_nan=True)
+        every_other = np.zeros((40, *shape[1:]), dtype)
+        ask(xi, out=every_other[::2])
+        assert np.array_equal(every_other[::2], out, equal_nan=True) and not every_other[1::2].any()
+        read_only = out.copy()
+        read_only.flags.writeable = False
+        for bad, message in (
+            (np.empty(500, dtype), "out must be .* of shape"),
+            (np.empty(shape, np.int64), "not int64"),
+            (read_only, "out is read-only"),
+            ([0], "out must be an array"),
+        ):
+            with pytest.raises(flaunay.UsageError, match=message):
+                ask(xi, out=bad)
 
 
 @pytest.mark.parametrize("values", [3.0, [], np.zeros(399), np.zeros((2, 400))])
@@ -154,7 +236,7 @@ def test_queries_after_pickling_and_copying(points, queries, copied):
 @pytest.mark.parametrize("name", ["simplices", "neighbors", "hull", "representatives"])
 def test_queries_where_indices_were_changed(points, queries, name, index):
     tri = flaunay.Delaunay(points)
-    getattr(tri, name)[:] = index
+    setattr(tri, name, np.full_like(getattr(tri, name), index))
     for ask in tri.find_simplex, tri.nearest, lambda xi: tri.interpolate(points[:, 0], xi):
         with pytest.raises(flaunay.UsageError, match=f"{name} .*{index} is none of the"):
             ask(queries)
