@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._accurate import signs_of_turns
-from flaunay._arrays import summary
+from flaunay._arrays import ArrayLike, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._graphs import minimum_spanning_forest
@@ -40,8 +40,7 @@ class AlphaShape:
     def __init__(self, delaunay: Delaunay, alpha: float) -> None:
         self.delaunay = delaunay
         self.alpha = alpha
-        self.inside: Mask = delaunay.circumradii <= alpha
-        self.inside.flags.writeable = False
+        self.inside: Mask = frozen(delaunay.circumradii <= alpha)
 
     def __repr__(self) -> str:
         return summary(self, points=self.delaunay.npoints, triangles=len(self.simplices))
@@ -335,7 +334,7 @@ def _covering_alpha(tri: Delaunay) -> float:
 
 
 def alpha_shape(
-    points: Union[npt.ArrayLike, Delaunay], alpha: Union[float, str] = "auto", **options: Any
+    points: Union[ArrayLike, Delaunay], alpha: Union[float, str] = "auto", **options: Any
 ) -> AlphaShape:
     """The alpha shape of points in the plane: their outline, as a disc of radius alpha sees it.
 

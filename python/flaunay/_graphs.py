@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._accurate import circumradii_of, signs_of_dots
-from flaunay._arrays import FloatArray
+from flaunay._arrays import FloatArray, frozen
 from flaunay._errors import UsageError
 from flaunay._optional import optional
 
@@ -20,12 +20,6 @@ if TYPE_CHECKING:
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
-
-def _read_only(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """The array, which others share from now on."""
-    array.flags.writeable = False
-    return array
 
 
 def _lengths(points: FloatArray, edges: Indices) -> Doubles:
@@ -76,7 +70,7 @@ class TriangleGraphs:
         """
         first, second = self._directed_edges
         once = first < second
-        return _read_only(np.stack([first[once], second[once]], axis=1))
+        return frozen(np.stack([first[once], second[once]], axis=1))
 
     @property
     def _neighbors_of_points(self) -> tuple[Indices, Indices]:
@@ -105,7 +99,7 @@ class TriangleGraphs:
         >>> flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).edge_lengths
         array([4., 3., 5.])
         """
-        return _read_only(_lengths(self.points, self.edges))
+        return frozen(_lengths(self.points, self.edges))
 
     @cached_property
     def _edge_order(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
@@ -129,10 +123,10 @@ class TriangleGraphs:
         [[-1, 1], [0, 1], [-1, 0], [-1, 1], [-1, 0]]
         """
         if len(self.simplices) == 0:
-            return _read_only(np.full(self.edges.shape, -1, np.int32))
+            return frozen(np.full(self.edges.shape, -1, np.int32))
         triangle, corner = self._edge_order
         sides = [self.neighbors[triangle, corner], triangle.astype(np.int32)]
-        return _read_only(np.stack(sides, axis=1))
+        return frozen(np.stack(sides, axis=1))
 
     def adjacency(self, weights: Optional[str] = "length") -> scipy.sparse.csr_array:
         """The graph of points and edges as a sparse matrix, for `scipy.sparse.csgraph` and others.
@@ -273,7 +267,7 @@ class TriangleGraphs:
         [[0, 2], [1, 2]]
         """
         if len(self.simplices) == 0:
-            return _read_only(np.ones(len(self.edges), np.bool_))
+            return frozen(np.ones(len(self.edges), np.bool_))
         points = np.asarray(self.points, np.float64)
         corners = [points[self.simplices[:, k]] for k in range(3)]
         # Of all points, a corner opposite to the edge is first in its disc, if any is.
@@ -287,7 +281,7 @@ class TriangleGraphs:
         triangle, corner = self._edge_order
         beyond = self.neighbors[triangle, corner]
         is_back = self.neighbors[beyond] == triangle[:, None]
-        return _read_only(
+        return frozen(
             acute[triangle, corner] & ((beyond < 0) | (acute[beyond] & is_back).any(axis=1))
         )
 
@@ -306,7 +300,7 @@ class TriangleGraphs:
         [[0, 2], [1, 2]]
         """
         rows = minimum_spanning_forest(self.edges, self.edge_lengths, len(self.points))
-        return _read_only(self.edges[rows])
+        return frozen(self.edges[rows])
 
     @cached_property
     def circumradii(self) -> Doubles:
@@ -322,7 +316,7 @@ class TriangleGraphs:
         """
         points = np.asarray(self.points, np.float64)
         a, b, c = (points[self.simplices[:, k]] for k in range(3))
-        return _read_only(circumradii_of(a, b, c))
+        return frozen(circumradii_of(a, b, c))
 
 
 def minimum_spanning_forest(

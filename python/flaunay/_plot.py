@@ -123,7 +123,7 @@ def _clipped_to_box(
 ) -> Doubles:
     """The parts in a box of the lines start + t step for t from `first` to `last`, which may be infinite.
 
-    By the method of Liang and Barsky; those without a part in the box are left out.
+    By the method of Liang and Barsky; those without a part in the box, or without length, are left out.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         enters, leaves = (np.where(step > 0, *pair) for pair in (box, box[::-1]))
@@ -134,7 +134,7 @@ def _clipped_to_box(
     t[0][still] = np.where(inside[still], -np.inf, np.inf)
     t[1][still] = np.inf
     begin, end = np.maximum(first, t[0].max(axis=1)), np.minimum(last, t[1].min(axis=1))
-    kept = begin < end
+    kept = (begin < end) & (step != 0).any(axis=1)
     return np.stack([start[kept] + t[kept, None] * step[kept] for t in (begin, end)], axis=1)
 
 

@@ -138,6 +138,14 @@ def test_without_bounds_all_points_are_in_sight(random, axes):
     assert not is_blank(axes)
 
 
+@pytest.mark.parametrize("merge", [False, True])
+def test_edges_without_length_are_not_drawn(axes, merge):
+    grid = np.stack(np.meshgrid(np.arange(5.0), np.arange(5.0)), axis=-1).reshape(-1, 2)
+    lines = flaunay.Voronoi(grid, merge=merge).plot(axes, bounds=(0, 0, 4, 4))
+    lengths = [np.abs(end - start).sum() for start, end in lines.get_segments()]
+    assert len(lengths) == 40 and sum(lengths) == 32 and min(lengths) == 0.5
+
+
 def test_points_on_one_line_have_lines_between_them(axes):
     vor = flaunay.Voronoi([[0, 0], [2, 0], [4, 0], [2, 0]])
     segments = [line.tolist() for line in vor.plot(axes, bounds=(-1, -1, 5, 1)).get_segments()]
