@@ -41,33 +41,14 @@ def houses() -> Doubles:
     return np.asarray(points[inside])
 
 
-def clipped_cells(points: Doubles) -> list[Doubles]:
-    """The cells in the box: mirrored in a side, a point's cell ends there."""
-    mirrored = [
-        points * (-1, 1),
-        points * (1, -1),
-        points * (-1, 1) + (2 * WIDTH, 0),
-        points * (1, -1) + (0, 2 * HEIGHT),
-    ]
-    vor = flaunay.Voronoi(np.concatenate([points, *mirrored]))
-    ends = vor.cell_offsets[: len(points) + 1]
-    return [vor.vertices[vor.cells[a:b]] for a, b in zip(ends[:-1], ends[1:])]
-
-
-def area(cell: Doubles) -> float:
-    x, y = cell.T
-    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
-
-
 def main(path: str) -> None:
     points = houses()
-    cells = clipped_cells(points)
-    areas = np.array([area(cell) for cell in cells])
+    cells = flaunay.Voronoi(points).clipped((0, 0, WIDTH, HEIGHT))
 
     figure, axes = plt.subplots(figsize=(7.5, 5.7), layout="constrained")
     map_of_cells = PolyCollection(
-        cells,
-        array=areas,
+        cells.polygons(),
+        array=cells.areas,
         norm=LogNorm(5e-5, 3e-2),
         cmap="YlGnBu_r",
         edgecolor="white",
