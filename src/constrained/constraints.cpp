@@ -1,0 +1,83 @@
+#include "constrained/constraints.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace flaunay::constrained {
+
+std::int32_t Constraints::add(std::int32_t a, std::int32_t b, std::int32_t owner) {
+  if (comes_before(b, a)) std::swap(a, b);
+  edges_.push_back({a, b, owner});
+  return static_cast<std::int32_t>(edges_.size()) - 1;
+}
+
+void Constraints::link(std::int32_t first, std::int32_t second) {
+  if (first < 0 || second < 0) return;
+  edges_[first].next = edges_[first].forward = second;
+  edges_[second].previous = edges_[second].backward = first;
+}
+
+// Follows shortcuts to the end, and makes all of them lead there.
+std::int32_t Constraints::end_of_chain(std::int32_t edge, std::int32_t Edge::*shortcut) {
+  std::int32_t end = edge;
+  while (edges_[end].*shortcut >= 0) end = edges_[end].*shortcut;
+  while (edge != end) {
+    const std::int32_t next = edges_[edge].*shortcut;
+    edges_[edge].*shortcut = end;
+    edge = next;
+  }
+  return end;
+}
+
+std::int32_t Constraints::first_of_chain(std::int32_t edge) { return end_of_chain(edge, &Edge::backward); }
+std::int32_t Constraints::last_of_chain(std::int32_t edge) { return end_of_chain(edge, &Edge::forward); }
+
+void Constraints::sort(const std::vector<std::size_t>& offsets) {
+  struct Chain {
+    std::ptrdiff_t set;
+    std::int32_t first;
+  };
+  std::vector<Chain> chains;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    if (edges_[e].previous >= 0) continue;
+    const auto vertex = static_cast<std::size_t>(edges_[e].from);
+    chains.push_back({std::upper_bound(offsets.begin(), offsets.end(), vertex) - offsets.begin(),
+                      static_cast<std::int32_t>(e)});
+  }
+  std::sort(chains.begin(), chains.end(), [this](const Chain& a, const Chain& b) {
+    if (a.set != b.set) return a.set < b.set;
+    const Edge &p = edges_[a.first], &q = edges_[b.first];
+    return p.from != q.from ? comes_before(p.from, q.from) : comes_before(p.to, q.to);
+  });
+  number_.resize(edges_.size());
+  for (const Chain& chain : chains) {
+    for (std::int32_t e = chain.first; e >= 0; e = edges_[e].next) {
+      number_[e] = static_cast<std::int32_t>(order_.size());
+      order_.push_back(e);
+    }
+    chain_end_.resize(order_.size(), static_cast<std::int32_t>(order_.size()));
+  }
+}
+
+std::vector<std::int32_t> Constraints::sorted_edges() const {
+  std::vector<std::int32_t> ends;
+  ends.reserve(2 * order_.size());
+  for (const std::int32_t e : order_) ends.insert(ends.end(), {edges_[e].from, edges_[e].to});
+  return ends;
+}
+
+std::int32_t Constraints::number_from(std::int32_t edge, std::int32_t vertex) const {
+  const std::int32_t end = chain_end_[number_[edge]];
+  std::int32_t low = 0, high = end;
+  while (low < high) {
+    const std::int32_t middle = low + (high - low) / 2;
+    if (chain_end_[middle] == end && !comes_before(edges_[order_[middle]].from, vertex)) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
+}
+
+}  // namespace flaunay::constrained

@@ -1,0 +1,98 @@
+// A triangulation into which constraint edges are inserted one by one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "constrained/polygon.hpp"
+#include "flaunay/flaunay.hpp"
+#include "geometry/mesh.hpp"
+#include "geometry/predicates.hpp"
+
+namespace flaunay::constrained {
+
+/// The triangles that a segment crosses between two vertices on it, and what bounds them on its left and on
+/// its right, both from the first vertex to the last one.
+struct Cavity {
+  struct Border {
+    std::vector<std::int32_t> vertices;
+    std::vector<std::int32_t> sides;  ///< the half-edges of the crossed triangles on it
+  };
+  std::vector<std::int32_t> rows;
+  Border left, right;
+};
+
+/// How a segment leaves one of its ends: along an edge, to the vertex at its other end, or by crossing a
+/// half-edge of a triangle at the end.
+struct Departure {
+  std::int32_t halfedge = -1;
+  std::int32_t vertex = -1;  ///< -1 if it crosses
+};
+
+class ConstrainedMesh {
+ public:
+  /// delaunay: the canonical Delaunay triangulation of the points, with neighbours.
+  ConstrainedMesh(const Predicates& predicates, const Point* points, std::size_t point_count,
+                  const Triangulation& delaunay);
+
+  /// Whether the vertex is in a triangle; in collinear sets none is.
+  bool has_triangles(std::int32_t vertex) const { return out_[vertex] >= 0; }
+
+  /// Finds how the segment between two vertices leaves either of them, whichever is sooner found. Returns
+  /// whether that is the second one. O(the smaller of the numbers of their edges).
+  bool depart(std::int32_t from, std::int32_t to, Departure& departure) const;
+  /// Finds how the segment leaves the first one.
+  Departure depart_from(std::int32_t from, std::int32_t to) const;
+
+  /// Follows the segment from a departure that crosses to the next vertex on it, and returns that. crossed:
+  /// the constraints that it crosses are added. O(number of crossed edges).
+  std::int32_t follow(std::int32_t from, std::int32_t to, std::int32_t halfedge, Cavity& cavity,
+                      std::vector<std::int32_t>& crossed) const;
+
+  /// The constraint of the edge; -1 if it has none.
+  std::int32_t constraint(std::int32_t halfedge) const { return constraints_[halfedge]; }
+  /// Makes an edge a constraint.
+  void constrain(std::int32_t halfedge, std::int32_t constraint);
+  /// Replaces the triangles of a cavity that crosses no constraints by those of the canonical triangulation
+  /// with the edge from its first to its last vertex, which becomes a constraint.
+  void retriangulate(const Cavity& cavity, std::int32_t constraint);
+
+  /// The triangles, and those opposite to their vertices, as in Triangulation. Rows that were not replaced
+  /// are as before; the others are in ascending order.
+  void write(std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& neighbors) const;
+
+  const PolygonTriangulator& polygons() const { return polygons_; }
+
+ private:
+  class StarSearch;
+  // A side of a cavity, with what is to be joined to the triangle inside of it.
+  struct Side {
+    std::int32_t twin, constraint;
+    std::int32_t halfedge = -1;  // inside, new
+  };
+
+  void read_sides(const Cavity::Border& border);
+  std::int32_t fill(const std::vector<std::int32_t>& chain, std::int32_t first_side, int step,
+                    const std::int32_t*& row);
+  std::int32_t put(std::int32_t row, std::int32_t a, std::int32_t b, std::int32_t c);
+  void join(std::int32_t a, std::int32_t b);
+
+  Predicates predicates_;
+  const Point* points_;
+  std::vector<std::int32_t> triangles_, twins_;
+  std::vector<std::int32_t> constraints_;  // per half-edge
+  std::vector<std::int32_t> out_;          // per vertex, a half-edge from it
+  std::vector<char> replaced_;             // per row
+  PolygonTriangulator polygons_;
+
+  // Of retriangulate: sides of the left border, then of the right one; per half-edge the side, or -1.
+  std::vector<Side> sides_;
+  std::vector<std::int32_t> side_of_;
+  std::vector<std::int32_t> chain_;
+  struct Open {
+    std::int32_t from, to, beyond;
+  };
+  std::vector<Open> open_;
+};
+
+}  // namespace flaunay::constrained
