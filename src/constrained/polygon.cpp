@@ -48,36 +48,13 @@ void PolygonTriangulator::wrap() {
   }
 }
 
+// All vertices between are left of the base, so the circles through its ends and one of them are nested.
 std::int32_t PolygonTriangulator::apex(std::int32_t i, std::int32_t k) const {
-  const std::vector<std::int32_t>& chain = *chain_;
-  std::int32_t best = -1;
-  for (std::int32_t j = i + 1; j < k; ++j) {
-    if (chain[j] == chain[i] || chain[j] == chain[k]) continue;
-    if (best < 0) {
-      best = j;
-    } else if (chain[j] == chain[best]) {
-      // Of the same vertex, the position that sees the base.
-      if (!in_sector(best, i, k)) best = j;
-    } else if (circle(i, k, best, j) > 0) {
-      best = j;
-    }
+  std::int32_t best = i + 1;
+  for (std::int32_t j = best + 1; j < k; ++j) {
+    if (circle(i, k, best, j) > 0) best = j;
   }
   return best;
-}
-
-// Whether the triangle of a position and i, k, in this order counter-clockwise, lies between the chain's
-// edges at the position.
-bool PolygonTriangulator::in_sector(std::int32_t position, std::int32_t i, std::int32_t k) const {
-  const std::vector<std::int32_t>& chain = *chain_;
-  const std::int32_t first = position - 1, last = position + 1;
-  if (chain[first] == chain[last]) return true;
-  if (chain[i] == chain[last] || chain[k] == chain[first]) return false;
-  const int turn = orient(position, first, last);
-  const auto contains = [&](std::int32_t d) {
-    if (turn < 0) return !(orient(position, last, d) > 0 && orient(position, d, first) > 0);
-    return orient(position, first, d) >= 0 && (turn == 0 || orient(position, d, last) >= 0);
-  };
-  return contains(i) && contains(k);
 }
 
 bool PolygonTriangulator::insert_all() {

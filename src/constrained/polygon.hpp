@@ -44,7 +44,6 @@ class PolygonTriangulator {
   // O(k) per triangle.
   void wrap();
   std::int32_t apex(std::int32_t i, std::int32_t k) const;
-  bool in_sector(std::int32_t position, std::int32_t i, std::int32_t k) const;
 
   // Random insertion (Shewchuk and Brown 2015), whose result is checked. Returns false if it is wrong.
   bool insert_all();

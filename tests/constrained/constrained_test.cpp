@@ -12,6 +12,7 @@
 
 #include "constrained/polygon.hpp"
 #include "tests/constrained/check.hpp"
+#include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/paths.hpp"
@@ -73,31 +74,6 @@ int expect_right(const Sets& sets, Segments segments) {
     }
     segments.erase(segments.begin() + 2 * crossing.second, segments.begin() + 2 * crossing.second + 2);
   }
-}
-
-Segments random_segments(FixtureRandom& random, std::size_t points, std::size_t count) {
-  Segments segments;
-  for (std::size_t i = 0; i < 2 * count && points > 0; ++i) {
-    segments.push_back(static_cast<std::int32_t>(random.integer(0, static_cast<std::int64_t>(points) - 1)));
-  }
-  return segments;
-}
-
-// Segments that do not cross: some edges of a triangulation of the points, stretched so that it is another
-// one.
-Segments edges_of_stretched(const Coordinates& points, double factor, int one_in, std::uint64_t seed) {
-  Coordinates stretched = points;
-  for (std::size_t i = 0; i < stretched.size(); i += 2) stretched[i] *= factor;
-  const Triangulation other = delaunay_of(stretched, {0, points.size() / 2});
-  FixtureRandom random(seed);
-  Segments segments;
-  for (std::size_t c = 0; c < other.triangles.size(); ++c) {
-    if (other.neighbors[c] > static_cast<std::int32_t>(c / 3) || random.integer(1, one_in) > 1) continue;
-    const std::size_t t = c - c % 3;
-    segments.push_back(other.triangles[t + (c + 1) % 3]);
-    segments.push_back(other.triangles[t + (c + 2) % 3]);
-  }
-  return segments;
 }
 
 TEST(SmallConstrained, RandomSegmentsInSmallBoxes) {

@@ -1,0 +1,88 @@
+// The same triangles as CGAL's constrained Delaunay triangulation where it is unique, and the same numbers of
+// edges elsewhere.
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constrained/constrained.hpp"
+#include "tests/constrained/check.hpp"
+#include "tests/constrained/segments.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/reference.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
+using Structure =
+    CGAL::Triangulation_data_structure_2<Vertex, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Constrained =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
+
+Constrained cgal_constrained(const Coordinates& points, const Triangulation& delaunay,
+                             const Segments& segments) {
+  Constrained result;
+  std::vector<std::pair<Kernel::Point_2, std::int32_t>> input;
+  for (std::size_t i = 0; i < points.size() / 2; ++i) {
+    input.emplace_back(Kernel::Point_2(points[2 * i], points[2 * i + 1]), delaunay.representatives[i]);
+  }
+  result.insert(input.begin(), input.end());
+  std::vector<Constrained::Vertex_handle> vertices(input.size());
+  for (const auto v : result.finite_vertex_handles()) vertices[v->info()] = v;
+  for (std::size_t s = 0; s < segments.size(); s += 2) {
+    const auto a = vertices[delaunay.representatives[segments[s]]],
+               b = vertices[delaunay.representatives[segments[s + 1]]];
+    if (a != b) result.insert_constraint(a, b);
+  }
+  return result;
+}
+
+std::size_t constrained_edges(const Constrained& triangulation) {
+  std::size_t count = 0;
+  for (const auto& edge : triangulation.finite_edges()) count += triangulation.is_constrained(edge) ? 1 : 0;
+  return count;
+}
+
+TEST(ConstrainedCgal, CountsOnFixtures) {
+  for (const Fixture& fixture : all_fixtures()) {
+    for (const std::size_t n : {0, 1, 2, 3, 10, 100, 3000}) {
+      SCOPED_TRACE(fixture.name + ", n = " + std::to_string(n));
+      const Coordinates points = fixture.make(n, 2);
+      const Triangulation delaunay = delaunay_of(points, {0, points.size() / 2});
+      const Segments segments = edges_of_stretched(points, 16, 3, n);
+      const auto result = constrained::constrain(points.data(), {0, points.size() / 2}, delaunay, segments);
+      const Constrained expected = cgal_constrained(points, delaunay, segments);
+      EXPECT_EQ(result.triangles.size() / 3, expected.dimension() < 2 ? 0 : expected.number_of_faces());
+      EXPECT_EQ(result.constraint_edges.size() / 2, constrained_edges(expected));
+    }
+  }
+}
+
+TEST(ConstrainedCgal, SameTriangles) {
+  for (const char* name : {"uniform", "normal", "kuzmin", "line", "clusters"}) {
+    for (const double factor : {0x1p-7, 0.25, 2.0}) {
+      SCOPED_TRACE(name + std::to_string(factor));
+      const Coordinates points = make_fixture(name, 20000, 3);
+      const Triangulation delaunay = delaunay_of(points, {0, points.size() / 2});
+      const Segments segments = edges_of_stretched(points, factor, 5, 3);
+      const auto result = constrained::constrain(points.data(), {0, points.size() / 2}, delaunay, segments);
+      const Constrained expected = cgal_constrained(points, delaunay, segments);
+      std::vector<std::int32_t> triangles;
+      for (const auto& face : expected.finite_face_handles()) {
+        for (int corner = 0; corner < 3; ++corner) triangles.push_back(face->vertex(corner)->info());
+      }
+      EXPECT_EQ(sorted_triangles(result.triangles), sorted_triangles(triangles));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::testing
