@@ -35,27 +35,31 @@ std::int32_t Constraints::last_of_chain(std::int32_t edge) { return end_of_chain
 void Constraints::sort(const std::vector<std::size_t>& offsets) {
   struct Chain {
     std::ptrdiff_t set;
+    Point from, to;
     std::int32_t first;
   };
   std::vector<Chain> chains;
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (edges_[e].previous >= 0) continue;
-    const auto vertex = static_cast<std::size_t>(edges_[e].from);
-    chains.push_back({std::upper_bound(offsets.begin(), offsets.end(), vertex) - offsets.begin(),
-                      static_cast<std::int32_t>(e)});
+    const Edge& edge = edges_[e];
+    if (edge.previous >= 0) continue;
+    const auto set = std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(edge.from));
+    chains.push_back(
+        {set - offsets.begin(), points_[edge.from], points_[edge.to], static_cast<std::int32_t>(e)});
   }
-  std::sort(chains.begin(), chains.end(), [this](const Chain& a, const Chain& b) {
+  std::sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
     if (a.set != b.set) return a.set < b.set;
-    const Edge &p = edges_[a.first], &q = edges_[b.first];
-    return p.from != q.from ? comes_before(p.from, q.from) : comes_before(p.to, q.to);
+    const bool same = a.from == b.from;
+    return kernel::comes_before(same ? a.to : a.from, same ? b.to : b.from) != 0;
   });
   number_.resize(edges_.size());
+  chain_offsets_.push_back(0);
   for (const Chain& chain : chains) {
     for (std::int32_t e = chain.first; e >= 0; e = edges_[e].next) {
       number_[e] = static_cast<std::int32_t>(order_.size());
       order_.push_back(e);
     }
-    chain_end_.resize(order_.size(), static_cast<std::int32_t>(order_.size()));
+    chain_of_.resize(order_.size(), static_cast<std::int32_t>(chain_offsets_.size()) - 1);
+    chain_offsets_.push_back(static_cast<std::int32_t>(order_.size()));
   }
 }
 
@@ -67,17 +71,11 @@ std::vector<std::int32_t> Constraints::sorted_edges() const {
 }
 
 std::int32_t Constraints::number_from(std::int32_t edge, std::int32_t vertex) const {
-  const std::int32_t end = chain_end_[number_[edge]];
-  std::int32_t low = 0, high = end;
-  while (low < high) {
-    const std::int32_t middle = low + (high - low) / 2;
-    if (chain_end_[middle] == end && !comes_before(edges_[order_[middle]].from, vertex)) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return low;
+  const auto chain = chain_offsets_.begin() + chain_of_[number_[edge]];
+  const auto found =
+      std::lower_bound(order_.begin() + chain[0], order_.begin() + chain[1], vertex,
+                       [this](std::int32_t e, std::int32_t v) { return comes_before(edges_[e].from, v); });
+  return static_cast<std::int32_t>(found - order_.begin());
 }
 
 }  // namespace flaunay::constrained

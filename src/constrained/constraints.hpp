@@ -55,7 +55,8 @@ class Constraints {
   const Point* points_;
   std::vector<Edge> edges_;
   std::vector<std::int32_t> order_, number_;  // by number the edge, and the other way round
-  std::vector<std::int32_t> chain_end_;       // by number, the number after the last one of the chain
+  std::vector<std::int32_t> chain_of_;        // by number
+  std::vector<std::int32_t> chain_offsets_;  // the numbers at which chains begin, and the end of the last one
 };
 
 }  // namespace flaunay::constrained

@@ -223,21 +223,24 @@ void ConstrainedMesh::write(std::vector<std::int32_t>& triangles,
     const auto corner = triangles_.begin() + 3 * t;
     return static_cast<std::int32_t>(std::min_element(corner, corner + 3) - triangles_.begin());
   };
-  std::vector<std::int32_t> free, moved;
-  for (std::int32_t t = 0; t < rows; ++t) {
-    if (replaced_[t]) free.push_back(t);
-  }
-  moved = free;
-  const auto corners = [&](std::int32_t t) {
-    const std::int32_t h = first_corner(t);
-    return std::array<std::int32_t, 3>{triangles_[h], triangles_[next_halfedge(h)],
-                                       triangles_[previous_halfedge(h)]};
+  struct Replaced {
+    std::array<std::int32_t, 3> corners;
+    std::int32_t row;
   };
-  std::sort(moved.begin(), moved.end(),
-            [&](std::int32_t a, std::int32_t b) { return corners(a) < corners(b); });
+  std::vector<Replaced> replaced;
+  for (std::int32_t t = 0; t < rows; ++t) {
+    if (!replaced_[t]) continue;
+    const std::int32_t h = first_corner(t);
+    replaced.push_back({{triangles_[h], triangles_[next_halfedge(h)], triangles_[previous_halfedge(h)]}, t});
+  }
+  std::sort(replaced.begin(), replaced.end(),
+            [](const Replaced& a, const Replaced& b) { return a.corners < b.corners; });
   std::vector<std::int32_t> place(static_cast<std::size_t>(rows));
   std::iota(place.begin(), place.end(), 0);
-  for (std::size_t k = 0; k < free.size(); ++k) place[moved[k]] = free[k];
+  std::size_t next = 0;
+  for (std::int32_t t = 0; t < rows; ++t) {
+    if (replaced_[t]) place[replaced[next++].row] = t;
+  }
 
   triangles.resize(triangles_.size());
   neighbors.resize(triangles_.size());
