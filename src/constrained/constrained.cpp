@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -97,6 +96,33 @@ std::vector<Segment> unique_segments(const ScaledPoints& scaled, const Ids& repr
     unique_of[segment.index] = static_cast<std::int32_t>(unique.size()) - 1;
   }
   return unique;
+}
+
+// A random order in rounds, the last of which has half of the segments, the one before a quarter, and so on;
+// in a round, segments are in the order of the triangles at their first ends, which is one of place (Amenta,
+// Choi and Rote 2003). The random numbers are always the same.
+Ids random_order(const std::vector<Segment>& segments, const Ids& triangles) {
+  Ids row(triangles.empty() ? 0 : 1 + *std::max_element(triangles.begin(), triangles.end()), 0);
+  for (std::size_t c = 0; c < triangles.size(); ++c) row[triangles[c]] = static_cast<std::int32_t>(c / 3);
+  struct Placed {
+    std::int32_t round, row, segment;
+  };
+  std::vector<Placed> placed;
+  placed.reserve(segments.size());
+  std::mt19937 random;
+  for (const Segment& segment : segments) {
+    // The number of leading zeros of a random number.
+    std::int32_t round = 0;
+    for (auto bits = random(); round > -32 && bits < 1u << 31; bits <<= 1) --round;
+    const auto from = static_cast<std::size_t>(segment.from);
+    placed.push_back({round, from < row.size() ? row[from] : 0, static_cast<std::int32_t>(placed.size())});
+  }
+  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return std::tie(a.round, a.row, a.segment) < std::tie(b.round, b.row, b.segment);
+  });
+  Ids order(placed.size());
+  std::transform(placed.begin(), placed.end(), order.begin(), [](const Placed& p) { return p.segment; });
+  return order;
 }
 
 // The edges of sets without triangles: between points that follow each other on the line. Empty if all sets
@@ -263,13 +289,9 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   const ScaledPoints scaled = scale_points(coordinates, offsets);
   Ids unique_of;
   std::vector<Segment> unique = unique_segments(scaled, delaunay.representatives, segments, unique_of);
-  Ids order(unique.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::minstd_rand random;
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
 
   Inserter inserter(scaled, delaunay);
-  for (const std::int32_t u : order) {
+  for (const std::int32_t u : random_order(unique, delaunay.triangles)) {
     if (!inserter.insert(unique[u])) report_crossing(scaled, offsets, delaunay, segments, std::move(unique));
   }
 

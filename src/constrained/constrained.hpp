@@ -35,8 +35,8 @@ struct Result {
 /// point. That names the first segment that crosses one with a smaller index, the one with the smallest index
 /// of those, and the place.
 ///
-/// Inserts segments in a random order that is always the same: expected time O(n log n + n log^2 s) for s
-/// segments among n points (Agarwal, Arge and Yi 2005; Shewchuk and Brown 2015), beside the triangulation. If
+/// Inserts segments in random rounds that are always the same (see docs/constrained.md). In a fully random
+/// order, s segments among n points take expected time O(n log n + n log^2 s) beside the triangulation. If
 /// segments cross, they are inserted again in their own order, which takes O(s n) at worst.
 Result constrain(const double* coordinates, const std::vector<std::size_t>& offsets,
                  const Triangulation& delaunay, const std::vector<std::int32_t>& segments);
