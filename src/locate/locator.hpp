@@ -59,6 +59,24 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
 void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
              const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
 
+/// The queries of one call, in the order in which kernels answer them, with their triangles.
+struct LocatedQueries {
+  double orient_bound = 0;  ///< of the queries' orientations, see shared/bounds.h
+  cl_int sets = 0;
+  Buffer<kernel::query_frame> frames{};  ///< by set
+  Buffer<cl_int> query_offsets{};        ///< by set; not filled if there is one set
+  Buffer<cl_int> order{};                ///< per place, the number of its query
+  Buffer<cl_double2> placed{};           ///< per place, the scaled query
+  Buffer<cl_int> found{};                ///< per place, the triangle; less than 0 outside of the hull
+};
+
+/// Finds the triangle of each query, for kernels that continue from there. The result is allocated in the
+/// runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
+LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
+                               const Buffer<cl_double>& queries, std::size_t m,
+                               const std::vector<std::size_t>& query_offsets,
+                               const QueryLimits& limits = kOrientLimits);
+
 /// Computes for each query the linear interpolation of the three values of its triangle; NaN outside of the
 /// hull. values: one per point.
 void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
