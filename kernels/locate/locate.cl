@@ -1,4 +1,4 @@
-// Queries in a triangulation: the triangle that a query lies in, the nearest vertex, and interpolated values.
+// Queries in a triangulation: the triangle that a query lies in, and the nearest vertex.
 //
 // Making the locator: what walks read is brought together, in the order of the triangles, which mostly is an order by
 // place; the points may be in any order.
@@ -17,9 +17,10 @@
 //    beyond it: a visibility walk (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002). In a Delaunay
 //    triangulation it ends, whichever edge is tried first: the power of the query with respect to the triangle's circle
 //    falls with each step, except within a cocircular polygon, whose triangles form a tree.
-// 2. nearest_points and interpolate_queries continue from these triangles, with one work-item per query. Where a walk
-//    to the nearest vertex takes long, nearest_points searches through levels (shared/nearest_search.h), which are made
-//    when the first query needs them (locate/levels.cl).
+// 2. nearest_points continues from these triangles, with one work-item per query, and so do the kernels that
+// interpolate
+//    (interpolate/). Where a walk to the nearest vertex takes long, nearest_points searches through levels
+//    (shared/nearest_search.h), which are made when the first query needs them (locate/levels.cl).
 
 #include "shared/cut_tree.h"
 #include "shared/halfedges.h"
@@ -436,73 +437,5 @@ kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, i
       answer = vertex == GIVEN_UP ? -1 : source[vertex];
     }
     nearest[order[i]] = answer;
-  }
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Interpolation
-
-// Twice the area of q, a and b, with the sum of magnitudes that bounds its error.
-static inline double2 area_filtered(double2 a, double2 b, double2 q) {
-  const double left = (a.x - q.x) * (b.y - q.y);
-  const double right = (a.y - q.y) * (b.x - q.x);
-  return VECTOR(double2, left - right, fabs(left) + fabs(right));
-}
-
-// The same, with all bits right except the last.
-static inline double area_exact(double2 a, double2 b, double2 q) {
-  const double2 ax = two_sum(a.x, -q.x), ay = two_sum(a.y, -q.y);
-  const double2 bx = two_sum(b.x, -q.x), by = two_sum(b.y, -q.y);
-  expansion sum;
-  sum.size = 0;
-  expansion_add_product(&sum, ax, by);
-  expansion_add_product(&sum, -ay, bx);
-  expansion_compress(&sum);
-  double area = 0.0;
-  for (int k = 0; k < sum.size; ++k) area += sum.part[k];
-  return area;
-}
-
-// Of slender triangles, whose magnitudes are larger by this factor than their area, areas are computed exactly.
-#define SLENDER 4096.0
-
-// Weights are areas by the whole. Where q lies on an edge, the opposite corner has none, not even that of a NaN.
-kernel void interpolate_queries(int n, int sets, global const int* restrict query_offsets,
-                                global const query_frame* restrict frames, global const int* restrict order,
-                                global const double2* restrict placed, double bound,
-                                global const double2* restrict points, global const int* restrict source,
-                                global const face* restrict faces, global const int* restrict found,
-                                global const double* restrict values, global double* restrict results) {
-  const int i = get_global_id(0);
-  if (i < n) {
-    const double2 q = placed[i];
-    double result = as_double(0x7ff8000000000000UL);
-    if (found[i] >= 0) {
-      const face f = faces[found[i]];
-      const double unit = frames[set_of(i, sets, query_offsets)].unit;
-      double2 p[3];
-      double weight[3];
-      double whole = 0.0, magnitude = 0.0;
-      for (int k = 0; k < 3; ++k) p[k] = unit * points[f.corner[k]];
-      for (int k = 0; k < 3; ++k) {
-        const double2 a = p[next_corner(k)], b = p[corner_before(k)];
-        const double2 area = area_filtered(a, b, q);
-        weight[k] = orient_sign(a, b, q, bound) == 0 ? 0.0 : max(area.x, 0.0);
-        whole += weight[k];
-        magnitude += area.y;
-      }
-      if (magnitude > SLENDER * whole) {
-        whole = 0.0;
-        for (int k = 0; k < 3; ++k) {
-          weight[k] = area_exact(p[next_corner(k)], p[corner_before(k)], q);
-          whole += weight[k];
-        }
-      }
-      result = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        if (weight[k] != 0.0) result += weight[k] / whole * values[source[f.corner[k]]];
-      }
-    }
-    results[order[i]] = result;
   }
 }

@@ -73,6 +73,14 @@ host::Buffer<T> input_buffer(host::Runtime& runtime, const DeviceBuffer& buffer,
   return {DeviceBufferAccess::memory(buffer), count};
 }
 
+/// Returns the caller's buffer of numbers that kernels read, after check_buffer. Null is an empty buffer.
+template <typename T>
+host::Buffer<T> given_buffer(host::Runtime& runtime, cl_mem memory, std::size_t count,
+                             const std::string& what) {
+  check_buffer(runtime, memory, count * sizeof(T), Access::read, what);
+  return {memory == nullptr ? nullptr : retained(memory), count};
+}
+
 /// Provides a buffer of at least this size for results. If it is flaunay's own, makes it or replaces it by a
 /// larger one, and increments `made`. Throws Error(usage) if the caller's buffer is too small.
 void make_result(host::Runtime& runtime, DeviceBuffer& buffer, std::size_t bytes, const std::string& what,

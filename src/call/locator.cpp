@@ -1,6 +1,7 @@
 // The public class Locator.
 #include "locate/locator.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "call/errors.hpp"
 #include "call/handles.hpp"
 #include "geometry/magnitudes.hpp"
+#include "interpolate/interpolate.hpp"
 
 namespace flaunay {
 
@@ -20,25 +22,33 @@ struct Locator::Implementation {
     if (engine.runtime.sizes().separate_buffers) own.separate_buffers();
   }
 
-  // Kernels use 32-bit indices for the coordinates of queries.
-  static void check_queries(std::size_t m) {
+  // Kernels use 32-bit indices for the coordinates of queries, and for columns.
+  static void check_queries(std::size_t m, std::size_t columns) {
     call::expect(m <= std::numeric_limits<std::int32_t>::max() / 2,
                  "more queries than 32-bit indices can count");
+    check_numbers(m, columns);
   }
 
-  /// Answers queries in host memory. work(runtime, queries, m, offsets, results) enqueues the kernels that
-  /// write the results.
+  static void check_numbers(std::size_t rows, std::size_t columns) {
+    constexpr std::size_t kMostColumns = std::numeric_limits<std::int32_t>::max();
+    call::expect(columns <= std::min(kMostColumns, call::kMostCountable / std::max<std::size_t>(rows, 1)),
+                 "more numbers than memory can hold");
+  }
+
+  /// Answers queries in host memory. columns: the length of each result. work(runtime, queries, m, offsets,
+  /// results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
   std::vector<Result> answer(const double* queries, const std::vector<std::size_t>& offsets,
-                             const Work& work) {
+                             std::size_t columns, const Work& work) {
     return call::take_turn(*owner, [&] {
       geometry::check_offsets(offsets);
       const std::size_t m = offsets.back();
-      check_queries(m);
+      check_queries(m, columns);
       call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
       const call::OwnCall own_call(engine);
       host::Runtime& runtime = own_call.runtime;
-      std::vector<Result> result(m);
+      std::vector<Result> result;
+      runtime.resize(result, m * columns);
       const host::Runtime::Settled settled(runtime);
       const auto output = runtime.output(result);
       work(runtime, runtime.view(queries, 2 * m), m, offsets, output);
@@ -48,10 +58,11 @@ struct Locator::Implementation {
     });
   }
 
-  /// Answers queries in device memory. values: a further buffer that is read, or null.
+  /// Answers queries in device memory. columns: the length of each result. values: a further buffer that is
+  /// read, or null.
   template <typename Result, typename Work>
-  void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, const char* what,
-              const Enqueue& enqueue, const Work& work) {
+  void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, std::size_t columns,
+              const char* what, const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
       call::expect(
           !engine.runtime.is_native(),
@@ -63,14 +74,35 @@ struct Locator::Implementation {
       call::check_points(runtime, queries, "queries");
       call::QueuedCall queued(runtime, enqueue);
       Arena::Scope scope(runtime.arena());
-      check_queries(queries.count);
+      check_queries(queries.count, columns);
       const std::vector<std::size_t> offsets = call::checked_offsets(runtime, queries);
-      const auto output =
-          call::result_buffer<Result>(runtime, result, queries.count, what, engine.buffer_allocations);
+      const auto output = call::result_buffer<Result>(runtime, result, queries.count * columns, what,
+                                                      engine.buffer_allocations);
       call::check_distinct({queries.memory, queries.device_offsets, values, result.memory()});
       work(runtime, call::wide_points(runtime, runtime.arena(), queries), queries.count, offsets, output);
       queued.end();
     });
+  }
+
+  /// The length of the array of values.
+  std::size_t numbers(std::size_t columns) const {
+    call::expect(columns > 0, "values have no columns: a point needs at least one number");
+    check_numbers(points, columns);
+    return points * columns;
+  }
+
+  /// queries: as the functions in interpolate/interpolate.hpp take them.
+  template <typename... Queries>
+  void interpolate(host::Runtime& runtime, const InterpolationOptions& options,
+                   const Buffer<cl_double>& values, const Queries&... queries) {
+    const flaunay::interpolate::Table table{values, options.columns, options.fill};
+    switch (options.method) {
+      case Interpolation::linear:
+        return flaunay::interpolate::linear(runtime, locator, table, queries...);
+      case Interpolation::nearest:
+        return flaunay::interpolate::nearest(runtime, locator, table, queries...);
+    }
+    throw Error(ErrorKind::usage, "no such method of interpolation");
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
@@ -132,14 +164,14 @@ std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) 
 }
 
 std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->answer<std::int32_t>(queries, offsets, [&](auto& runtime, const auto&... all) {
+  return implementation_->answer<std::int32_t>(queries, offsets, 1, [&](auto& runtime, const auto&... all) {
     locate::locate(runtime, implementation_->locator, all...);
   });
 }
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
   implementation_->answer<cl_int>(
-      queries, nullptr, triangles, "located triangles", enqueue,
+      queries, nullptr, triangles, 1, "located triangles", enqueue,
       [&](auto& runtime, const auto&... all) { locate::locate(runtime, implementation_->locator, all...); });
 }
 
@@ -148,38 +180,57 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->answer<std::int32_t>(queries, offsets, [&](auto& runtime, const auto&... all) {
+  return implementation_->answer<std::int32_t>(queries, offsets, 1, [&](auto& runtime, const auto&... all) {
     locate::nearest(runtime, implementation_->locator, all...);
   });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
   implementation_->answer<cl_int>(
-      queries, nullptr, points, "nearest points", enqueue,
+      queries, nullptr, points, 1, "nearest points", enqueue,
       [&](auto& runtime, const auto&... all) { locate::nearest(runtime, implementation_->locator, all...); });
 }
 
 std::vector<double> Locator::interpolate(const double* values, const double* queries, std::size_t m) {
-  return interpolate(values, queries, std::vector<std::size_t>{0, m});
+  return interpolate(values, queries, m, InterpolationOptions{});
 }
 
 std::vector<double> Locator::interpolate(const double* values, const double* queries,
                                          const std::vector<std::size_t>& offsets) {
-  const std::size_t n = implementation_->points;
-  if (n > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
-  return implementation_->answer<double>(queries, offsets, [&](auto& runtime, const auto&... all) {
-    locate::interpolate(runtime, implementation_->locator, runtime.view(values, n), all...);
-  });
+  return interpolate(values, queries, offsets, InterpolationOptions{});
 }
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const Enqueue& enqueue) {
-  const std::size_t n = implementation_->points;
+  interpolate(values, queries, results, InterpolationOptions{}, enqueue);
+}
+
+std::vector<double> Locator::interpolate(const double* values, const double* queries, std::size_t m,
+                                         const InterpolationOptions& options) {
+  return interpolate(values, queries, std::vector<std::size_t>{0, m}, options);
+}
+
+std::vector<double> Locator::interpolate(const double* values, const double* queries,
+                                         const std::vector<std::size_t>& offsets,
+                                         const InterpolationOptions& options) {
+  const std::size_t numbers = implementation_->numbers(options.columns);
+  if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
+  return implementation_->answer<double>(
+      queries, offsets, options.columns, [&](auto& runtime, const auto&... all) {
+        implementation_->interpolate(runtime, options, runtime.view(values, numbers), all...);
+      });
+}
+
+void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
+                          const InterpolationOptions& options, const Enqueue& enqueue) {
   implementation_->answer<cl_double>(
-      queries, values, results, "interpolated values", enqueue, [&](auto& runtime, const auto&... all) {
-        call::check_buffer(runtime, values, n * sizeof(cl_double), call::Access::read, "values");
-        const Buffer<cl_double> given(values == nullptr ? nullptr : call::retained(values), n);
-        locate::interpolate(runtime, implementation_->locator, given, all...);
+      queries, values, results, options.columns, "interpolated values", enqueue,
+      [&](auto& runtime, const auto&... all) {
+        implementation_->interpolate(
+            runtime, options,
+            call::given_buffer<cl_double>(runtime, values, implementation_->numbers(options.columns),
+                                          "values"),
+            all...);
       });
 }
 

@@ -1,25 +1,21 @@
 #include "interpolate/natural.hpp"
 
-#include <fmt/format.h>
-
-#include "flaunay/flaunay.hpp"
 #include "host/vector_operations.hpp"
 #include "launchers/interpolate/natural.cl.hpp"
 
 namespace flaunay::interpolate {
 
 void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
-             const Buffer<cl_double>& values, std::size_t columns, double outside,
-             const Buffer<cl_double>& queries, std::size_t m, const std::vector<std::size_t>& query_offsets,
-             const Buffer<cl_double>& results) {
+             const Table& table, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located =
       locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
   const auto left = runtime.arena().allocate<cl_uchar>(m);
   runtime.map_in_small_groups(m, kernels::interpolate_natural{.sets = located.sets,
-                                                              .columns = columns,
+                                                              .columns = table.columns,
                                                               .method = static_cast<cl_int>(method),
-                                                              .outside = outside,
+                                                              .outside = table.outside,
                                                               .query_offsets = located.query_offsets,
                                                               .records = locator.records,
                                                               .frames = located.frames,
@@ -29,13 +25,13 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                               .source = locator.source,
                                                               .faces = locator.faces,
                                                               .found = located.found,
-                                                              .values = values,
+                                                              .values = table.values,
                                                               .results = results,
                                                               .left = left});
   runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.sets = located.sets,
-                                                                      .columns = columns,
+                                                                      .columns = table.columns,
                                                                       .method = static_cast<cl_int>(method),
-                                                                      .outside = outside,
+                                                                      .outside = table.outside,
                                                                       .query_offsets = located.query_offsets,
                                                                       .records = locator.records,
                                                                       .frames = located.frames,
@@ -45,7 +41,7 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                                       .source = locator.source,
                                                                       .faces = locator.faces,
                                                                       .found = located.found,
-                                                                      .values = values,
+                                                                      .values = table.values,
                                                                       .left = left,
                                                                       .results = results});
 }

@@ -5,25 +5,20 @@
 #include <functional>
 #include <vector>
 
-#include "locate/locator.hpp"
+#include "interpolate/interpolate.hpp"
 #include "shared/natural.h"
 
 namespace flaunay::interpolate {
 
-using host::Buffer;
-using locate::Locator;
-
 /// How neighbours are weighed, as kernels know it (shared/natural.h).
 enum class NaturalWeights : cl_int { sibson = kernel::SIBSON, laplace = kernel::LAPLACE };
 
-/// Interpolates between the natural neighbours of each query. values and results are rows of so many columns,
-/// by point and by query; outside of the hull all are `outside`. Queries and what is checked: see
-/// locate/locator.hpp, except that points and queries of a set together may span as many bits as points that
-/// are triangulated. The cost of a query is linear in the number of its neighbours.
+/// Interpolates between the natural neighbours of each query. Points and queries of a set together may span
+/// only as many bits as points that are triangulated. The cost of a query is linear in the number of its
+/// neighbours.
 void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
-             const Buffer<cl_double>& values, std::size_t columns, double outside,
-             const Buffer<cl_double>& queries, std::size_t m, const std::vector<std::size_t>& query_offsets,
-             const Buffer<cl_double>& results);
+             const Table& table, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results);
 
 /// Where lists of neighbours go.
 struct NaturalLists {

@@ -385,25 +385,13 @@ void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& 
   nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
 }
 
-void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
-                 const Buffer<cl_double>& queries, std::size_t m,
-                 const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results) {
-  Arena::Scope scope(runtime.arena());
+LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
+                               const Buffer<cl_double>& queries, std::size_t m,
+                               const std::vector<std::size_t>& query_offsets) {
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
-  runtime.map_in_small_groups(m, kernels::interpolate_queries{.sets = pass.sets,
-                                                              .query_offsets = pass.query_offsets,
-                                                              .frames = pass.frames,
-                                                              .order = pass.order,
-                                                              .placed = pass.placed,
-                                                              .bound = pass.orient_bound,
-                                                              .points = locator.points,
-                                                              .source = locator.source,
-                                                              .faces = locator.faces,
-                                                              .found = found,
-                                                              .values = values,
-                                                              .results = results});
+  return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};
 }
 
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,

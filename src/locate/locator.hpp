@@ -1,4 +1,4 @@
-// Answers queries on a triangulation: the containing triangle, the nearest point, an interpolated value.
+// Answers queries on a triangulation: the containing triangle, the nearest point.
 #pragma once
 
 #include <memory>
@@ -76,11 +76,5 @@ LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets,
                                const QueryLimits& limits = kOrientLimits);
-
-/// Computes for each query the linear interpolation of the three values of its triangle; NaN outside of the
-/// hull. values: one per point.
-void interpolate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& values,
-                 const Buffer<cl_double>& queries, std::size_t m,
-                 const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results);
 
 }  // namespace flaunay::locate

@@ -207,7 +207,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   const auto queries = upload(runtime, input.queries), values = upload(runtime, table_for(input));
   const auto results = guarded<cl_double>(runtime, kColumns * m),
              exact = guarded<cl_double>(runtime, kColumns * m);
-  natural(runtime, locator, method, values, kColumns, kOutside, queries, m, input.query_offsets, results);
+  natural(runtime, locator, method, {values, kColumns, kOutside}, queries, m, input.query_offsets, results);
 
   // All by the exact kernel, except outside of the hull, which is not left to it.
   const locate::LocatedQueries located =

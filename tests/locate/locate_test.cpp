@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "interpolate/interpolate.hpp"
 #include "locate/levels.hpp"
 #include "locate/locator.hpp"
 #include "shared/nearest_search.h"
@@ -44,7 +45,8 @@ Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& valu
   const auto results = guarded<cl_double>(runtime, m);
   locate(runtime, locator, queries, m, input.query_offsets, triangles);
   nearest(runtime, locator, queries, m, input.query_offsets, points);
-  interpolate(runtime, locator, upload(runtime, values), queries, m, input.query_offsets, results);
+  interpolate::linear(runtime, locator, {upload(runtime, values), 1, std::nan("")}, queries, m,
+                      input.query_offsets, results);
   return {download(runtime, triangles, m), download(runtime, points, m), download(runtime, results, m)};
 }
 
@@ -81,11 +83,6 @@ cl_int nearest_twin(const Case& input, std::size_t set, const double* q) {
     }
   }
   return best;
-}
-
-mpq_class area(const double* a, const double* b, const double* c) {
-  return (mpq_class(a[0]) - mpq_class(c[0])) * (mpq_class(b[1]) - mpq_class(c[1])) -
-         (mpq_class(a[1]) - mpq_class(c[1])) * (mpq_class(b[0]) - mpq_class(c[0]));
 }
 
 double value_twin(const Case& input, cl_int triangle, const std::vector<double>& values, const double* q) {
@@ -772,7 +769,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 27u);
+  EXPECT_EQ(kernels, 26u);
 }
 
 }  // namespace

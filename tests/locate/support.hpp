@@ -2,6 +2,7 @@
 // queries.
 #pragma once
 
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -74,6 +75,12 @@ struct Case {
   }
   void triangulate() { mesh = testing::triangulator().triangulate(points.data(), offsets); }
 };
+
+/// Twice the signed area of a triangle.
+inline mpq_class area(const double* a, const double* b, const double* c) {
+  return (mpq_class(a[0]) - mpq_class(c[0])) * (mpq_class(b[1]) - mpq_class(c[1])) -
+         (mpq_class(a[1]) - mpq_class(c[1])) * (mpq_class(b[0]) - mpq_class(c[0]));
+}
 
 /// m queries of each kind: anywhere, on points, between two points, where three points' circle has its
 /// centre, and far away.

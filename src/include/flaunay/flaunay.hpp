@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -286,6 +287,20 @@ class FLAUNAY_API Triangulator {
   std::shared_ptr<Implementation> implementation_;
 };
 
+/// How values are computed between points.
+enum class Interpolation {
+  linear,   ///< linearly in each triangle; continuous
+  nearest,  ///< the values of the nearest point
+};
+
+/// The options of one interpolation.
+struct InterpolationOptions {
+  Interpolation method = Interpolation::linear;  ///< how values are computed
+  std::size_t columns = 1;  ///< numbers per point: values are rows of so many, and so are results
+  /// The result outside of the hull. The nearest point has none, except in a set without points.
+  double fill = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// Answers queries on a triangulation: the containing triangle, the nearest point, an interpolated value. A
 /// search tree leads to a vertex near the query, and from there an exact walk goes from triangle to triangle.
 /// One call answers any number of queries. If the triangulation has several sets, there must be as many sets
@@ -350,6 +365,20 @@ class FLAUNAY_API Locator {
   /// Answers queries in device memory; see locate. values: double, 8 n bytes; results: double, 8 m bytes.
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                    const Enqueue& enqueue = own_queue());
+
+  /// Interpolates by any method, several numbers per point at once. values: one row of options.columns
+  /// numbers per input point; the result has one row per query. At a point, every method gives exactly that
+  /// point's values; for duplicates, those of their representative are used. Throws Error(usage) if
+  /// options.columns is 0.
+  std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
+                                  const InterpolationOptions& options);
+  /// Answers several sets of queries; see locate. values: one row per input point, over all sets.
+  std::vector<double> interpolate(const double* values, const double* queries,
+                                  const std::vector<std::size_t>& offsets,
+                                  const InterpolationOptions& options);
+  /// Answers queries in device memory; see locate. values and results: double, 8 bytes per number.
+  void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
+                   const InterpolationOptions& options, const Enqueue& enqueue = own_queue());
 
  private:
   struct FLAUNAY_LOCAL Implementation;
