@@ -10,6 +10,7 @@
 #include "call/handles.hpp"
 #include "geometry/magnitudes.hpp"
 #include "interpolate/interpolate.hpp"
+#include "interpolate/natural.hpp"
 
 namespace flaunay {
 
@@ -91,6 +92,13 @@ struct Locator::Implementation {
     return points * columns;
   }
 
+  static flaunay::interpolate::NaturalWeights natural_weights(Interpolation method) {
+    call::expect(method == Interpolation::sibson || method == Interpolation::laplace,
+                 "natural neighbours have the weights of Sibson or of Laplace");
+    return method == Interpolation::sibson ? flaunay::interpolate::NaturalWeights::sibson
+                                           : flaunay::interpolate::NaturalWeights::laplace;
+  }
+
   /// queries: as the functions in interpolate/interpolate.hpp take them.
   template <typename... Queries>
   void interpolate(host::Runtime& runtime, const InterpolationOptions& options,
@@ -101,6 +109,10 @@ struct Locator::Implementation {
         return flaunay::interpolate::linear(runtime, locator, table, queries...);
       case Interpolation::nearest:
         return flaunay::interpolate::nearest(runtime, locator, table, queries...);
+      case Interpolation::sibson:
+      case Interpolation::laplace:
+        return flaunay::interpolate::natural(runtime, locator, natural_weights(options.method), table,
+                                             queries...);
     }
     throw Error(ErrorKind::usage, "no such method of interpolation");
   }
