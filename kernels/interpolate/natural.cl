@@ -41,29 +41,6 @@ typedef struct {
   double unit;
 } natural_mesh;
 
-// A vertex as the query sees it: also its difference from the query, and the square of its distance.
-typedef struct {
-  int vertex;
-  double2 at, from;
-  double lift;
-} sight;
-
-static inline sight see(natural_mesh mesh, double2 q, int vertex) {
-  sight seen;
-  seen.vertex = vertex;
-  seen.at = mesh.unit * mesh.points[vertex];
-  seen.from = seen.at - q;
-  seen.lift = squared_length(seen.from);
-  return seen;
-}
-
-// Whether q lies inside the circle through a, b, c, which turn left: as circle_sign, or UNDECIDED.
-static inline int has_inside(sight a, sight b, sight c, double2 q, int exactly) {
-  const double2 det = circle_determinant(a.from, b.from, c.from, a.lift, b.lift, c.lift);
-  const int sign = filtered_sign(det.x, CIRCLE_BOUND * det.y, CIRCLE_BOUND);
-  return sign == UNDECIDED && exactly ? circle_undecided(a.at, b.at, c.at, q, CIRCLE_BOUND) : sign;
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // What becomes of the weights
 
@@ -105,105 +82,267 @@ static inline void divide_by(receiver* to, int what, double sum) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
+// Weights that are known without a walk
+
+// How attempts end: ASTRAY, if the mesh is no Delaunay triangulation.
+#define WEIGHED 1
+#define ASTRAY -1
+
+static inline double2 place_of(natural_mesh mesh, int vertex) { return mesh.unit * mesh.points[vertex]; }
+
+// At a vertex, and on an edge of the hull, where both methods tend to the linear
+// interpolation between its ends. Returns 0 if q lies on neither, UNDECIDED, or WEIGHED.
+static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exactly, int what, receiver* to) {
+  const face f = mesh.faces[start];
+  for (int k = 0; k < 3; ++k) {
+    const double2 at = place_of(mesh, f.corner[k]);
+    if (at.x == q.x && at.y == q.y) {
+      give(to, what, mesh.source[f.corner[k]], 1.0);
+      return WEIGHED;
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (f.neighbor[k] >= 0) continue;
+    const int from = f.corner[next_corner(k)], to_vertex = f.corner[corner_before(k)];
+    const double2 a = place_of(mesh, from), b = place_of(mesh, to_vertex);
+    const int side = exactly ? orient_sign(a, b, q, ORIENT_BOUND) : orient_filtered(a, b, q, ORIENT_BOUND);
+    if (side == UNDECIDED) return UNDECIDED;
+    if (side != 0) continue;
+    const int along_x = fabs(b.x - a.x) >= fabs(b.y - a.y);
+    const double behind = fabs(along_x ? q.x - a.x : q.y - a.y), ahead = fabs(along_x ? b.x - q.x : b.y - q.y);
+    give(to, what, mesh.source[from], ahead / (behind + ahead));
+    give(to, what, mesh.source[to_vertex], behind / (behind + ahead));
+    return WEIGHED;
+  }
+  return 0;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
 // Weights in floating point
 
-// Numbers beyond these, and triangles that are more slender, are left to the exact pass. Within them nothing overflows,
-// underflows do not matter, and errors of the second order are small.
-#define LARGEST_LIFT 0x1p200
-#define SMALLEST_AREA 0x1p-200
+// A vertex as the query sees it: the square of its distance, and |x| + |y|.
+typedef struct {
+  double2 at;
+  double lift, reach;
+  int vertex;
+} sight;
+
+static inline sight see(natural_mesh mesh, double2 q, int vertex) {
+  sight seen;
+  seen.vertex = vertex;
+  seen.at = place_of(mesh, vertex) - q;
+  seen.lift = squared_length(seen.at);
+  seen.reach = fabs(seen.at.x) + fabs(seen.at.y);
+  return seen;
+}
+
+// The in-circle determinant of q and a triangle, twice the triangle's area, and the sums of their terms' magnitudes.
+typedef struct {
+  double det, det_magnitude, area, area_magnitude;
+} seen_circle;
+
+static inline seen_circle circle_through(sight a, sight b, sight c) {
+  const double bc = b.at.x * c.at.y;
+  const double cb = c.at.x * b.at.y;
+  const double ca = c.at.x * a.at.y;
+  const double ac = a.at.x * c.at.y;
+  const double ab = a.at.x * b.at.y;
+  const double ba = b.at.x * a.at.y;
+  const double at_a = bc - cb, at_b = ca - ac, at_c = ab - ba;
+  const double most_a = fabs(bc) + fabs(cb), most_b = fabs(ca) + fabs(ac), most_c = fabs(ab) + fabs(ba);
+  const seen_circle seen = {a.lift * at_a + b.lift * at_b + c.lift * at_c,
+                            most_a * a.lift + most_b * b.lift + most_c * c.lift, at_a + at_b + at_c,
+                            most_a + most_b + most_c};
+  return seen;
+}
+
+// The centre of a circle, as seen from the query: |x| + |y|, and a bound of the sum of both errors, in units of
+// ROUNDOFF.
+typedef struct {
+  double2 at;
+  double reach, error;
+} centre;
+
+// Centres farther away, and triangles that are more slender, are left to the exact pass. Within these bounds nothing
+// overflows, underflows do not matter, and errors of the second order are small.
+#define LARGEST_REACH 0x1p300
+#define LEAST_WEIGHTS 0x1p-700
 #define MOST_SLENDER 0x1p30
 
-// A query's sums: of the weights, and of what bounds their errors. square and fourth bring areas, and squares of them,
-// to about 1.
+// A query's sums: of the weights, and of what bounds their errors. steps: how many terms there were.
 typedef struct {
-  double weights, errors, square, fourth;
-  int is_sound;
+  double weights, errors;
+  int steps, is_sound;
 } estimate;
 
-// Twice an area, and the sum of its terms' magnitudes.
-static inline double2 cross_of(double2 a, double2 b) {
-  const double left = a.x * b.y;
-  const double right = a.y * b.x;
-  return VECTOR(double2, left - right, fabs(left) + fabs(right));
+// by: the centre times twice the area, in both coordinates; magnitude: the sum of all its terms' magnitudes.
+static inline centre centre_by(double2 by, double magnitude, double area, double area_magnitude, estimate* all) {
+  const double inverse = 0.5 / area;
+  const double slenderness = 2.0 * inverse * area_magnitude;
+  const double length = fabs(by.x) + fabs(by.y);
+  centre made;
+  made.at = inverse * by;
+  made.reach = inverse * length;
+  made.error = inverse * (10.0 * magnitude + (7.0 * slenderness + 10.0) * length);
+  all->is_sound &= (made.reach < LARGEST_REACH) & (slenderness < MOST_SLENDER) & (area > 0.0);
+  return made;
 }
 
-static inline double2 dot_of(double2 a, double2 b) {
-  const double first = a.x * b.x;
-  const double second = a.y * b.y;
-  return VECTOR(double2, first + second, fabs(first) + fabs(second));
+static inline centre centre_of_triangle(seen_circle seen, sight a, sight b, sight c, estimate* all) {
+  const double2 by =
+      VECTOR(double2, a.lift * (b.at.y - c.at.y) + b.lift * (c.at.y - a.at.y) + c.lift * (a.at.y - b.at.y),
+             a.lift * (c.at.x - b.at.x) + b.lift * (a.at.x - c.at.x) + c.lift * (b.at.x - a.at.x));
+  const double magnitude = a.lift * (b.reach + c.reach) + b.lift * (c.reach + a.reach) + c.lift * (a.reach + b.reach);
+  return centre_by(by, magnitude, seen.area, seen.area_magnitude, all);
 }
 
-static inline int is_sound_area(double2 area, double square) {
-  return (area.x * square > SMALLEST_AREA) & (area.y <= MOST_SLENDER * area.x);
+// Of the query and an edge.
+static inline centre centre_of_edge(sight a, sight b, estimate* all) {
+  const double ab = a.at.x * b.at.y, ba = a.at.y * b.at.x;
+  const double2 by = VECTOR(double2, a.lift * b.at.y - b.lift * a.at.y, b.lift * a.at.x - a.lift * b.at.x);
+  return centre_by(by, a.lift * b.reach + b.lift * a.reach, ab - ba, fabs(ab) + fabs(ba), all);
 }
 
-// The plane through the lifted q, p and v: its height below a lifted vertex is an in-circle determinant.
+// A piece of a cell, clockwise from corner to corner: twice its area so far, and its last corner.
 typedef struct {
-  double x, y, z, mx, my, mz;
-} lifted_plane;
-
-static inline lifted_plane plane_through(sight p, sight v, double2 area) {
-  const double x0 = p.from.y * v.lift, x1 = p.lift * v.from.y;
-  const double y0 = p.lift * v.from.x, y1 = p.from.x * v.lift;
-  const lifted_plane plane = {x0 - x1, y0 - y1, area.x, fabs(x0) + fabs(x1), fabs(y0) + fabs(y1), area.y};
-  return plane;
-}
-
-static inline double2 height_above(lifted_plane plane, sight u, double fourth) {
-  const double height = plane.x * u.from.x + plane.y * u.from.y + plane.z * u.lift;
-  const double magnitude = plane.mx * fabs(u.from.x) + plane.my * fabs(u.from.y) + plane.mz * u.lift;
-  return VECTOR(double2, fourth * height, fourth * magnitude);
-}
-
-// A piece of a cell: its area so far, and what bounds its error.
-typedef struct {
-  double area, error;
+  double area;
+  centre last;
 } piece;
 
-static inline void add_term(piece* sum, double sign, double2 cotangent, double2 height) {
-  sum->area += sign * cotangent.x * height.x;
-  sum->error += cotangent.y * fabs(height.x) + fabs(cotangent.x) * height.y;
+static inline void go_to(piece* around, centre next, estimate* all) {
+  const centre last = around->last;
+  around->area += next.at.x * last.at.y - next.at.y * last.at.x;
+  around->last = next;
+  all->errors += next.error * last.reach + next.reach * last.error;
+  ++all->steps;
 }
 
-// The cotangent of an angle by its dot product, one over its area and the area's slenderness; and what bounds its
-// error.
-static inline double2 cotangent_of(double2 dot, double inverse, double slenderness) {
-  return VECTOR(double2, dot.x * inverse, dot.y * inverse * slenderness);
+// Of v, from one corner of the query's cell to the next one.
+static inline double laplace_weight(sight v, centre from, centre to, estimate* all) {
+  const double2 along = to.at - from.at;
+  const double inverse = 1.0 / v.lift;
+  all->errors += (from.error + to.error) * v.reach * inverse;
+  ++all->steps;
+  return (v.at.x * along.y - v.at.y * along.x) * inverse;
 }
 
-// The cavity's triangle v, c, a: its angles are opposite to the edges from v. heights: of a and c.
-static inline void add_triangle(piece* sum, estimate* all, sight v, sight c, sight a, double2 height_a,
-                                double2 height_c) {
-  const double2 va = a.at - v.at, vc = c.at - v.at, ac = c.at - a.at;
-  const double2 area = cross_of(vc, va);
-  const double inverse = 1.0 / area.x, slenderness = area.y * inverse;
-  all->is_sound &= is_sound_area(area, all->square) & (c.lift * all->square < LARGEST_LIFT);
-  add_term(sum, -1.0, cotangent_of(dot_of(va, ac), inverse, slenderness), height_c);
-  add_term(sum, 1.0, cotangent_of(dot_of(vc, ac), inverse, slenderness), height_a);
+static inline void give_estimate(receiver* to, int what, natural_mesh mesh, sight v, double weight, estimate* all) {
+  const double positive = max(weight, 0.0);
+  all->weights += positive;
+  give(to, what, mesh.source[v.vertex], positive);
 }
 
-static inline double estimated(estimate* all, piece sum, double2 area) {
-  const double inverse = 1.0 / (area.x * all->square);
-  const double weight = max(sum.area, 0.0) * inverse;
-  all->is_sound &= is_sound_area(area, all->square);
-  all->errors += (sum.error + fabs(sum.area) * (area.y / area.x)) * inverse;
-  all->weights += weight;
-  return weight;
+// A triangle of the cavity that the walk has entered: its centre, and its last edge, which leads to a vertex and has
+// another triangle beyond. is_open: whether that edge still is to be crossed.
+typedef struct {
+  centre middle;
+  sight to;
+  int triangle, beyond, is_open;
+} entered;
+
+// Cavities with longer paths are left to the exact pass.
+#define MOST_ENTERED 24
+
+// Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. Triangles that the
+// walk is in, from `start` on, are kept, so that each is tested once. A piece takes the centres of the triangles that
+// the walk is in while it is at a vertex. Gives weights, of which *all has the sum. Returns WEIGHED or UNDECIDED.
+static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int method, int what, estimate* all,
+                                   receiver* to) {
+  entered path[MOST_ENTERED];
+  const face f = mesh.faces[start];
+  // The edge from x to y, which has triangle t on its left and u beyond.
+  sight x = see(mesh, q, f.corner[0]), y = see(mesh, q, f.corner[1]);
+  const sight first = x, third = see(mesh, q, f.corner[2]);
+  const int is_sibson = method == SIBSON;
+  int t = start, u = f.neighbor[2], depth = 1;
+  path[0].middle = centre_of_triangle(circle_through(x, y, third), x, y, third, all);
+  path[0].to = first;
+  path[0].triangle = start;
+  path[0].beyond = f.neighbor[1];
+  path[0].is_open = 1;
+  path[1] = path[0];
+  path[1].to = third;
+  path[1].beyond = f.neighbor[0];
+  // Of the first vertex the piece is in two parts, as the walk begins inside of it.
+  piece around = {0.0, path[0].middle};
+  centre before = around.last, first_after = before;
+  double first_area = 0.0;
+  int is_first = 1;
+  while (depth >= 0) {
+    if (u >= 0) {
+      const face g = mesh.faces[u];
+      const int j = corner_opposite(g, t);
+      const sight d = see(mesh, q, g.corner[j]);
+      const seen_circle seen = circle_through(y, x, d);
+      if (!(fabs(seen.det) > CIRCLE_BOUND * seen.det_magnitude)) return UNDECIDED;
+      if (seen.det > 0.0) {
+        if (++depth == MOST_ENTERED) return UNDECIDED;
+        entered* const top = &path[depth];
+        if (is_sibson) {
+          top->middle = centre_of_triangle(seen, y, x, d, all);
+          go_to(&around, top->middle, all);
+        }
+        top->to = y;
+        top->triangle = u;
+        top->beyond = g.neighbor[corner_before(j)];
+        top->is_open = 1;
+        y = d;
+        t = u;
+        u = g.neighbor[next_corner(j)];
+        continue;
+      }
+    }
+    // On the boundary: x is done, but for the first time.
+    const centre after = centre_of_edge(x, y, all);
+    if (is_sibson) go_to(&around, after, all);
+    if (is_first) {
+      first_after = after;
+      first_area = around.area;
+      is_first = 0;
+    } else if (is_sibson) {
+      go_to(&around, before, all);
+      give_estimate(to, what, mesh, x, around.area, all);
+    } else {
+      give_estimate(to, what, mesh, x, laplace_weight(x, before, after, all), all);
+    }
+    before = after;
+    around.area = 0.0;
+    around.last = after;
+    x = y;
+    if (is_sibson) go_to(&around, path[depth].middle, all);
+    while (depth >= 0 && !path[depth].is_open) {
+      if (--depth >= 0 && is_sibson) go_to(&around, path[depth].middle, all);
+    }
+    if (depth >= 0) {
+      path[depth].is_open = 0;
+      y = path[depth].to;
+      u = path[depth].beyond;
+      t = path[depth].triangle;
+    }
+  }
+  if (is_sibson) {
+    around.last = first_after;
+    go_to(&around, before, all);
+    give_estimate(to, what, mesh, first, around.area + first_area, all);
+  } else {
+    give_estimate(to, what, mesh, first, laplace_weight(first, before, first_after, all), all);
+  }
+  return WEIGHED;
 }
 
-// Laplace's weight of v between p and c.
-static inline double laplace_weight(estimate* all, sight p, sight v, sight c) {
-  const double2 before = cross_of(p.from, v.from), after = cross_of(v.from, c.from);
-  const double2 first = dot_of(p.from, p.at - v.at), second = dot_of(c.from, c.at - v.at);
-  const double inverse_before = 1.0 / before.x, inverse_after = 1.0 / after.x;
-  const double2 at_p = cotangent_of(first, inverse_before, before.y * inverse_before);
-  const double2 at_c = cotangent_of(second, inverse_after, after.y * inverse_after);
-  const double weight = max(at_p.x + at_c.x, 0.0);
-  all->is_sound &=
-      is_sound_area(before, all->square) & is_sound_area(after, all->square) & (v.lift * all->square < LARGEST_LIFT);
-  all->errors += at_p.y + at_c.y;
-  all->weights += weight;
-  return weight;
+// Returns WEIGHED, or UNDECIDED if the weights are not certain.
+static inline int weigh_by_estimate(natural_mesh mesh, double2 q, int start, int method, int what, receiver* to) {
+  const int on_hull = weigh_on_hull(mesh, q, start, 0, what, to);
+  if (on_hull != 0) return on_hull;
+  estimate all = {0.0, 0.0, 0, 1};
+  const int outcome = estimate_weights(mesh, q, start, method, what, &all, to);
+  const double errors = all.errors * (1.0 + 0.125 * all.steps);
+  if (outcome != WEIGHED || !all.is_sound || !(all.weights > LEAST_WEIGHTS) ||
+      !(errors <= NATURAL_ERROR / (2.0 * ROUNDOFF) * all.weights)) {
+    return UNDECIDED;
+  }
+  divide_by(to, what, all.weights);
+  return WEIGHED;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -258,188 +397,136 @@ static inline wide wide_circle(double2 a, double2 b, double2 c, double2 d) {
 }
 
 // The triangle of a piece between the centres on both sides of the edge from v to c: behind are a and an area, before
-// are d, which is q at the last edge, and an area.
-static inline wide wide_term(double2 q, sight p, sight v, sight c, sight a, double2 d, wide behind, wide before) {
-  const wide across = wide_circle(v.at, c.at, a.at, d), height = wide_circle(p.at, v.at, c.at, q);
+// are d, which is q at the last edge, and an area. p comes before v on the boundary.
+static inline wide wide_term(double2 q, double2 p, double2 v, double2 c, double2 a, double2 d, wide behind,
+                             wide before) {
+  const wide across = wide_circle(v, c, a, d), height = wide_circle(p, v, c, q);
   return wide_quotient(wide_product(across, height), wide_product(behind, before));
 }
 
-static inline wide wide_laplace(double2 q, sight p, sight v, sight c) {
-  return wide_quotient(wide_circle(q, p.at, v.at, c.at),
-                       wide_product(wide_area(q, p.at, v.at), wide_area(q, v.at, c.at)));
+// ---------------------------------------------------------------------------------------------------------------------
+// The walk that needs no memory
+
+// A vertex with its place.
+typedef struct {
+  int vertex;
+  double2 at;
+} corner_point;
+
+static inline corner_point point_at(natural_mesh mesh, int vertex) {
+  const corner_point point = {vertex, place_of(mesh, vertex)};
+  return point;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The walk around the cavity
+static inline int is_inside(corner_point a, corner_point b, corner_point c, double2 q) {
+  return circle_sign(a.at, b.at, c.at, q, CIRCLE_BOUND) > 0;
+}
 
-// If the mesh is no Delaunay triangulation, walks may end without an answer.
-#define ASTRAY -1
-#define WEIGHED 1
+// Where the walk is: at corner k of triangle t, v; counter-clockwise the others are c and a.
+typedef struct {
+  int t, k;
+  face f;
+  corner_point v, c, a;
+} stand;
 
-// Gives the neighbours of q, which lies in triangle `start`, but not on the hull nor at a vertex, to a receiver.
-// Without `exactly`, weights and their sum are estimates; otherwise weights are by the sum, if that is not 0, and else
-// these weights are added to it. Returns WEIGHED, or UNDECIDED, or ASTRAY. steps: how many are left.
-static inline int weigh(natural_mesh mesh, double2 q, int start, int method, int exactly, int what, int* steps,
-                        estimate* all, wide* sum, receiver* to) {
-  // Triangle t with its corners v, c, a; v is its corner k.
-  int t = start, k = 0;
-  face f = mesh.faces[t];
-  sight v = see(mesh, q, f.corner[0]), c = see(mesh, q, f.corner[1]), a = see(mesh, q, f.corner[2]);
-  const ulong largest = as_ulong(max(v.lift, max(c.lift, a.lift))) >> 52;
-  all->square = power_of_two(1023 - (int)largest);
-  all->fourth = all->square * all->square;
-  const wide whole = *sum;
-  // Backwards around v, to an edge of the boundary.
+// Goes backwards around v, to an edge of the cavity's boundary. Returns whether there is one.
+static inline int find_boundary(natural_mesh mesh, double2 q, stand* at, int* steps) {
   for (;;) {
-    const int u = f.neighbor[next_corner(k)];
+    const int u = at->f.neighbor[next_corner(at->k)];
+    if (u < 0) return 1;
+    const face g = mesh.faces[u];
+    const int j = corner_opposite(g, at->t);
+    const corner_point d = point_at(mesh, g.corner[j]);
+    if (!is_inside(at->v, at->a, d, q)) return 1;
+    if (--*steps < 0) return 0;
+    at->c = at->a;
+    at->a = d;
+    at->f = g;
+    at->t = u;
+    at->k = next_corner(j);
+  }
+}
+
+// From the edge of the boundary that leads to v on to the one that leaves it, over the triangles between. Returns
+// whether there is one. part: gets the weight of v.
+static inline int weigh_exactly_at(natural_mesh mesh, double2 q, int method, stand* at, int* steps, wide* part) {
+  const double2 p = at->a.at, v = at->v.at;
+  wide behind = {0.0, NO_EXPONENT};
+  *part = behind;
+  if (method == SIBSON) behind = wide_area(v, at->c.at, at->a.at);
+  for (;;) {
+    if (--*steps < 0) return 0;
+    const int u = at->f.neighbor[corner_before(at->k)];
     if (u < 0) break;
     const face g = mesh.faces[u];
-    const int j = corner_opposite(g, t);
-    const sight d = see(mesh, q, g.corner[j]);
-    const int inside = has_inside(v, a, d, q, exactly);
-    if (inside == UNDECIDED) return UNDECIDED;
-    if (inside <= 0) break;
-    if (--*steps < 0) return ASTRAY;
-    c = a;
-    a = d;
-    f = g;
-    t = u;
-    k = next_corner(j);
+    const int j = corner_opposite(g, at->t);
+    const corner_point d = point_at(mesh, g.corner[j]);
+    if (!is_inside(at->c, at->v, d, q)) break;
+    if (method == SIBSON) {
+      const wide before = wide_area(v, d.at, at->c.at);
+      *part = wide_sum(*part, wide_term(q, p, v, at->c.at, at->a.at, d.at, behind, before));
+      behind = before;
+    }
+    at->a = at->c;
+    at->c = d;
+    at->f = g;
+    at->t = u;
+    at->k = corner_before(j);
   }
-  const int first = v.vertex, first_triangle = t;
+  const double2 c = at->c.at;
+  if (method == SIBSON) {
+    *part = wide_sum(*part, wide_term(q, p, v, c, at->a.at, q, behind, wide_area(q, v, c)));
+    *part = wide_quotient(*part, wide_area(q, p, v));
+  } else if (method == LAPLACE) {
+    *part = wide_quotient(wide_circle(q, p, v, c), wide_product(wide_area(q, p, v), wide_area(q, v, c)));
+  }
+  return 1;
+}
+
+// Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. whole: the sum of
+// the weights if it is known, else 0, and then no weights are given; sum: that sum. Returns WEIGHED, or ASTRAY after so
+// many steps, which happens only if the mesh is no Delaunay triangulation.
+static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int steps, int method, int what, wide whole,
+                               wide* sum, receiver* to) {
+  stand at;
+  at.t = start;
+  at.k = 0;
+  at.f = mesh.faces[start];
+  at.v = point_at(mesh, at.f.corner[0]);
+  at.c = point_at(mesh, at.f.corner[1]);
+  at.a = point_at(mesh, at.f.corner[2]);
+  if (!find_boundary(mesh, q, &at, &steps)) return ASTRAY;
+  const int first = at.v.vertex, first_triangle = at.t;
   do {
-    // From the edge p v of the boundary around v to the next one, v c.
-    const sight p = a;
-    const double2 area = cross_of(p.from, v.from);
-    const lifted_plane plane = plane_through(p, v, area);
-    double2 height_a = VECTOR(double2, 0.0, 0.0);
-    piece part = {0.0, 0.0};
-    wide wide_part = {0.0, NO_EXPONENT}, behind = {0.0, NO_EXPONENT};
-    const int is_sibson = method == SIBSON;
-    if (exactly && is_sibson) behind = wide_area(v.at, c.at, a.at);
-    for (;;) {
-      if (--*steps < 0) return ASTRAY;
-      if (!exactly && is_sibson) {
-        const double2 height_c = height_above(plane, c, all->fourth);
-        add_triangle(&part, all, v, c, a, height_a, height_c);
-        height_a = height_c;
-      }
-      const int u = f.neighbor[corner_before(k)];
-      if (u < 0) break;
-      const face g = mesh.faces[u];
-      const int j = corner_opposite(g, t);
-      const sight d = see(mesh, q, g.corner[j]);
-      const int inside = has_inside(c, v, d, q, exactly);
-      if (inside == UNDECIDED) return UNDECIDED;
-      if (inside <= 0) break;
-      if (exactly && is_sibson) {
-        const wide before = wide_area(v.at, d.at, c.at);
-        wide_part = wide_sum(wide_part, wide_term(q, p, v, c, a, d.at, behind, before));
-        behind = before;
-      }
-      a = c;
-      c = d;
-      f = g;
-      t = u;
-      k = corner_before(j);
-    }
-    double weight = 0.0;
-    if (exactly) {
-      if (is_sibson) {
-        wide_part = wide_sum(wide_part, wide_term(q, p, v, c, a, q, behind, wide_area(q, v.at, c.at)));
-        wide_part = wide_quotient(wide_part, wide_area(q, p.at, v.at));
-      } else if (method == LAPLACE) {
-        wide_part = wide_laplace(q, p, v, c);
-      }
-      if (whole.mantissa == 0.0) {
-        *sum = wide_sum(*sum, wide_part);
-      } else {
-        weight = narrow_quotient(wide_part, whole);
-      }
-    } else if (is_sibson) {
-      const double2 next = cross_of(v.from, c.from);
-      const double inverse = 1.0 / next.x;
-      all->is_sound &= is_sound_area(next, all->square);
-      add_term(&part, -1.0, cotangent_of(dot_of(v.from, c.from), inverse, next.y * inverse), height_a);
-      weight = estimated(all, part, area);
-    } else {
-      weight = laplace_weight(all, p, v, c);
-    }
-    give(to, what, mesh.source[v.vertex], weight);
-    const sight apex = a;
-    a = v;
-    v = c;
-    c = apex;
-    k = next_corner(k);
-  } while (v.vertex != first || t != first_triangle);
+    const int vertex = at.v.vertex;
+    wide part;
+    if (!weigh_exactly_at(mesh, q, method, &at, &steps, &part)) return ASTRAY;
+    *sum = wide_sum(*sum, part);
+    give(to, what, mesh.source[vertex], what == TO_NOTHING ? 0.0 : narrow_quotient(part, whole));
+    const corner_point apex = at.a;
+    at.a = at.v;
+    at.v = at.c;
+    at.c = apex;
+    at.k = next_corner(at.k);
+  } while (at.v.vertex != first || at.t != first_triangle);
   return WEIGHED;
 }
 
-// Weights that are known without a walk: at a vertex, and on an edge of the hull, where both methods tend to the linear
-// interpolation between its ends. Returns 0 if q lies on neither, UNDECIDED, or WEIGHED.
-static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exactly, int what, receiver* to) {
-  const face f = mesh.faces[start];
-  for (int k = 0; k < 3; ++k) {
-    const double2 at = mesh.unit * mesh.points[f.corner[k]];
-    if (at.x == q.x && at.y == q.y) {
-      give(to, what, mesh.source[f.corner[k]], 1.0);
-      return WEIGHED;
-    }
-  }
-  for (int k = 0; k < 3; ++k) {
-    if (f.neighbor[k] >= 0) continue;
-    const int from = f.corner[next_corner(k)], to_vertex = f.corner[corner_before(k)];
-    const double2 a = mesh.unit * mesh.points[from], b = mesh.unit * mesh.points[to_vertex];
-    const int side = exactly ? orient_sign(a, b, q, ORIENT_BOUND) : orient_filtered(a, b, q, ORIENT_BOUND);
-    if (side == UNDECIDED) return UNDECIDED;
-    if (side != 0) continue;
-    const int along_x = fabs(b.x - a.x) >= fabs(b.y - a.y);
-    const double behind = fabs(along_x ? q.x - a.x : q.y - a.y), ahead = fabs(along_x ? b.x - q.x : b.y - q.y);
-    give(to, what, mesh.source[from], ahead / (behind + ahead));
-    give(to, what, mesh.source[to_vertex], behind / (behind + ahead));
-    return WEIGHED;
-  }
-  return 0;
-}
-
-// The walk's steps are three per triangle, and once more around the first vertex.
+// The walk takes three steps per triangle, and once more those around the first vertex.
 static inline int most_steps(int triangles) { return (int)min((long)INT_MAX, 4L * triangles); }
 
-// In floating point; triangles: of the query's set. Returns WEIGHED, or UNDECIDED if the weights are not certain, which
-// includes walks that went astray.
-static inline int weigh_by_estimate(natural_mesh mesh, double2 q, int start, int triangles, int method, int what,
-                                    receiver* to) {
-  const int on_hull = weigh_on_hull(mesh, q, start, 0, what, to);
-  if (on_hull != 0) return on_hull;
-  const int most = most_steps(triangles);
-  int steps = most;
-  estimate all = {0.0, 0.0, 0.0, 0.0, 1};
-  wide none = {0.0, NO_EXPONENT};
-  const int outcome = weigh(mesh, q, start, method, 0, what, &steps, &all, &none, to);
-  const double certain = NATURAL_ERROR / (2.0 * ROUNDOFF);
-  if (outcome != WEIGHED || !all.is_sound || !(all.errors * (16.0 + (most - steps)) <= certain * all.weights)) {
-    return UNDECIDED;
-  }
-  divide_by(to, what, all.weights);
-  return WEIGHED;
-}
-
-// With small relative errors: one walk for the sum of the weights, and one for the weights. Returns WEIGHED or ASTRAY.
+// One walk for the sum of the weights, and one for the weights. triangles: of the query's set. Returns WEIGHED or
+// ASTRAY.
 static inline int weigh_exactly(natural_mesh mesh, double2 q, int start, int triangles, int method, int what,
                                 receiver* to) {
   to->count = 0;
   if (weigh_on_hull(mesh, q, start, 1, what, to) == WEIGHED) return WEIGHED;
-  estimate unused = {0.0, 0.0, 0.0, 0.0, 1};
-  wide sum = {0.0, NO_EXPONENT};
-  for (int pass = 0; pass < 2; ++pass) {
-    int steps = most_steps(triangles);
-    to->count = 0;
-    if (weigh(mesh, q, start, method, 1, pass == 0 ? TO_NOTHING : what, &steps, &unused, &sum, to) != WEIGHED) {
-      return ASTRAY;
-    }
-    if (sum.mantissa == 0.0) return ASTRAY;
-  }
-  return WEIGHED;
+  const int steps = most_steps(triangles);
+  const wide none = {0.0, NO_EXPONENT};
+  wide whole = none, again = none;
+  if (walk_exactly(mesh, q, start, steps, method, TO_NOTHING, none, &whole, to) != WEIGHED) return ASTRAY;
+  to->count = 0;
+  return walk_exactly(mesh, q, start, steps, method, what, whole, &again, to);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -452,12 +539,12 @@ static inline int set_of_query(int place, int sets, global const int* query_offs
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Values and results are rows of
 // so many columns, by point and by query. left: whether a query, by place, is left to interpolate_natural_exactly.
 kernel void interpolate_natural(int n, int sets, int columns, int method, double outside,
-                                global const int* restrict query_offsets, global const mesh_set* restrict records,
-                                global const query_frame* restrict frames, global const int* restrict order,
-                                global const double2* restrict placed, global const double2* restrict points,
-                                global const int* restrict source, global const face* restrict faces,
-                                global const int* restrict found, global const double* restrict values,
-                                global double* restrict results, global uchar* restrict left) {
+                                global const int* restrict query_offsets, global const query_frame* restrict frames,
+                                global const int* restrict order, global const double2* restrict placed,
+                                global const double2* restrict points, global const int* restrict source,
+                                global const face* restrict faces, global const int* restrict found,
+                                global const double* restrict values, global double* restrict results,
+                                global uchar* restrict left) {
   const int i = get_global_id(0);
   if (i < n) {
     const int s = set_of_query(i, sets, query_offsets);
@@ -466,7 +553,7 @@ kernel void interpolate_natural(int n, int sets, int columns, int method, double
     int outcome = WEIGHED;
     if (found[i] >= 0) {
       clear_row(&to, 0.0);
-      outcome = weigh_by_estimate(mesh, placed[i], found[i], records[s].triangles, method, TO_VALUES, &to);
+      outcome = weigh_by_estimate(mesh, placed[i], found[i], method, TO_VALUES, &to);
     } else {
       clear_row(&to, outside);
     }
@@ -510,10 +597,9 @@ kernel void count_neighbors(int n, int sets, global const int* restrict query_of
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
     receiver to = {0, 0, 0, 0, 0, 0};
     if (found[i] >= 0 && weigh_on_hull(mesh, placed[i], found[i], 1, TO_NOTHING, &to) != WEIGHED) {
-      estimate unused = {0.0, 0.0, 0.0, 0.0, 1};
+      const int steps = most_steps(records[s].triangles);
       wide sum = {0.0, NO_EXPONENT};
-      int steps = most_steps(records[s].triangles);
-      if (weigh(mesh, placed[i], found[i], NO_WEIGHTS, 1, TO_NOTHING, &steps, &unused, &sum, &to) != WEIGHED) {
+      if (walk_exactly(mesh, placed[i], found[i], steps, NO_WEIGHTS, TO_NOTHING, sum, &sum, &to) != WEIGHED) {
         to.count = 0;
       }
     }
@@ -537,7 +623,7 @@ kernel void list_neighbors(int n, int sets, int method, global const int* restri
       const natural_mesh mesh = {points, source, faces, frames[s].unit};
       receiver to = {0, 0, 0, 0, neighbors + first, weights + first};
       const int triangles = records[s].triangles;
-      if (weigh_by_estimate(mesh, placed[i], found[i], triangles, method, TO_LIST, &to) != WEIGHED) {
+      if (weigh_by_estimate(mesh, placed[i], found[i], method, TO_LIST, &to) != WEIGHED) {
         weigh_exactly(mesh, placed[i], found[i], triangles, method, TO_LIST, &to);
       }
     }

@@ -11,7 +11,7 @@ INTEGER_CONSTANT(SIBSON, 1);
 INTEGER_CONSTANT(LAPLACE, 2);
 
 // The errors of a query's weights together, if it has fewer than a thousand neighbours; see docs/exactness.md.
-#define NATURAL_ERROR 0x1p-40
+#define NATURAL_ERROR 0x1p-36
 
 END_SHARED
 

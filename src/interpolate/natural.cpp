@@ -5,9 +5,9 @@
 
 namespace flaunay::interpolate {
 
-void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
-             const Table& table, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results) {
+void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method, const Table& table,
+             const Buffer<cl_double>& queries, std::size_t m, const std::vector<std::size_t>& query_offsets,
+             const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located =
       locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
@@ -17,7 +17,6 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                               .method = static_cast<cl_int>(method),
                                                               .outside = table.outside,
                                                               .query_offsets = located.query_offsets,
-                                                              .records = locator.records,
                                                               .frames = located.frames,
                                                               .order = located.order,
                                                               .placed = located.placed,

@@ -16,9 +16,9 @@ enum class NaturalWeights : cl_int { sibson = kernel::SIBSON, laplace = kernel::
 /// Interpolates between the natural neighbours of each query. Points and queries of a set together may span
 /// only as many bits as points that are triangulated. The cost of a query is linear in the number of its
 /// neighbours.
-void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
-             const Table& table, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results);
+void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method, const Table& table,
+             const Buffer<cl_double>& queries, std::size_t m, const std::vector<std::size_t>& query_offsets,
+             const Buffer<cl_double>& results);
 
 /// Where lists of neighbours go.
 struct NaturalLists {

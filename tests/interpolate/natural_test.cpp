@@ -265,7 +265,8 @@ void check_row(const double* row, const std::vector<double>& table, const Weight
       largest = std::max(largest, mpq_class(abs(value)));
     }
     ASSERT_TRUE(std::isfinite(row[c]));
-    ASSERT_LE(abs(mpq_class(row[c]) - sum), largest * mpq_class(0x1p-40)) << row[c] << " for " << sum.get_d();
+    ASSERT_LE(abs(mpq_class(row[c]) - sum), largest * mpq_class(NATURAL_ERROR))
+        << row[c] << " for " << sum.get_d();
     if (weights.size() == 1) {
       ASSERT_EQ(mpq_class(row[c]), sum);
     }
@@ -300,7 +301,7 @@ void check_natural(const Case& input) {
           ASSERT_EQ(listed.count(point), 1u) << point;
           errors += abs(listed[point] - weight);
         }
-        ASSERT_LE(errors, mpq_class(0x1p-40)) << errors.get_d();
+        ASSERT_LE(errors, mpq_class(NATURAL_ERROR)) << errors.get_d();
         check_row(&answers.values[kColumns * i], table, twins[i]);
         check_row(&answers.exact_values[kColumns * i], table, twins[i]);
       }

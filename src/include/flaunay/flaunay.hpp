@@ -291,11 +291,11 @@ class FLAUNAY_API Triangulator {
 enum class Interpolation {
   linear,   ///< linearly in each triangle; continuous
   nearest,  ///< the values of the nearest point
-  /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells of
-  /// the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
+  /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
+  /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
   sibson,
-  /// By Laplace's natural-neighbour weights: the lengths of that cell's edges over the distances of the points.
-  /// Continuous, about 1.5 times as fast as Sibson's, and exact for linear functions, up to rounding.
+  /// By Laplace's natural-neighbour weights: the lengths of that cell's edges over the distances of the
+  /// points. Continuous, about 1.5 times as fast as Sibson's, and exact for linear functions, up to rounding.
   laplace,
 };
 
