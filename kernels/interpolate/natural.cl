@@ -30,10 +30,12 @@
 #include "shared/determinants.h"
 #include "shared/halfedges.h"
 #include "shared/natural.h"
+#include "shared/prefetch.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
-// A triangulation, as locators have it, and how much more the queries of its set are scaled.
+// A triangulation, as locators have it, and how much more the queries of its set are scaled. source: the points that
+// vertices are.
 typedef struct {
   global const double2* points;
   global const int* source;
@@ -46,8 +48,8 @@ typedef struct {
 
 typedef struct {
   int count;                    // of the neighbours so far
-  int columns;                  // TO_VALUES
-  global const double* values;  // a row per point
+  int columns, is_by_vertex;    // TO_VALUES
+  global const double* values;  // a row per point, or per vertex
   global double* row;
   global int* neighbors;  // TO_LIST
   global double* weights;
@@ -57,12 +59,12 @@ typedef struct {
 #define TO_VALUES 1
 #define TO_LIST 2
 
-static inline void give(receiver* to, int what, int point, double weight) {
+static inline void give(receiver* to, int what, natural_mesh mesh, int vertex, double weight) {
   if (what == TO_VALUES) {
-    global const double* row = to->values + (size_t)point * to->columns;
+    global const double* row = to->values + (size_t)(to->is_by_vertex ? vertex : mesh.source[vertex]) * to->columns;
     for (int c = 0; c < to->columns; ++c) to->row[c] += weight * row[c];
   } else if (what == TO_LIST) {
-    to->neighbors[to->count] = point;
+    to->neighbors[to->count] = mesh.source[vertex];
     to->weights[to->count] = weight;
   }
   ++to->count;
@@ -97,7 +99,7 @@ static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exa
   for (int k = 0; k < 3; ++k) {
     const double2 at = place_of(mesh, f.corner[k]);
     if (at.x == q.x && at.y == q.y) {
-      give(to, what, mesh.source[f.corner[k]], 1.0);
+      give(to, what, mesh, f.corner[k], 1.0);
       return WEIGHED;
     }
   }
@@ -110,8 +112,8 @@ static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exa
     if (side != 0) continue;
     const int along_x = fabs(b.x - a.x) >= fabs(b.y - a.y);
     const double behind = fabs(along_x ? q.x - a.x : q.y - a.y), ahead = fabs(along_x ? b.x - q.x : b.y - q.y);
-    give(to, what, mesh.source[from], ahead / (behind + ahead));
-    give(to, what, mesh.source[to_vertex], behind / (behind + ahead));
+    give(to, what, mesh, from, ahead / (behind + ahead));
+    give(to, what, mesh, to_vertex, behind / (behind + ahead));
     return WEIGHED;
   }
   return 0;
@@ -229,7 +231,7 @@ static inline double laplace_weight(sight v, centre from, centre to, estimate* a
 static inline void give_estimate(receiver* to, int what, natural_mesh mesh, sight v, double weight, estimate* all) {
   const double positive = max(weight, 0.0);
   all->weights += positive;
-  give(to, what, mesh.source[v.vertex], positive);
+  give(to, what, mesh, v.vertex, positive);
 }
 
 // A triangle of the cavity that the walk has entered: its centre, and its last edge, which leads to a vertex and has
@@ -239,6 +241,22 @@ typedef struct {
   sight to;
   int triangle, beyond, is_open;
 } entered;
+
+// Field by field: copies of whole structs wait for parts of them to be stored.
+static inline void enter(entered* top, centre middle, sight to, int triangle, int beyond) {
+  top->middle.at.x = middle.at.x;
+  top->middle.at.y = middle.at.y;
+  top->middle.reach = middle.reach;
+  top->middle.error = middle.error;
+  top->to.at.x = to.at.x;
+  top->to.at.y = to.at.y;
+  top->to.lift = to.lift;
+  top->to.reach = to.reach;
+  top->to.vertex = to.vertex;
+  top->triangle = triangle;
+  top->beyond = beyond;
+  top->is_open = 1;
+}
 
 // Cavities with longer paths are left to the exact pass.
 #define MOST_ENTERED 24
@@ -255,16 +273,11 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
   const sight first = x, third = see(mesh, q, f.corner[2]);
   const int is_sibson = method == SIBSON;
   int t = start, u = f.neighbor[2], depth = 1;
-  path[0].middle = centre_of_triangle(circle_through(x, y, third), x, y, third, all);
-  path[0].to = first;
-  path[0].triangle = start;
-  path[0].beyond = f.neighbor[1];
-  path[0].is_open = 1;
-  path[1] = path[0];
-  path[1].to = third;
-  path[1].beyond = f.neighbor[0];
+  const centre middle = centre_of_triangle(circle_through(x, y, third), x, y, third, all);
+  enter(&path[0], middle, first, start, f.neighbor[1]);
+  enter(&path[1], middle, third, start, f.neighbor[0]);
   // Of the first vertex the piece is in two parts, as the walk begins inside of it.
-  piece around = {0.0, path[0].middle};
+  piece around = {0.0, middle};
   centre before = around.last, first_after = before;
   double first_area = 0.0;
   int is_first = 1;
@@ -277,15 +290,12 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
       if (!(fabs(seen.det) > CIRCLE_BOUND * seen.det_magnitude)) return UNDECIDED;
       if (seen.det > 0.0) {
         if (++depth == MOST_ENTERED) return UNDECIDED;
-        entered* const top = &path[depth];
+        centre inside = middle;
         if (is_sibson) {
-          top->middle = centre_of_triangle(seen, y, x, d, all);
-          go_to(&around, top->middle, all);
+          inside = centre_of_triangle(seen, y, x, d, all);
+          go_to(&around, inside, all);
         }
-        top->to = y;
-        top->triangle = u;
-        top->beyond = g.neighbor[corner_before(j)];
-        top->is_open = 1;
+        enter(&path[depth], inside, y, u, g.neighbor[corner_before(j)]);
         y = d;
         t = u;
         u = g.neighbor[next_corner(j)];
@@ -502,7 +512,7 @@ static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int step
     wide part;
     if (!weigh_exactly_at(mesh, q, method, &at, &steps, &part)) return ASTRAY;
     *sum = wide_sum(*sum, part);
-    give(to, what, mesh.source[vertex], what == TO_NOTHING ? 0.0 : narrow_quotient(part, whole));
+    give(to, what, mesh, vertex, what == TO_NOTHING ? 0.0 : narrow_quotient(part, whole));
     const corner_point apex = at.a;
     at.a = at.v;
     at.v = at.c;
@@ -536,9 +546,35 @@ static inline int set_of_query(int place, int sets, global const int* query_offs
   return sets > 1 ? segment_of(place, sets, query_offsets) : 0;
 }
 
+// How many queries ahead of its use a triangle is fetched; what it leads to is fetched half as far ahead.
+#define QUERIES_AHEAD 16
+
+static inline void fetch_query(int i, int n, global const int* found, global const face* faces,
+                               global const double2* points) {
+#if FETCH_AHEAD
+  fetch(&faces[max(0, found[min(i + QUERIES_AHEAD, n - 1)])]);
+  const face f = faces[max(0, found[min(i + QUERIES_AHEAD / 2, n - 1)])];
+  for (int k = 0; k < 3; ++k) {
+    fetch(&points[f.corner[k]]);
+    fetch(&faces[max(0, f.neighbor[k])]);
+  }
+#endif
+}
+
+// Brings the rows of values, by point, into the order of vertices, so that those of neighbours are near each other.
+kernel void place_values(int n, int sets, int columns, global const int* restrict first_vertices,
+                         global const int* restrict source, global const double* restrict values,
+                         global double* restrict placed) {
+  const int v = get_global_id(0);
+  if (v < n && v < first_vertices[sets]) {
+    for (int c = 0; c < columns; ++c) placed[(size_t)v * columns + c] = values[(size_t)source[v] * columns + c];
+  }
+}
+
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Values and results are rows of
-// so many columns, by point and by query. left: whether a query, by place, is left to interpolate_natural_exactly.
-kernel void interpolate_natural(int n, int sets, int columns, int method, double outside,
+// so many columns, by point, or by vertex, and by query. left: whether a query, by place, is left to
+// interpolate_natural_exactly.
+kernel void interpolate_natural(int n, int sets, int columns, int is_by_vertex, int method, double outside,
                                 global const int* restrict query_offsets, global const query_frame* restrict frames,
                                 global const int* restrict order, global const double2* restrict placed,
                                 global const double2* restrict points, global const int* restrict source,
@@ -547,9 +583,10 @@ kernel void interpolate_natural(int n, int sets, int columns, int method, double
                                 global uchar* restrict left) {
   const int i = get_global_id(0);
   if (i < n) {
+    fetch_query(i, n, found, faces, points);
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {0, columns, values, results + (size_t)order[i] * columns, 0, 0};
+    receiver to = {0, columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0};
     int outcome = WEIGHED;
     if (found[i] >= 0) {
       clear_row(&to, 0.0);
@@ -561,7 +598,7 @@ kernel void interpolate_natural(int n, int sets, int columns, int method, double
   }
 }
 
-kernel void interpolate_natural_exactly(int n, int sets, int columns, int method, double outside,
+kernel void interpolate_natural_exactly(int n, int sets, int columns, int is_by_vertex, int method, double outside,
                                         global const int* restrict query_offsets,
                                         global const mesh_set* restrict records,
                                         global const query_frame* restrict frames, global const int* restrict order,
@@ -573,7 +610,7 @@ kernel void interpolate_natural_exactly(int n, int sets, int columns, int method
   if (i < n && left[i]) {
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {0, columns, values, results + (size_t)order[i] * columns, 0, 0};
+    receiver to = {0, columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0};
     clear_row(&to, 0.0);
     if (weigh_exactly(mesh, placed[i], found[i], records[s].triangles, method, TO_VALUES, &to) != WEIGHED) {
       clear_row(&to, outside);
@@ -595,7 +632,7 @@ kernel void count_neighbors(int n, int sets, global const int* restrict query_of
   if (i < n) {
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {0, 0, 0, 0, 0, 0};
+    receiver to = {0, 0, 0, 0, 0, 0, 0};
     if (found[i] >= 0 && weigh_on_hull(mesh, placed[i], found[i], 1, TO_NOTHING, &to) != WEIGHED) {
       const int steps = most_steps(records[s].triangles);
       wide sum = {0.0, NO_EXPONENT};
@@ -621,7 +658,7 @@ kernel void list_neighbors(int n, int sets, int method, global const int* restri
     if (offsets[order[i] + 1] != first) {
       const int s = set_of_query(i, sets, query_offsets);
       const natural_mesh mesh = {points, source, faces, frames[s].unit};
-      receiver to = {0, 0, 0, 0, neighbors + first, weights + first};
+      receiver to = {0, 0, 0, 0, 0, neighbors + first, weights + first};
       const int triangles = records[s].triangles;
       if (weigh_by_estimate(mesh, placed[i], found[i], method, TO_LIST, &to) != WEIGHED) {
         weigh_exactly(mesh, placed[i], found[i], triangles, method, TO_LIST, &to);

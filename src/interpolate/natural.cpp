@@ -12,8 +12,22 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
   const locate::LocatedQueries located =
       locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
   const auto left = runtime.arena().allocate<cl_uchar>(m);
+  // Else not all values are needed, and few of them more than once.
+  const bool is_by_vertex = m >= locator.points.size();
+  Buffer<cl_double> values = table.values;
+  if (is_by_vertex) {
+    const std::size_t n = locator.points.size();
+    values = runtime.arena().allocate<cl_double>(n * table.columns);
+    runtime.map(n, kernels::place_values{.sets = located.sets,
+                                         .columns = table.columns,
+                                         .first_vertices = locator.first_vertices,
+                                         .source = locator.source,
+                                         .values = table.values,
+                                         .placed = values});
+  }
   runtime.map_in_small_groups(m, kernels::interpolate_natural{.sets = located.sets,
                                                               .columns = table.columns,
+                                                              .is_by_vertex = is_by_vertex,
                                                               .method = static_cast<cl_int>(method),
                                                               .outside = table.outside,
                                                               .query_offsets = located.query_offsets,
@@ -24,11 +38,12 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                               .source = locator.source,
                                                               .faces = locator.faces,
                                                               .found = located.found,
-                                                              .values = table.values,
+                                                              .values = values,
                                                               .results = results,
                                                               .left = left});
   runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.sets = located.sets,
                                                                       .columns = table.columns,
+                                                                      .is_by_vertex = is_by_vertex,
                                                                       .method = static_cast<cl_int>(method),
                                                                       .outside = table.outside,
                                                                       .query_offsets = located.query_offsets,
@@ -40,7 +55,7 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                                       .source = locator.source,
                                                                       .faces = locator.faces,
                                                                       .found = located.found,
-                                                                      .values = table.values,
+                                                                      .values = values,
                                                                       .left = left,
                                                                       .results = results});
 }

@@ -219,6 +219,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   runtime.copy(results, 0, exact, 0, kColumns * m);
   runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.sets = located.sets,
                                                                       .columns = kColumns,
+                                                                      .is_by_vertex = 0,
                                                                       .method = static_cast<cl_int>(method),
                                                                       .outside = kOutside,
                                                                       .query_offsets = located.query_offsets,
