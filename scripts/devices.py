@@ -24,6 +24,7 @@ INSTALL_SECONDS = 120
 # Kernels with barriers run with a GPU's sizes. A simulator takes long: little input, and the sizes that it has by name.
 TUNINGS = ["", "gpu"]
 SIMULATED_POINTS = 3
+SIMULATED_FIXTURES_STEP = 3
 # Two drivers share chunks. There are enough of them for the one that has more to compile.
 CHUNKED_POINTS = 200000
 CHUNK_POINTS = 5000
@@ -168,12 +169,12 @@ class Comparison:
 
     def simulate(self):
         """Oclgrind comes before the loader; its interpreter lacks intrinsics of optimised kernels."""
-        most = str(SIMULATED_POINTS)
-        command = ["oclgrind", "--build-options", "-O0", self.program, most]
+        program = [self.program, str(SIMULATED_POINTS), str(SIMULATED_FIXTURES_STEP)]
+        command = ["oclgrind", "--build-options", "-O0", *program]
         environment = {**os.environ, "FLAUNAY_DEVICE": "oclgrind", "FLAUNAY_TUNING": "",
                        "FLAUNAY_CACHE_DIR": str(self.folder / "cache")}
         found = self.run("Oclgrind", "", command, environment)
-        small = self.run("PoCL of the system, few points", "", [self.program, most], self.environment(REFERENCE, ""))
+        small = self.run("PoCL of the system, few points", "", program, self.environment(REFERENCE, ""))
         self.compare(found, small)
 
 

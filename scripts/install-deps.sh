@@ -18,7 +18,7 @@ packages=(
   # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
   libqhull-dev libgts-dev python3-matplotlib
   # the Python module and its tests
-  python3-dev python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
+  python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
   # the documentation
   doxygen
   # the demonstration's picture

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <threads.h>
+#include <unistd.h>
 
 #include "flaunay/flaunay.h"
 
@@ -118,7 +119,7 @@ static void test_statuses(void) {
   CHECK(strchr(flaunay_version(), '.') != NULL);
   CHECK(strcmp(flaunay_last_error(), "") == 0);
   CHECK(strcmp(flaunay_last_error_call(), "") == 0);
-  CHECK(flaunay_last_error_code() == 0);
+  CHECK(flaunay_last_error_code() == 0 && flaunay_last_error_status() == FLAUNAY_SUCCESS);
 }
 
 static int has_no_error(void* unused) {
@@ -248,6 +249,154 @@ static void test_modes(void) {
     CHECK(flaunay_triangulation_point_count(mesh) == 10 && flaunay_triangulation_set_count(mesh) == 4);
     flaunay_triangulation_destroy(mesh);
   }
+}
+
+static void test_names_of_modes(void) {
+  REQUIRE(flaunay_mode_count() == FLAUNAY_MODE_DWYER + 1);
+  CHECK(flaunay_mode_at(0)->mode == FLAUNAY_MODE_BLOCKS && strcmp(flaunay_mode_at(0)->name, "blocks") == 0);
+  unsigned seen = 0;
+  for (size_t k = 0; k < flaunay_mode_count(); ++k) {
+    const flaunay_mode_info* info = flaunay_mode_at(k);
+    CHECK(strlen(info->description) > 10 && flaunay_mode_at(k) == info);
+    seen |= 1u << info->mode;
+    const flaunay_options options = {.mode = info->mode};
+    flaunay_triangulation* mesh = NULL;
+    CHECK((flaunay_triangulate_on_host(kSquare, 4, NULL, 0, &options, &mesh) == FLAUNAY_SUCCESS) ==
+          (info->on_host == 1));
+    flaunay_triangulation_destroy(mesh);
+  }
+  CHECK(seen == (1u << flaunay_mode_count()) - 1);
+  CHECK(flaunay_mode_at(flaunay_mode_count()) == NULL);
+}
+
+static void test_mesh_in_one_struct(void) {
+  flaunay_triangulation* made =
+      on_host(kSets, 10, kSetOffsets, 4, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(made);
+  REQUIRE(mesh != NULL);
+  CHECK(mesh->point_count == 10 && mesh->set_count == 4 && mesh->triangle_count == 3);
+  CHECK(mesh->hull_count == flaunay_triangulation_hull_count(made));
+  CHECK(mesh->triangles == flaunay_triangulation_triangles(made) && mesh->triangles != NULL);
+  CHECK(mesh->neighbors == flaunay_triangulation_neighbors(made) && mesh->neighbors != NULL);
+  CHECK(mesh->halfedges == flaunay_triangulation_halfedges(made) && mesh->halfedges != NULL);
+  CHECK(mesh->hull == flaunay_triangulation_hull(made) && mesh->hull != NULL);
+  CHECK(mesh->representatives == flaunay_triangulation_representatives(made));
+  CHECK(mesh->triangle_offsets == flaunay_triangulation_triangle_offsets(made));
+  CHECK(mesh->hull_offsets == flaunay_triangulation_hull_offsets(made));
+  CHECK(mesh->statistics == flaunay_triangulation_statistics(made) && mesh->statistics->points == 10);
+  CHECK(flaunay_triangulation_mesh(NULL) == NULL);
+  flaunay_triangulation_destroy(made);
+}
+
+// Triangulations that were kept as arrays.
+
+typedef struct {
+  size_t n, t, h;
+  const int32_t *triangles, *neighbors, *hull, *representatives;
+} kept_mesh;
+
+static flaunay_status create_from(kept_mesh kept, flaunay_triangulation** made) {
+  return flaunay_triangulation_create(kept.n, kept.triangles, kept.t, kept.neighbors, kept.hull, kept.h,
+                                      kept.representatives, made);
+}
+
+static void test_kept_triangulations(void) {
+  flaunay_triangulation *original = on_host(points, kPoints, NULL, 0, 0), *made = NULL;
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(original);
+  const kept_mesh kept = {kPoints,         mesh->triangle_count, mesh->hull_count,     mesh->triangles,
+                          mesh->neighbors, mesh->hull,           mesh->representatives};
+  REQUIRE(create_from(kept, &made) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* copy = flaunay_triangulation_mesh(made);
+  CHECK(copy->point_count == kPoints && copy->set_count == 1 && copy->triangle_count == kept.t);
+  CHECK(copy->triangles != kept.triangles && same(copy->triangles, kept.triangles, 3 * kept.t));
+  CHECK(same(copy->neighbors, kept.neighbors, 3 * kept.t) && same(copy->hull, kept.hull, kept.h));
+  CHECK(same(copy->representatives, kept.representatives, kPoints) && copy->halfedges == NULL);
+  CHECK(copy->statistics->points == kPoints && copy->statistics->triangles == kept.t);
+
+  // It serves as the original does.
+  flaunay_locator* locator = NULL;
+  REQUIRE(flaunay_locator_create(triangulator, points, kPoints, NULL, 0, made, &locator) == FLAUNAY_SUCCESS);
+  int32_t* found = malloc(kPoints * sizeof *found);
+  REQUIRE(found != NULL);
+  CHECK(flaunay_locator_nearest(locator, points, kPoints, NULL, 0, found) == FLAUNAY_SUCCESS);
+  CHECK(same(found, kept.representatives, kPoints));
+  free(found);
+  flaunay_locator_destroy(locator);
+  flaunay_triangulation_destroy(made);
+  flaunay_triangulation_destroy(original);
+
+  const kept_mesh none = {0};
+  REQUIRE(create_from(none, &made) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulation_point_count(made) == 0 && flaunay_triangulation_set_count(made) == 1);
+  flaunay_triangulation_destroy(made);
+}
+
+static const int32_t kTriangle[] = {0, 1, 2}, kNoNeighbors[] = {-1, -1, -1};
+
+static void test_bad_kept_triangulations(void) {
+  const kept_mesh good = {3, 1, 3, kTriangle, kNoNeighbors, kTriangle, kTriangle};
+  flaunay_triangulation* made = NULL;
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  REQUIRE(create_from(good, &made) == FLAUNAY_SUCCESS);
+  flaunay_triangulation_destroy(made);
+  const int32_t bad[][3] = {{0, 1, 3}, {-2, -1, -1}, {INT32_MIN, 1, 2}, {0, INT32_MAX, 1}};
+  for (int k = 0; k < 4; ++k) {
+    kept_mesh changed = good;
+    changed.triangles = bad[k];
+    CHECK(fails(create_from(changed, &made), usage, "triangles: ") && made == NULL);
+    changed = good, changed.neighbors = bad[k];
+    CHECK(fails(create_from(changed, &made), usage, "neighbors: "));
+    changed = good, changed.hull = bad[k];
+    CHECK(fails(create_from(changed, &made), usage, "hull: "));
+    changed = good, changed.representatives = bad[k];
+    CHECK(fails(create_from(changed, &made), usage, "representatives: "));
+  }
+  kept_mesh changed = good;
+  changed.neighbors = kTriangle;  // triangle 1 of one
+  CHECK(fails(create_from(changed, &made), usage, "neighbors: 1 is none of the 1 triangles"));
+  changed = good, changed.t = SIZE_MAX / 3 + 1;
+  CHECK(fails(create_from(changed, &made), usage, "32-bit"));
+  changed = good, changed.hull = NULL;
+  CHECK(fails(create_from(changed, &made), usage, "hull must not be NULL"));
+  CHECK(fails(create_from(good, NULL), usage, "handle"));
+  CHECK(flaunay_last_error_status() == usage);
+}
+
+static void test_tables_of_triangles(void) {
+  flaunay_triangulation* made = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, NULL, &made) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(made);
+  REQUIRE(mesh->triangle_count == 2 && mesh->hull_count == 4);
+  // Point 4 is in no triangle.
+  int32_t first[5], starts[6], neighbors[10];
+  CHECK(flaunay_first_triangles(mesh->triangles, 2, 5, first) == FLAUNAY_SUCCESS && first[4] == -1);
+  REQUIRE(flaunay_vertex_neighbors(mesh->triangles, 2, mesh->hull, 4, 5, starts, neighbors) ==
+          FLAUNAY_SUCCESS);
+  CHECK(starts[0] == 0 && starts[4] == 10 && starts[5] == 10);
+  for (int32_t i = 0; i < 4; ++i) {
+    const int32_t expected = mesh->triangles[0] == i || mesh->triangles[1] == i || mesh->triangles[2] == i;
+    CHECK(first[i] == !expected);
+    for (int32_t k = starts[i]; k < starts[i + 1]; ++k) {
+      CHECK(neighbors[k] != i && (k == starts[i] || neighbors[k - 1] < neighbors[k]));
+    }
+    // Beside it on the square; two opposite corners have an edge, too.
+    CHECK(starts[i + 1] - starts[i] == 2 + (starts[i + 1] - starts[i] > 2));
+  }
+  flaunay_triangulation_destroy(made);
+
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  // Points on one line have a hull, but no edges.
+  CHECK(flaunay_vertex_neighbors(NULL, 0, kTriangle, 3, 3, starts, NULL) == FLAUNAY_SUCCESS);
+  CHECK(starts[0] == 0 && starts[3] == 0);
+  CHECK(flaunay_first_triangles(NULL, 0, 0, NULL) == FLAUNAY_SUCCESS);
+  CHECK(
+      fails(flaunay_first_triangles(kTriangle, 1, 2, first), usage, "triangles: 2 is none of the 2 points"));
+  CHECK(fails(flaunay_first_triangles(kTriangle, 1, 3, NULL), usage, "NULL"));
+  CHECK(fails(flaunay_vertex_neighbors(kTriangle, 1, kNoNeighbors, 3, 3, starts, neighbors), usage,
+              "hull: -1"));
+  CHECK(fails(flaunay_vertex_neighbors(kTriangle, 1, kTriangle, 3, 3, NULL, neighbors), usage, "NULL"));
+  CHECK(fails(flaunay_vertex_neighbors(kTriangle, 1, kTriangle, 3, 3, starts, NULL), usage, "NULL"));
+  CHECK(fails(flaunay_vertex_neighbors(NULL, 1, kTriangle, 3, 3, starts, neighbors), usage, "triangles"));
 }
 
 static void test_on_host(void) {
@@ -1046,6 +1195,111 @@ static void test_chunks_in_arrays(void) {
   free(arrays.representatives);
 }
 
+// A .npy file's entries; its header has 128 bytes.
+static void* read_entries(const char* path, size_t bytes) {
+  FILE* file = fopen(path, "rb");
+  REQUIRE(file != NULL);
+  char header[128];
+  void* entries = malloc(bytes + 1);
+  REQUIRE(entries != NULL && fread(header, sizeof header, 1, file) == 1);
+  CHECK(memcmp(header + 1, "NUMPY", 5) == 0 && fread(entries, 1, bytes, file) == bytes);
+  CHECK(fgetc(file) == EOF);
+  fclose(file);
+  return entries;
+}
+
+static void test_chunks_to_files(void) {
+  const char* const folder = getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp";
+  char triangles_path[4096], neighbors_path[4096], missing_path[4096];
+  snprintf(triangles_path, sizeof triangles_path, "%s/flaunay-%d-triangles.npy", folder, (int)getpid());
+  snprintf(neighbors_path, sizeof neighbors_path, "%s/flaunay-%d-neighbors.npy", folder, (int)getpid());
+  snprintf(missing_path, sizeof missing_path, "%s/flaunay-%d-missing/t.npy", folder, (int)getpid());
+  // Points as float, each after a number that is not its own, from the last one to the first.
+  float* rows = malloc(3 * kPoints * sizeof *rows);
+  REQUIRE(rows != NULL);
+  for (size_t i = 0; i < kPoints; ++i) {
+    rows[3 * (kPoints - 1 - i)] = NAN;
+    rows[3 * (kPoints - 1 - i) + 1] = (float)points[2 * i + 1];
+    rows[3 * (kPoints - 1 - i) + 2] = (float)points[2 * i];
+  }
+  const flaunay_strided_points source = {.coordinates = rows + 3 * kPoints - 1,
+                                         .count = kPoints,
+                                         .precision = FLAUNAY_FLOAT32,
+                                         .point_stride = -3 * (ptrdiff_t)sizeof *rows,
+                                         .coordinate_stride = -(ptrdiff_t)sizeof *rows};
+  const flaunay_mesh_files files = {.triangles = triangles_path, .neighbors = neighbors_path};
+  const flaunay_mesh_arrays arrays = {.hull = make_indices(kPoints),
+                                      .representatives = make_indices(kPoints)};
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_triangulate_chunks_to_files(&source, &arrays, &files, &kSmallChunks, &report) ==
+          FLAUNAY_SUCCESS);
+  flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, 0);
+  check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
+  const size_t bytes = 3 * flaunay_triangulation_triangle_count(expected) * sizeof(int32_t);
+  int32_t *triangles = read_entries(triangles_path, bytes), *neighbors = read_entries(neighbors_path, bytes);
+  check_same_mesh(triangles, neighbors, arrays.hull, arrays.representatives, expected);
+  flaunay_chunk_report_destroy(report);
+
+  // Without arrays, and in 64 bits.
+  const flaunay_mesh_arrays wide = {.index_type = FLAUNAY_INT64};
+  const flaunay_mesh_files one = {.triangles = triangles_path};
+  REQUIRE(flaunay_triangulate_chunks_to_files(&source, &wide, &one, &kSmallChunks, &report) ==
+          FLAUNAY_SUCCESS);
+  int64_t* wide_triangles = read_entries(triangles_path, 2 * bytes);
+  for (size_t k = 0; k < bytes / sizeof(int32_t); ++k) CHECK(wide_triangles[k] == triangles[k]);
+  flaunay_chunk_report_destroy(report);
+  CHECK(flaunay_triangulate_chunks_to_files(&source, NULL, NULL, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
+  flaunay_chunk_report_destroy(report);
+  const flaunay_strided_points none = {0};
+  CHECK(flaunay_triangulate_chunks_to_files(&none, NULL, &one, NULL, &report) == FLAUNAY_SUCCESS);
+  flaunay_chunk_report_destroy(report);
+  free(read_entries(triangles_path, 0));
+
+  // After an error the files are what they were.
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE, input = FLAUNAY_ERROR_INPUT;
+  flaunay_mesh_files bad = files;
+  bad.hull = "/tmp/hull.npy";
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&source, &arrays, &bad, NULL, &report), usage, "hull are"));
+  bad = files, bad.hull = "/tmp/hull.txt";
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&source, NULL, &bad, NULL, &report), usage, ".npy"));
+  bad = files, bad.hull = missing_path;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&source, NULL, &bad, NULL, &report), input, "missing"));
+  bad = files, bad.reserved[0] = 1;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&source, NULL, &bad, NULL, &report), usage,
+              "flaunay_mesh_files"));
+  flaunay_strided_points strange = source;
+  strange.precision = 2;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report), usage,
+              "precision 2"));
+  strange = source, strange.reserved[3] = 1;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report), usage,
+              "flaunay_strided_points"));
+  strange = source, strange.coordinates = NULL;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report), usage, "NULL"));
+  strange = source, strange.count = (uint64_t)1 << 31;
+  const flaunay_mesh_arrays no_arrays = {0}, many = {.neighbors = arrays.hull};
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, &no_arrays, NULL, NULL, &report), input,
+              "32 bits"));
+  strange.count = (uint64_t)1 << 30;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, &many, NULL, NULL, &report), input, "32 bits"));
+  const flaunay_mesh_arrays of_bytes = {.index_type = 2};
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&source, &of_bytes, NULL, NULL, &report), usage,
+              "indices 2"));
+  rows[4] = INFINITY;
+  CHECK(
+      fails(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), input, "point 4998"));
+  CHECK(fails(flaunay_triangulate_chunks_to_files(NULL, NULL, NULL, NULL, &report), usage, "points"));
+  CHECK(report == NULL &&
+        fails(flaunay_triangulate_chunks_to_files(&source, NULL, NULL, NULL, NULL), usage, "handle"));
+  free(read_entries(triangles_path, 0));
+  int32_t* kept = read_entries(neighbors_path, bytes);
+  CHECK(same(kept, neighbors, bytes / sizeof *kept));
+  CHECK(remove(triangles_path) == 0 && remove(neighbors_path) == 0);
+  flaunay_triangulation_destroy(expected);
+  free(kept), free(triangles), free(neighbors), free(wide_triangles), free(rows);
+  free(arrays.hull), free(arrays.representatives);
+}
+
 static int read_file(uint64_t first, size_t count, double* coordinates, void* file) {
   const size_t bytes = 2 * sizeof *coordinates;
   if (fseek(file, (long)(first * bytes), SEEK_SET) != 0) return 1;
@@ -1297,6 +1551,11 @@ static void test_all(void) {
   test_float();
   test_batches();
   test_modes();
+  test_names_of_modes();
+  test_mesh_in_one_struct();
+  test_kept_triangulations();
+  test_bad_kept_triangulations();
+  test_tables_of_triangles();
   test_on_host();
   test_progress_and_profile();
   test_a_triangulator_in_use();
@@ -1322,6 +1581,7 @@ static void test_all(void) {
   test_locator();
   test_derived_on_device();
   test_chunks_in_arrays();
+  test_chunks_to_files();
   test_chunks_in_files();
   test_progress_of_chunks();
   test_chunks_of_no_points();

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "geometry/euler.hpp"
 #include "host/vector_operations.hpp"
 #include "launchers/blocks/rounds.cl.hpp"
 #include "points/device_mesh.hpp"
@@ -267,7 +268,9 @@ class Results {
       const auto first = numbers.distinct.begin();
       const std::size_t vertices =
           std::accumulate(first + set_blocks[s], first + set_blocks[s + 1], std::size_t{0});
-      check_euler(sizes, s, vertices);
+      geometry::check_euler(sizes.triangle_offsets[s + 1] - sizes.triangle_offsets[s],
+                            sizes.hull_offsets[s + 1] - sizes.hull_offsets[s], vertices,
+                            fmt::format(" in set {}", s));
       sizes.vertices += vertices;
     }
     return sizes;
@@ -288,17 +291,6 @@ class Results {
   }
 
  private:
-  // d points, of which h are on the hull, have 2d - 2 - h triangles, and none if they are on one line.
-  static void check_euler(const MeshSizes& sizes, std::size_t s, std::size_t d) {
-    const std::size_t triangles = sizes.triangle_offsets[s + 1] - sizes.triangle_offsets[s];
-    const std::size_t h = sizes.hull_offsets[s + 1] - sizes.hull_offsets[s];
-    if (triangles == 0 ? h == d : triangles + h + 2 == 2 * d) return;
-    throw Error(ErrorKind::internal,
-                fmt::format("{} triangles and {} hull vertices of {} vertices in set {}; "
-                            "please report the input",
-                            triangles, h, d, s));
-  }
-
   void write_hulls(const MeshSizes& sizes, const Buffer<cl_int>& hull) {
     host::Runtime& runtime = work_.runtime;
     Arena::Scope scope(work_.scratch());

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "c/chunk_files.hpp"
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
@@ -84,20 +85,14 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
   return result;
 }
 
-template <typename Index>
-MeshArrays<Index> to_arrays(const flaunay_mesh_arrays& given) {
-  return {static_cast<Index*>(given.triangles), static_cast<Index*>(given.neighbors),
-          static_cast<Index*>(given.hull), static_cast<Index*>(given.representatives)};
-}
-
 ChunkStatistics triangulate(const double* coordinates, std::uint64_t n, const flaunay_mesh_arrays& results,
                             const ChunkOptions& options) {
   c::check_reserved(results, "flaunay_mesh_arrays");
   switch (results.index_type) {
     case FLAUNAY_INT32:
-      return triangulate_chunks(coordinates, n, to_arrays<std::int32_t>(results), options);
+      return triangulate_chunks(coordinates, n, c::to_arrays<std::int32_t>(results), options);
     case FLAUNAY_INT64:
-      return triangulate_chunks(coordinates, n, to_arrays<std::int64_t>(results), options);
+      return triangulate_chunks(coordinates, n, c::to_arrays<std::int64_t>(results), options);
   }
   throw Error(ErrorKind::usage, fmt::format("there is no type of indices {}", results.index_type));
 }
@@ -174,6 +169,20 @@ flaunay_status flaunay_triangulate_streams(const flaunay_point_source* points,
     CallersPoints source(required(points, "the points"));
     CallersSink sink(required(results, "the results"));
     return std::make_unique<flaunay_chunk_report>(triangulate_chunks(source, sink, to_options(options)));
+  });
+}
+
+flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_strided_points* points,
+                                                   const flaunay_mesh_arrays* arrays,
+                                                   const flaunay_mesh_files* files,
+                                                   const flaunay_chunk_options* options,
+                                                   flaunay_chunk_report** report) {
+  return create(report, [&] {
+    const flaunay_mesh_arrays no_arrays{};
+    const flaunay_mesh_files no_files{};
+    return std::make_unique<flaunay_chunk_report>(
+        c::triangulate_to_files(required(points, "the points"), arrays != nullptr ? *arrays : no_arrays,
+                                files != nullptr ? *files : no_files, to_options(options)));
   });
 }
 

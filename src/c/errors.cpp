@@ -13,6 +13,7 @@ struct LastError {
   std::string text, call;
   const char* message = "";  // the text, or a literal if there was no memory for a copy
   int code = 0;
+  flaunay_status status = FLAUNAY_SUCCESS;
 };
 thread_local LastError last;
 
@@ -42,9 +43,7 @@ flaunay_status status_of(ErrorKind kind) {
   return FLAUNAY_ERROR_INTERNAL;
 }
 
-}  // namespace
-
-flaunay_status remember_exception() noexcept {
+flaunay_status remember_handled() noexcept {
   try {
     throw;
   } catch (const Error& error) {
@@ -66,9 +65,17 @@ flaunay_status remember_exception() noexcept {
   return FLAUNAY_ERROR_INTERNAL;
 }
 
+}  // namespace
+
+flaunay_status remember_exception() noexcept {
+  last.status = remember_handled();
+  return last.status;
+}
+
 }  // namespace flaunay::c
 
 const char* flaunay_last_error(void) { return flaunay::c::last.message; }
+int flaunay_last_error_status(void) { return flaunay::c::last.status; }
 int flaunay_last_error_code(void) { return flaunay::c::last.code; }
 const char* flaunay_last_error_call(void) { return flaunay::c::last.call.c_str(); }
 

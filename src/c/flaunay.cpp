@@ -27,6 +27,17 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate*
   });
 }
 
+const std::vector<flaunay_mode_info>& modes() {
+  static const std::vector<flaunay_mode_info> infos = [] {
+    std::vector<flaunay_mode_info> all;
+    for (const research::ModeInfo& mode : research::list_modes()) {
+      all.push_back({static_cast<int>(mode.mode), mode.name, mode.description, mode.on_host});
+    }
+    return all;
+  }();
+  return infos;
+}
+
 }  // namespace
 
 struct flaunay_device_list {
@@ -99,6 +110,14 @@ flaunay_status flaunay_triangulator_use_workspace(flaunay_triangulator* triangul
   return guarded([&] { required(triangulator, "the triangulator").cpp.use_workspace(workspace); });
 }
 
+size_t flaunay_mode_count(void) { return research::list_modes().size(); }
+
+const flaunay_mode_info* flaunay_mode_at(size_t k) {
+  const flaunay_mode_info* found = nullptr;
+  guarded([&] { found = k < modes().size() ? &modes()[k] : nullptr; });
+  return found;
+}
+
 flaunay_status flaunay_triangulate(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                    const size_t* offsets, size_t sets, const flaunay_options* options,
                                    flaunay_triangulation** result) {
@@ -123,51 +142,55 @@ flaunay_status flaunay_triangulate_on_host(const double* coordinates, size_t n, 
 void flaunay_triangulation_destroy(flaunay_triangulation* triangulation) { delete triangulation; }
 
 size_t flaunay_triangulation_point_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.cpp.representatives.size(); });
+  return read(triangulation, [](const auto& handle) { return handle.view.point_count; });
 }
 
 size_t flaunay_triangulation_set_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::set_count(handle.cpp.triangle_offsets); });
+  return read(triangulation, [](const auto& handle) { return handle.view.set_count; });
 }
 
 size_t flaunay_triangulation_triangle_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.cpp.triangles.size() / 3; });
+  return read(triangulation, [](const auto& handle) { return handle.view.triangle_count; });
 }
 
 size_t flaunay_triangulation_hull_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.cpp.hull.size(); });
+  return read(triangulation, [](const auto& handle) { return handle.view.hull_count; });
 }
 
 const int32_t* flaunay_triangulation_triangles(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.triangles); });
+  return read(triangulation, [](const auto& handle) { return handle.view.triangles; });
 }
 
 const int32_t* flaunay_triangulation_neighbors(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.neighbors); });
+  return read(triangulation, [](const auto& handle) { return handle.view.neighbors; });
 }
 
 const int32_t* flaunay_triangulation_halfedges(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.halfedges); });
+  return read(triangulation, [](const auto& handle) { return handle.view.halfedges; });
 }
 
 const int32_t* flaunay_triangulation_hull(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.hull); });
+  return read(triangulation, [](const auto& handle) { return handle.view.hull; });
 }
 
 const int32_t* flaunay_triangulation_representatives(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.representatives); });
+  return read(triangulation, [](const auto& handle) { return handle.view.representatives; });
 }
 
 const size_t* flaunay_triangulation_triangle_offsets(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.triangle_offsets); });
+  return read(triangulation, [](const auto& handle) { return handle.view.triangle_offsets; });
 }
 
 const size_t* flaunay_triangulation_hull_offsets(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.hull_offsets); });
+  return read(triangulation, [](const auto& handle) { return handle.view.hull_offsets; });
 }
 
 const flaunay_statistics* flaunay_triangulation_statistics(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.statistics.get(); });
+  return read(triangulation, [](const auto& handle) { return handle.view.statistics; });
+}
+
+const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* triangulation) {
+  return read(triangulation, [](const auto& handle) { return &handle.view; });
 }
 
 flaunay_status flaunay_device_triangulation_create(flaunay_device_triangulation** triangulation) {

@@ -65,16 +65,6 @@ Finish to_finish(int finish) {
   throw_usage(fmt::format("there is no finish {}", finish));
 }
 
-Precision to_precision(int precision) {
-  switch (precision) {
-    case FLAUNAY_FLOAT64:
-      return Precision::float64;
-    case FLAUNAY_FLOAT32:
-      return Precision::float32;
-  }
-  throw_usage(fmt::format("there is no precision {}", precision));
-}
-
 // Bit k of flaunay_part stands for row k of the table.
 constexpr unsigned bit_of(std::size_t row) { return 1u << row; }
 static_assert(FLAUNAY_PART_TRIANGLES == bit_of(0) &&
@@ -146,6 +136,23 @@ flaunay_device_info view_of(const DeviceInfo& info) {
   return view;
 }
 
+flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics) {
+  flaunay_mesh view{};
+  view.point_count = triangulation.representatives.size();
+  view.set_count = set_count(triangulation.triangle_offsets);
+  view.triangle_count = triangulation.triangles.size() / 3;
+  view.hull_count = triangulation.hull.size();
+  view.triangles = elements(triangulation.triangles);
+  view.neighbors = elements(triangulation.neighbors);
+  view.halfedges = elements(triangulation.halfedges);
+  view.hull = elements(triangulation.hull);
+  view.representatives = elements(triangulation.representatives);
+  view.triangle_offsets = elements(triangulation.triangle_offsets);
+  view.hull_offsets = elements(triangulation.hull_offsets);
+  view.statistics = statistics.get();
+  return view;
+}
+
 research::Options to_options(const flaunay_options* options) {
   research::Options result;
   if (options == nullptr) return result;
@@ -204,6 +211,16 @@ std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets
   std::vector<std::size_t> result(offsets, offsets + sets + 1);
   geometry::check_offsets(result, n);
   return result;
+}
+
+Precision to_precision(int precision) {
+  switch (precision) {
+    case FLAUNAY_FLOAT64:
+      return Precision::float64;
+    case FLAUNAY_FLOAT32:
+      return Precision::float32;
+  }
+  throw_usage(fmt::format("there is no precision {}", precision));
 }
 
 DevicePoints to_points(const flaunay_device_points* points) {

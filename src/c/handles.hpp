@@ -45,6 +45,9 @@ class StatisticsView {
 /// A device as a C struct. It refers to info, which must outlive it.
 flaunay_device_info view_of(const DeviceInfo& info);
 
+/// A triangulation as a C struct. It refers to both, which must outlive it.
+flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics);
+
 /// Null: the defaults. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
 research::Options to_options(const flaunay_options* options);
 
@@ -56,6 +59,9 @@ const call::ResultArray& array_of(unsigned part);
 
 /// Null: one set. Throws Error(usage) unless the offsets go from 0 to n without decreasing.
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n);
+
+/// Throws Error(usage) for a number that is no flaunay_precision.
+Precision to_precision(int precision);
 
 DevicePoints to_points(const flaunay_device_points* points);
 
@@ -105,9 +111,15 @@ struct flaunay_triangulator {
 struct flaunay_triangulation {
   explicit flaunay_triangulation(flaunay::Triangulation computed) : cpp(std::move(computed)) {
     statistics.show(cpp.statistics);
+    view = flaunay::c::view_of(cpp, statistics);
   }
+  // The views refer to the other members.
+  flaunay_triangulation(const flaunay_triangulation&) = delete;
+  flaunay_triangulation& operator=(const flaunay_triangulation&) = delete;
+
   flaunay::Triangulation cpp;
   flaunay::c::StatisticsView statistics;
+  flaunay_mesh view;
 };
 
 struct flaunay_device_triangulation {

@@ -1,5 +1,5 @@
-// The arrays of a triangulation as a table, one row per array. The C interface and the Python module loop
-// over it, so that a new array is a new row here and not a line in each of their functions.
+// The arrays of a triangulation as a table, one row per array. The C interface loops over it, so that a new
+// array is a new row here and not a line in each of its functions.
 #pragma once
 
 #include <array>

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <future>
-#include <mutex>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "chunks/point_account.hpp"
 #include "chunks/runs.hpp"
 #include "shared/codes.h"
 #include "shared/cut_tree.h"
@@ -24,20 +24,11 @@ constexpr std::size_t kPart = std::size_t{1} << 14;
 constexpr std::uint64_t kSamplesPerChunk = 512;
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 20;
 
-vertex_box no_box() {
-  const vertex_box plane = whole_plane();
-  return {plane.high, plane.low};
-}
-
-vertex_box joined(const vertex_box& a, const vertex_box& b) {
-  return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y)},
-          {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
-}
-
 // Samples are drawn from runs of points, each of which is read at once: from a disk a run takes as long as a
 // point.
 constexpr std::uint64_t kRun = 64;
 constexpr std::uint64_t kSamplesPerRun = 8;
+constexpr std::uint64_t kRunsPerReport = 1024;
 
 std::vector<double2> draw_samples(PointSource& source, std::uint64_t wanted, const Progress& progress) {
   const std::uint64_t n = source.size(), runs = std::min(wanted, kMostSamples) / kSamplesPerRun;
@@ -50,7 +41,7 @@ std::vector<double2> draw_samples(PointSource& source, std::uint64_t wanted, con
     return samples;
   }
   for (std::uint64_t k = 0; k < runs; ++k) {
-    if (k % kPart == 0) progress("sampling", 0);
+    if (k % kRunsPerReport == 0) progress("sampling", static_cast<double>(k) / static_cast<double>(runs));
     // One of as many equal parts as there are runs.
     const std::uint64_t part = n / runs, begin = k * part + std::min(k, n % runs);
     source.read(begin + kernel::mixed(k) % (part - kRun + 1), kRun, &run.front().x);
@@ -72,53 +63,40 @@ struct Piece {
 class Account {
  public:
   void add(host::Threads& threads, const Piece& piece) {
-    std::mutex mutex;
-    geometry::Magnitudes found;
-    vertex_box box = no_box();
-    threads.share(piece.size(), kPart, [&](std::size_t begin, std::size_t end) {
-      const geometry::Magnitudes own = geometry::inspect(piece.coordinates.data(), begin, end);
-      vertex_box own_box = no_box();
-      for (std::size_t i = begin; i < end; ++i) {
-        const double2 p = {piece.coordinates[2 * i], piece.coordinates[2 * i + 1]};
-        own_box = joined(own_box, {p, p});
-      }
-      const std::lock_guard lock(mutex);
-      found = geometry::joined(found, own);
-      box = joined(box, own_box);
-    });
-    if (found.bad != kernel::NO_BAD) {
-      throw geometry::not_finite(piece.first + static_cast<std::uint64_t>(found.bad),
-                                 piece.coordinates[2 * found.bad], piece.coordinates[2 * found.bad + 1]);
+    const PointAccount found = account_of(threads, piece.coordinates.data(), piece.size());
+    const geometry::Magnitudes& magnitudes = found.magnitudes;
+    if (magnitudes.bad != kernel::NO_BAD) {
+      throw geometry::not_finite(piece.first + static_cast<std::uint64_t>(magnitudes.bad),
+                                 piece.coordinates[2 * magnitudes.bad],
+                                 piece.coordinates[2 * magnitudes.bad + 1]);
     }
-    if (found.largest > magnitudes_.largest) largest_in_ = piece.first;
-    if (found.lowest < magnitudes_.lowest) lowest_in_ = piece.first;
-    magnitudes_ = geometry::joined(magnitudes_, found);
-    box_ = joined(box_, box);
+    if (magnitudes.largest > account_.magnitudes.largest) largest_in_ = piece.first;
+    if (magnitudes.lowest < account_.magnitudes.lowest) lowest_in_ = piece.first;
+    account_ = joined(account_, found);
   }
 
   // Throws Error(input) if magnitudes differ too much.
   geometry::Scaling scaling(PointSource& source) const {
-    if (geometry::differ_too_much(magnitudes_)) {
+    if (geometry::differ_too_much(account_.magnitudes)) {
       throw geometry::range_error(ends_in(source, largest_in_).largest, ends_in(source, lowest_in_).finest,
-                                  magnitudes_);
+                                  account_.magnitudes);
     }
-    return geometry::scaling_for(magnitudes_);
+    return geometry::scaling_for(account_.magnitudes);
   }
-  vertex_box box() const { return box_; }
+  vertex_box box() const { return account_.box; }
 
  private:
   geometry::RangeEnds ends_in(PointSource& source, std::uint64_t first) const {
     const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(kPiece, source.size() - first));
     std::vector<double> coordinates(2 * size);
     source.read(first, size, coordinates.data());
-    geometry::RangeEnds ends = geometry::find_ends(coordinates.data(), 0, size, magnitudes_);
+    geometry::RangeEnds ends = geometry::find_ends(coordinates.data(), 0, size, account_.magnitudes);
     ends.largest.point += first;
     ends.finest.point += first;
     return ends;
   }
 
-  geometry::Magnitudes magnitudes_;
-  vertex_box box_ = no_box();
+  PointAccount account_;
   std::uint64_t largest_in_ = 0, lowest_in_ = 0;  // the pieces with these coordinates
 };
 

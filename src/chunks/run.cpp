@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "chunks/finish.hpp"
+#include "geometry/euler.hpp"
 #include "host/clock.hpp"
 
 namespace flaunay::chunks {
@@ -335,15 +336,6 @@ class Round {
   std::exception_ptr error_, lost_;
 };
 
-// d points, of which h are on the hull, have 2d - 2 - h triangles, and none if they are on one line.
-void check_euler(std::uint64_t triangles, std::uint64_t h, std::uint64_t d) {
-  if (triangles == 0 ? h == d : triangles + h + 2 == 2 * d) return;
-  throw Error(ErrorKind::internal,
-              fmt::format("{} triangles and {} hull vertices of {} vertices; please report the "
-                          "input",
-                          triangles, h, d));
-}
-
 void require_memory(std::uint64_t points, const Plan& plan) {
   if (points <= plan.largest_chunk) return;
   throw Error(
@@ -414,7 +406,7 @@ ChunkStatistics run(PointSource& source, MeshSink& given_sink, const Plan& plan,
     }
   }
   statistics.triangles = call.rows;
-  check_euler(statistics.triangles, statistics.hull_vertices, call.vertices);
+  geometry::check_euler(statistics.triangles, statistics.hull_vertices, call.vertices);
   statistics.scratch_bytes = file.largest_bytes();
   statistics.seconds = host::now() - begin;
   progress("triangulating", static_cast<int>(statistics.rounds.size()) - 1, 1);

@@ -34,14 +34,7 @@ ChunkStatistics triangulate_file(const ChunkRequest& request, PointSource& point
   options.progress = [&progress](const std::string& stage, int round, double done) {
     progress.update(round > 0 ? fmt::format("{}, round {}", stage, round + 1) : stage, -1, done);
   };
-  try {
-    return triangulate_chunks(points, files, options);
-  } catch (const Error& error) {
-    // The library does not know where the points come from.
-    const std::string message = error.what();
-    if (message.rfind("point", 0) != 0) throw;
-    throw Error(error.kind(), io::printable(fmt::format("{}: {}", io::shown_path(request.input), message)));
-  }
+  return naming_files({{"point", request.input}}, [&] { return triangulate_chunks(points, files, options); });
 }
 
 }  // namespace

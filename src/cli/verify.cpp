@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/errors.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
@@ -91,16 +92,9 @@ Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Pro
   options.scratch = request.scratch;
   options.progress = [&](const std::string& stage, double done) { progress.update(stage, -1, done); };
   const Stopwatch stopwatch;
-  VerifyChunksReport report;
-  try {
-    report = verify_chunks(*points, *triangles, neighbors.get(), sizes, options);
-  } catch (const Error& error) {
-    // The check does not know where the points and the triangles come from.
-    const std::string message = error.what();
-    const bool is_point = message.rfind("point ", 0) == 0;
-    if (!is_point && message.rfind("triangle ", 0) != 0) throw;
-    throw Error(error.kind(), fmt::format("{}: {}", is_point ? request.points : request.triangles, message));
-  }
+  const VerifyChunksReport report =
+      naming_files({{"point ", request.points}, {"triangle ", request.triangles}},
+                   [&] { return verify_chunks(*points, *triangles, neighbors.get(), sizes, options); });
   const std::string how = fmt::format(
       "; in chunks within {}: {} windows of rows, {} edges across, {} of scratch", host::mebibytes(memory),
       report.windows, report.edges_across, host::mebibytes(report.scratch_bytes));

@@ -360,11 +360,6 @@ void check_mesh_output(const std::string& path) {
   if (format == Format::ele) OutputFile::check(node_path_beside(path));
 }
 
-void check_output(const std::string& path, const std::string& ending) {
-  if (ending_of(path) != ending) fail_ending(path, ending);
-  OutputFile::check(path);
-}
-
 std::vector<std::int32_t> read_triangles(const std::string& path) {
   const std::string ending = ending_of(path);
   if (ending == ".npy") return read_npy_triangles(path);

@@ -19,8 +19,6 @@ void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
 /// Checks a path before any work. Throws Error(usage) for an unknown ending, Error(input) if the file cannot
 /// be created. Leaves no new file behind.
 void check_mesh_output(const std::string& path);
-/// Checks a path whose ending must be `ending` (".npy", ".json"), with the same errors.
-void check_output(const std::string& path, const std::string& ending);
 
 /// Writes an .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
 void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,

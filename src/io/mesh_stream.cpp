@@ -5,7 +5,7 @@
 
 #include "io/disk_space.hpp"
 #include "io/file.hpp"
-#include "io/npy.hpp"
+#include "io/npy_header.hpp"
 #include "io/scratch.hpp"
 
 namespace flaunay::io {

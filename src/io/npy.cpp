@@ -14,8 +14,6 @@
 namespace flaunay::io {
 namespace {
 
-constexpr std::string_view kMagic = "\x93NUMPY";
-
 struct Header {
   std::string descr;
   bool fortran_order = false;
@@ -120,7 +118,7 @@ class HeaderParser {
 Header read_header(const std::string& path, InputFile& file) {
   constexpr std::size_t kPrefix = 8, kMostHeader = 1 << 16;
   const std::string prefix(file.first(kPrefix));
-  if (prefix.compare(0, kMagic.size(), kMagic) != 0) {
+  if (prefix.compare(0, kNpyMagic.size(), kNpyMagic) != 0) {
     fail(path, "is no .npy file; expected it to begin with \\x93NUMPY");
   }
   if (prefix.size() < kPrefix) fail(path, "is truncated in the .npy header: {} bytes", prefix.size());
@@ -142,12 +140,6 @@ Header read_header(const std::string& path, InputFile& file) {
   Header header = HeaderParser(path, bytes.substr(text_begin)).parse();
   header.data_begin = text_begin + length;
   return header;
-}
-
-std::string shape_text(const std::vector<std::size_t>& shape) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < shape.size(); ++i) text += (i ? ", " : "") + std::to_string(shape[i]);
-  return text + (shape.size() == 1 ? ",)" : ")");
 }
 
 /// What a reader accepts: an array of shape (rows, columns) whose dtype is one of the two.
@@ -260,22 +252,6 @@ NpyPoints find_npy_points(const std::string& path, InputFile& file) {
   const Array array(path, file, point_layout());
   array.check_size();
   return {array.header().shape[0], array.header().data_begin, array.dtype() == "<f8"};
-}
-
-std::string npy_header(const std::string& descr, std::uint64_t rows, std::size_t columns) {
-  std::vector<std::size_t> shape = {rows};
-  if (columns > 0) shape.push_back(columns);
-  std::string text =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", descr, shape_text(shape));
-  constexpr std::size_t kPrefix = 10, kAlignment = 64;  // NumPy aligns the data, and counts a final newline
-  text.append(kAlignment - (kPrefix + text.size() + 1) % kAlignment, ' ');
-  text += '\n';
-  const auto length = static_cast<std::uint16_t>(text.size());
-  std::string header = std::string(kMagic) + std::string("\x01\x00", 2);
-  header.append(reinterpret_cast<const char*>(&length), sizeof length);
-  header += text;
-  if (header.size() != kNpyHeaderBytes) throw Error(ErrorKind::internal, "an .npy header of another size");
-  return header;
 }
 
 namespace {

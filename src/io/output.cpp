@@ -169,6 +169,11 @@ void OutputFile::check(const std::string& path) {
   if (!find_target(path).is_direct) OutputFile probe(path);
 }
 
+void check_output(const std::string& path, const std::string& ending) {
+  if (ending_of(path) != ending) fail_ending(path, ending);
+  OutputFile::check(path);
+}
+
 void OutputFile::open_temporary() {
   descriptor_ = open_unnamed(target_.folder);
   if (descriptor_ < 0) {

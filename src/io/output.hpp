@@ -100,6 +100,10 @@ class OutputFile {
   fmt::memory_buffer buffer_;
 };
 
+/// Checks a path before any work. Throws Error(usage) unless it ends in `ending` (".npy", ".json"), and
+/// Error(input) if the file cannot be created. Leaves no new file behind.
+void check_output(const std::string& path, const std::string& ending);
+
 /// The files that one run writes.
 class Outputs {
  public:

@@ -6,12 +6,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
 #include "chunks/finish.hpp"
+#include "chunks/point_account.hpp"
 #include "chunks/tree.hpp"
+#include "geometry/euler.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
 #include "host/native/threads.hpp"
@@ -37,35 +38,6 @@ constexpr std::int64_t kMostHandedOnPercent = 70;
 // points of the first one; but with fewer than so many, another round costs more than it saves.
 constexpr std::size_t kRoundPart = 16;
 constexpr std::size_t kLeastRoundPoints = std::size_t{1} << 16;
-constexpr std::size_t kPart = std::size_t{1} << 14;  // points that a thread takes at once
-
-// What a rank found in its own points.
-struct Account {
-  Magnitudes magnitudes;
-  vertex_box box{chunks::whole_plane().high, chunks::whole_plane().low};
-};
-
-void widen(vertex_box& box, const vertex_box& other) {
-  box.low = {std::min(box.low.x, other.low.x), std::min(box.low.y, other.low.y)};
-  box.high = {std::max(box.high.x, other.high.x), std::max(box.high.y, other.high.y)};
-}
-
-Account inspect(host::Threads& threads, const GivenPoints& points) {
-  Account account;
-  std::mutex mutex;
-  threads.share(points.count, kPart, [&](std::size_t begin, std::size_t end) {
-    Account own;
-    own.magnitudes = geometry::inspect(points.coordinates, begin, end);
-    for (std::size_t i = begin; i < end; ++i) {
-      const double2 p = {points.coordinates[2 * i], points.coordinates[2 * i + 1]};
-      widen(own.box, {p, p});
-    }
-    const std::lock_guard lock(mutex);
-    account.magnitudes = geometry::joined(account.magnitudes, own.magnitudes);
-    widen(account.box, own.box);
-  });
-  return account;
-}
 
 // Throws Error(input) that names a point whose coordinate is not finite.
 void check_finite(const GivenPoints& points, const Magnitudes& magnitudes, int rank) {
@@ -90,9 +62,9 @@ struct Frame {
 };
 
 Frame find_frame(Ranks& ranks, host::Threads& threads, const GivenPoints& points) {
-  Account own;
+  chunks::PointAccount own;
   ranks.together([&] {
-    own = inspect(threads, points);
+    own = chunks::account_of(threads, points.coordinates, points.count);
     check_finite(points, own.magnitudes, ranks.rank());
   });
   std::vector<std::int64_t> magnitudes = {own.magnitudes.largest, -std::int64_t{own.magnitudes.lowest}};
@@ -168,7 +140,8 @@ class Run {
       own = place_open(std::move(open));
       end_phase("hand on");
     }
-    check_euler();
+    geometry::check_euler(result_.statistics.triangles, result_.statistics.hull_vertices,
+                          result_.statistics.points - result_.statistics.duplicates);
     return finish();
   }
 
@@ -270,16 +243,6 @@ class Run {
     statistics.triangles += at(kTriangles);
     statistics.hull_vertices += at(kHull);
     return open;
-  }
-
-  // d points, of which h are on the hull, have 2d - 2 - h triangles, and none if they are on one line.
-  void check_euler() const {
-    const Statistics& s = result_.statistics;
-    const std::uint64_t d = s.points - s.duplicates, h = s.hull_vertices;
-    if (s.triangles == 0 ? h == d : s.triangles + h + 2 == 2 * d) return;
-    throw Error(ErrorKind::internal,
-                fmt::format("{} triangles and {} hull vertices of {} vertices; please report the input",
-                            s.triangles, h, d));
   }
 
   Triangulation finish() {

@@ -1,7 +1,7 @@
 // Prints a line per array of results, with its hash, for all fixtures and data files: what scripts/devices.py
 // compares between devices. The lines do not name the device.
 //
-//   device_outputs [MOST]     without inputs of more than MOST points
+//   device_outputs [MOST [STEP]]     without inputs of more than MOST points; of the fixtures every STEP-th
 //
 // The device is FLAUNAY_DEVICE's. What was compiled and how long that took goes to the standard error output.
 #include <fmt/format.h>
@@ -97,7 +97,7 @@ class Outputs {
   double build_seconds_ = 0;
 };
 
-void print_all(Outputs& outputs) {
+void print_all(Outputs& outputs, std::size_t step) {
   constexpr std::size_t kQueried = 300;
   Coordinates all;
   Offsets offsets{0};
@@ -105,7 +105,9 @@ void print_all(Outputs& outputs) {
     all.insert(all.end(), set.begin(), set.end());
     offsets.push_back(all.size() / 2);
   };
-  for (const Fixture& fixture : all_fixtures()) {
+  const std::vector<Fixture>& fixtures = all_fixtures();
+  for (std::size_t k = 0; k < fixtures.size(); k += step) {
+    const Fixture& fixture = fixtures[k];
     for (const std::size_t n : {1, 2, 3, 7, 60, 400, 3000}) outputs.print(fixture.name, fixture.make(n, n));
     outputs.print(fixture.name + "-perturbed", perturbed(fixture.make(200, 2), 3));
     outputs.print_queries(fixture.name, fixture.make(kQueried, 5));
@@ -128,7 +130,7 @@ int main(int count, char** arguments) {
   try {
     const std::size_t most = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : SIZE_MAX;
     flaunay::testing::Outputs outputs(most);
-    flaunay::testing::print_all(outputs);
+    flaunay::testing::print_all(outputs, count > 2 ? std::strtoul(arguments[2], nullptr, 10) : 1);
     const flaunay::DeviceInfo device = outputs.triangulator().device();
     fmt::print(stderr, "{}, {}, {}; compiled for {:.1f} s\n", device.name, device.platform, device.driver,
                outputs.build_seconds());

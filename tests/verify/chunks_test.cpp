@@ -12,6 +12,7 @@
 
 #include "flaunay/research.hpp"
 #include "io/generate.hpp"
+#include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
 #include "verify/external_sort.hpp"
 #include "verify/vertex_index.hpp"
@@ -20,6 +21,8 @@ namespace flaunay {
 namespace {
 
 using testing::flat_triangles;
+using testing::grid_points;
+using testing::random_integer_points;
 using testing::reference_delaunay;
 using testing::reference_neighbors;
 
@@ -115,22 +118,6 @@ void expect_rejected(const Coordinates& coordinates, const Indices& triangles, c
     EXPECT_FALSE(report.ok) << damage << ", windows of " << sizes.window_rows;
     EXPECT_NE(report.problem.find(part_of_problem), std::string::npos) << damage << ": " << report.problem;
   }
-}
-
-Coordinates random_integer_points(std::size_t n, int range, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_int_distribution<int> integer(0, range);
-  Coordinates coordinates(2 * n);
-  for (double& value : coordinates) value = integer(random);
-  return coordinates;
-}
-
-Coordinates grid_points(int columns, int rows) {
-  Coordinates coordinates;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) coordinates.insert(coordinates.end(), {double(x), double(y)});
-  }
-  return coordinates;
 }
 
 // ------------------------------------------------------------------------------------------------ the parts

@@ -12,6 +12,7 @@
 #include <random>
 #include <string>
 
+#include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
 #include "verify/exact.hpp"
 
@@ -19,6 +20,8 @@ namespace flaunay {
 namespace {
 
 using testing::flat_triangles;
+using testing::grid_points;
+using testing::random_integer_points;
 using testing::reference_delaunay;
 using testing::reference_incircle;
 using testing::reference_neighbors;
@@ -245,23 +248,6 @@ Coordinates random_points(std::size_t n, std::uint64_t seed) {
   std::uniform_real_distribution<double> uniform(0, 1);
   Coordinates coordinates(2 * n);
   for (double& value : coordinates) value = uniform(random);
-  return coordinates;
-}
-
-/// Points with integer coordinates from 0 to `range`: many duplicates, collinear and cocircular ones.
-Coordinates random_integer_points(std::size_t n, int range, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_int_distribution<int> integer(0, range);
-  Coordinates coordinates(2 * n);
-  for (double& value : coordinates) value = integer(random);
-  return coordinates;
-}
-
-Coordinates grid_points(int columns, int rows) {
-  Coordinates coordinates;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) coordinates.insert(coordinates.end(), {double(x), double(y)});
-  }
   return coordinates;
 }
 

@@ -126,6 +126,14 @@ typedef struct flaunay_device_list flaunay_device_list;
 /// What a triangulation in chunks did.
 typedef struct flaunay_chunk_report flaunay_chunk_report;
 
+/// What programs need to offer a choice of modes.
+typedef struct flaunay_mode_info {
+  int mode;                 ///< a flaunay_mode
+  const char* name;         ///< "blocks", "recursive-device" and so on, as on the command line
+  const char* description;  ///< one line for users
+  int on_host;              ///< 1 if it needs no device and works with flaunay_triangulate_on_host
+} flaunay_mode_info;
+
 /// Options for triangulating points in host memory. {0} sets the defaults.
 typedef struct flaunay_options {
   int mode;  ///< a flaunay_mode
@@ -213,6 +221,26 @@ typedef struct flaunay_mesh_arrays {
   uintptr_t reserved[4];  ///< 0
 } flaunay_mesh_arrays;
 
+/// Points in memory, such as a part of a larger table. {0}: no points.
+typedef struct flaunay_strided_points {
+  const void* coordinates;  ///< x of the first point; it need not be aligned
+  uint64_t count;           ///< number of points
+  int precision;            ///< a flaunay_precision: coordinates are double or float
+  ptrdiff_t point_stride;   ///< bytes from one point to the next; may be 0 or negative, as the next one, too
+  ptrdiff_t coordinate_stride;  ///< bytes from x to y
+  uintptr_t reserved[4];        ///< 0
+} flaunay_strided_points;
+
+/// Files for the results, .npy arrays of the type that flaunay_mesh_arrays has. The paths are those of
+/// regular files and end in ".npy"; NULL: no file is wanted.
+typedef struct flaunay_mesh_files {
+  const char* triangles;        ///< the path for an array of three columns
+  const char* neighbors;        ///< the path for an array of three columns
+  const char* hull;             ///< the path for an array of one dimension
+  const char* representatives;  ///< the path for an array of one dimension
+  uintptr_t reserved[4];        ///< 0
+} flaunay_mesh_files;
+
 /// Points that a function of the caller's reads in pieces. {0}: no points.
 typedef struct flaunay_point_source {
   uint64_t count;  ///< number of points
@@ -276,6 +304,22 @@ typedef struct flaunay_statistics {
   size_t kernel_count;            ///< number of kernels
 } flaunay_statistics;
 
+/// A triangulation's sizes, arrays and statistics, as the accessors of flaunay_triangulation describe them.
+typedef struct flaunay_mesh {
+  size_t point_count;                    ///< n, the number of points over all sets
+  size_t set_count;                      ///< the number of sets
+  size_t triangle_count;                 ///< t, the number of triangles over all sets
+  size_t hull_count;                     ///< h, the number of hull vertices over all sets
+  const int32_t* triangles;              ///< 3 t values; this and the following arrays: NULL if empty
+  const int32_t* neighbors;              ///< 3 t values; NULL if not asked for
+  const int32_t* halfedges;              ///< 3 t values; NULL if not asked for
+  const int32_t* hull;                   ///< h values
+  const int32_t* representatives;        ///< n values
+  const size_t* triangle_offsets;        ///< sets + 1 values
+  const size_t* hull_offsets;            ///< sets + 1 values
+  const flaunay_statistics* statistics;  ///< what the call did and how long it took
+} flaunay_mesh;
+
 /// A round of chunks.
 typedef struct flaunay_chunk_round {
   uint64_t points;     ///< distinct points of the round; of the first one, with duplicates
@@ -338,6 +382,9 @@ FLAUNAY_API const char* flaunay_status_string(int status);
 /// The message of the last call that failed on this thread, "" if none did. Valid until the next failure on
 /// this thread.
 FLAUNAY_API const char* flaunay_last_error(void);
+/// The flaunay_status of the last failure on this thread, for accessors, which return none. FLAUNAY_SUCCESS
+/// if nothing failed.
+FLAUNAY_API int flaunay_last_error_status(void);
 /// The error code of the OpenCL call that failed, such as -5 for CL_OUT_OF_RESOURCES; 0 if the failure was
 /// not in OpenCL.
 FLAUNAY_API int flaunay_last_error_code(void);
@@ -405,6 +452,11 @@ FLAUNAY_API flaunay_status flaunay_triangulator_use_workspace(flaunay_triangulat
 
 // ---- Points and results in host memory
 
+/// The number of modes.
+FLAUNAY_API size_t flaunay_mode_count(void);
+/// The k-th mode, counted from 0, the default first; NULL beyond the last. The struct is static.
+FLAUNAY_API const flaunay_mode_info* flaunay_mode_at(size_t k);
+
 /// Triangulates n points. coordinates: x0 y0 x1 y1 ...; may be NULL if n is 0. offsets: NULL for one set, and
 /// then `sets` is ignored; otherwise sets + 1 offsets from 0 to n, and set s has points
 /// [offsets[s], offsets[s + 1]), which may be none. options: NULL for the defaults. The caller destroys the
@@ -427,6 +479,14 @@ FLAUNAY_API flaunay_status flaunay_triangulate_on_host(const double* coordinates
                                                        const size_t* offsets, size_t sets,
                                                        const flaunay_options* options,
                                                        flaunay_triangulation** result);
+/// Makes a triangulation of one set from arrays that were kept elsewhere, such as in files, for Voronoi
+/// diagrams and locators. The arrays are copied: 3 t values of triangles, 3 t of neighbors, h of hull and n
+/// of representatives, as the accessors below return them. FLAUNAY_ERROR_USAGE if an index is out of range;
+/// whether they are a triangulation is not checked. O(n) work.
+FLAUNAY_API flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, size_t t,
+                                                        const int32_t* neighbors, const int32_t* hull,
+                                                        size_t h, const int32_t* representatives,
+                                                        flaunay_triangulation** triangulation);
 /// Frees the arrays.
 FLAUNAY_API void flaunay_triangulation_destroy(flaunay_triangulation* triangulation);
 
@@ -456,6 +516,19 @@ FLAUNAY_API const size_t* flaunay_triangulation_hull_offsets(const flaunay_trian
 /// What the call did and how long it took.
 FLAUNAY_API const flaunay_statistics* flaunay_triangulation_statistics(
     const flaunay_triangulation* triangulation);
+/// All of these in one struct, for languages in which a call takes longer than reading memory does.
+FLAUNAY_API const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* triangulation);
+
+/// Finds for each of n points the first of t triangles that has it, -1 if none has. first: n values of the
+/// caller's. FLAUNAY_ERROR_USAGE if an index is out of range. O(n) work.
+FLAUNAY_API flaunay_status flaunay_first_triangles(const int32_t* triangles, size_t t, size_t n,
+                                                   int32_t* first);
+/// Finds for each of n points its neighbours in a mesh of t triangles with h hull vertices, in increasing
+/// order. starts: n + 1 values of the caller's; neighbors: 3 t + h values of the caller's, none if t is 0.
+/// The neighbours of point i are [starts[i], starts[i + 1]) of neighbors. FLAUNAY_ERROR_USAGE if an index is
+/// out of range, or if there are more values than an int32_t can count. O(n log n) work.
+FLAUNAY_API flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, const int32_t* hull,
+                                                    size_t h, size_t n, int32_t* starts, int32_t* neighbors);
 
 // ---- Points and results in device memory
 
@@ -539,6 +612,17 @@ FLAUNAY_API flaunay_status flaunay_triangulate_streams(const flaunay_point_sourc
                                                        const flaunay_mesh_sink* results,
                                                        const flaunay_chunk_options* options,
                                                        flaunay_chunk_report** report);
+/// flaunay_triangulate_chunks for points with any strides, and for results each of which goes to an array, to
+/// a file, or nowhere. All files get their names in the end, or after an error none: what was there before
+/// stays. arrays: may be NULL for files of 32-bit indices alone; files: may be NULL. 32 bits suffice for 2^31
+/// - 1 points, or with neighbours for 2^30 - 1. Further errors: FLAUNAY_ERROR_INPUT if a disk has no room for
+/// the files or one cannot be written, FLAUNAY_ERROR_USAGE if a file is no regular one or if a part is wanted
+/// both in an array and in a file.
+FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_strided_points* points,
+                                                               const flaunay_mesh_arrays* arrays,
+                                                               const flaunay_mesh_files* files,
+                                                               const flaunay_chunk_options* options,
+                                                               flaunay_chunk_report** report);
 /// Frees the report.
 FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);
 /// What the call did and how long it took.

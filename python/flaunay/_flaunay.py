@@ -1,0 +1,750 @@
+"""The calls of the C interface, with arrays of NumPy and exceptions.
+
+Arrays are handed over and come back without a copy: a result's array keeps what the library made alive. Threads take
+turns on a triangulator; while one works, the others wait without the interpreter's lock.
+"""
+
+from __future__ import annotations
+
+import _thread
+import ctypes
+import queue
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from typing import Any, Optional, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _library
+from flaunay._arrays import FloatArray
+from flaunay._errors import UsageError
+from flaunay._library import PARTS, DeviceHandle, Handle, check, library, text_of
+
+_Doubles = npt.NDArray[np.float64]
+_Indices = npt.NDArray[np.int32]
+_Offsets = npt.NDArray[np.int64]
+
+__version__: str = text_of(library.version())
+
+_INT32, _INT64 = np.dtype(np.int32), np.dtype(np.int64)
+_FLOAT64, _FLOAT32, _UINT8 = np.dtype(np.float64), np.dtype(np.float32), np.dtype(np.uint8)
+
+
+# ---- Arrays
+
+
+class _Memory(ctypes.c_uint8 * sys.maxsize):  # type: ignore[misc]
+    """What an array of the library's memory refers to. The arrays have the sizes; this one has none."""
+
+    __slots__ = ("owner",)
+
+
+def _view(
+    owner: Handle, address: Optional[int], shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> npt.NDArray[Any]:
+    """An array over memory that is valid as long as its owner. address: None if it is empty."""
+    if address is None:
+        return np.empty(shape, dtype)
+    memory = _Memory.from_address(address)
+    memory.owner = owner
+    return np.ndarray(shape, dtype, memory)
+
+
+def _address_of(array: Any) -> int:
+    try:
+        # Quicker than the interface below, but only for arrays that can be written to and are not empty.
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+    except (TypeError, ValueError, BufferError):
+        return cast(int, array.__array_interface__["data"][0])
+
+
+def _as_indices(array: npt.NDArray[Any], name: str, shape: tuple[int, ...]) -> _Indices:
+    """Contiguous indices; -1 in the shape stands for any number. Users can replace arrays at any time."""
+    matches = len(array.shape) == len(shape) and all(
+        wanted in (-1, size) for wanted, size in zip(shape, array.shape)
+    )
+    if not matches:
+        raise UsageError(f"{name} were changed: their shape is {array.shape}, not {shape}")
+    if array.dtype != _INT32:
+        raise UsageError(f"{name} were changed: they are {array.dtype}, not int32")
+    return np.ascontiguousarray(array)
+
+
+def _as_corners(triangles: _Indices) -> _Indices:
+    if triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise UsageError("simplices must have the shape (nsimplex, 3)")
+    return _as_indices(triangles, "simplices", (-1, 3))
+
+
+def _count_points(points: npt.NDArray[Any]) -> int:
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise UsageError("points must be an array of shape (n, 2)")
+    return len(points)
+
+
+def _as_doubles(values: npt.NDArray[Any]) -> _Doubles:
+    if values.dtype != _FLOAT64:
+        raise TypeError(f"expected an array of float64, not of {values.dtype}")
+    return np.ascontiguousarray(values)
+
+
+def _as_offsets(segments: Optional[_Offsets], n: int) -> tuple[Optional[_Offsets], int]:
+    """The sets' offsets for n points, and the number of sets; None means one set.
+
+    Where they decrease, the library says so.
+    """
+    if segments is None:
+        return None, 0
+    if len(segments) == 0:
+        raise UsageError("segments need one offset at least, 0")
+    offsets = np.array(segments, _INT64)  # a copy, which does not change any more
+    if offsets.min() < 0:
+        raise UsageError("segments must begin with 0 and not decrease")
+    if offsets[-1] != n:
+        raise UsageError(f"segments end with {offsets[-1]}, but there are {n} points")
+    return offsets, len(offsets) - 1
+
+
+def _address_or_none(array: Optional[npt.NDArray[Any]]) -> Optional[int]:
+    return None if array is None else _address_of(array)
+
+
+def _check_changed(status: int) -> None:
+    """Errors about indices of a mesh that the user has changed, in the user's words."""
+    try:
+        check(status)
+    except UsageError as error:
+        name, separator, what = str(error).partition(": ")
+        if not separator:
+            raise
+        name = "simplices" if name == "triangles" else name
+        raise UsageError(f"{name} were changed: {what}") from None
+
+
+# ---- Structs
+
+
+def _members(struct: ctypes.Structure, names: Iterable[str]) -> dict[str, Any]:
+    return {name: getattr(struct, name) for name in names}
+
+
+def _names(struct: type[ctypes.Structure], *without: str) -> list[str]:
+    return [field[0] for field in struct._fields_ if field[0] not in without]
+
+
+_STATISTICS = _names(
+    _library.Statistics, "device", "phases", "phase_count", "kernels", "kernel_count"
+)
+_ROUND = _names(_library.ChunkRound)
+_CHUNK_STATISTICS = _names(
+    _library.ChunkStatistics,
+    *("rounds", "round_count", "devices", "device_count", "phases", "phase_count", "seconds"),
+)
+_TEXTS_OF_DEVICE = ["name", "platform", "vendor", "driver", "version", "type"]
+_NUMBERS_OF_DEVICE = _names(
+    _library.DeviceInfo, *_TEXTS_OF_DEVICE, "fp64", "self_test_passed", "self_test_failure"
+)
+
+
+def _phases_of(statistics: Any) -> dict[str, float]:
+    """The seconds of each phase by its name."""
+    phases = (statistics.phases[k] for k in range(statistics.phase_count))
+    return {text_of(phase.name): phase.seconds for phase in phases}
+
+
+def _statistics_of(statistics: Any) -> dict[str, Any]:
+    return {
+        "device": text_of(statistics.device),
+        **_members(statistics, _STATISTICS),
+        "phases": _phases_of(statistics),
+    }
+
+
+def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
+    devices = (statistics.devices[k] for k in range(statistics.device_count))
+    return {
+        **_members(statistics, _CHUNK_STATISTICS),
+        "rounds": [_members(statistics.rounds[k], _ROUND) for k in range(statistics.round_count)],
+        "devices": [{"device": text_of(row.name), "points": row.points} for row in devices],
+        "phases": _phases_of(statistics),
+        "seconds": statistics.seconds,
+    }
+
+
+def _info_of(info: Any) -> dict[str, Any]:
+    return {
+        **{name: text_of(getattr(info, name)) for name in _TEXTS_OF_DEVICE},
+        **_members(info, _NUMBERS_OF_DEVICE),
+        "fp64": bool(info.fp64),
+    }
+
+
+# ---- Devices and modes
+
+
+class _DeviceList(Handle):
+    _destroy = library.device_list_destroy
+
+
+def devices() -> list[dict[str, Any]]:
+    """Every OpenCL device, in the order in which ``"#k"`` names them."""
+    found = _DeviceList()
+    check(library.device_list_create(0, found.place))
+    count = library.device_list_count(found.pointer)
+    return [_info_of(library.device_list_at(found.pointer, k)[0]) for k in range(count)]
+
+
+_MODES = [library.mode_at(k)[0] for k in range(library.mode_count())]
+_MODE_NUMBERS: dict[str, int] = {text_of(info.name): info.mode for info in _MODES}
+
+
+def modes() -> list[dict[str, Any]]:
+    """Every mode, the default first."""
+    return [
+        {
+            "name": text_of(info.name),
+            "description": text_of(info.description),
+            "on_host": bool(info.on_host),
+        }
+        for info in _MODES
+    ]
+
+
+_options: dict[tuple[str, int], _library.Options] = {}
+
+
+def _options_for(mode: str, parts: int) -> _library.Options:
+    """Options, which calls only read: one struct for all calls with the same ones."""
+    found = _options.get((mode, parts))
+    if found is None:
+        if mode not in _MODE_NUMBERS:
+            raise UsageError(f"there is no mode '{mode}'; there are {', '.join(_MODE_NUMBERS)}")
+        found = _library.Options(mode=_MODE_NUMBERS[mode], parts=parts)
+        _options[mode, parts] = found
+    return found
+
+
+def _parts_of(wanted: set[str]) -> int:
+    parts = 0
+    for name in wanted:
+        parts |= PARTS[name]
+    return parts
+
+
+# ---- Points and results in host memory
+
+
+class _Triangulation(Handle):
+    _destroy = library.triangulation_destroy
+
+    def arrays(self, parts: int) -> dict[str, Any]:
+        """What was computed, by its name; None if an array was not asked for."""
+        mesh = library.triangulation_mesh(self.pointer)[0]
+        triangles, sets = mesh.triangle_count, mesh.set_count
+        rows = (triangles, 3)
+        return {
+            "triangles": _view(self, mesh.triangles, rows, _INT32),
+            "neighbors": (
+                _view(self, mesh.neighbors, rows, _INT32) if parts & PARTS["neighbors"] else None
+            ),
+            "halfedges": (
+                _view(self, mesh.halfedges, (3 * triangles,), _INT32)
+                if parts & PARTS["halfedges"]
+                else None
+            ),
+            "hull": _view(self, mesh.hull, (mesh.hull_count,), _INT32),
+            "representatives": _view(self, mesh.representatives, (mesh.point_count,), _INT32),
+            "triangle_offsets": _view(self, mesh.triangle_offsets, (sets + 1,), _INT64),
+            "hull_offsets": _view(self, mesh.hull_offsets, (sets + 1,), _INT64),
+            "statistics": _statistics_of(mesh.statistics[0]),
+        }
+
+
+def triangulate_without_device(
+    points: _Doubles, segments: Optional[_Offsets], mode: str, wanted: set[str]
+) -> dict[str, Any]:
+    """Triangulates points in a mode that runs on the host. wanted: names of the optional arrays."""
+    n = _count_points(points)
+    # The triangles' bit keeps the number from being 0, which means the default.
+    parts = _parts_of(wanted) | PARTS["triangles"]
+    options = _options_for(mode, parts)
+    points = _as_doubles(points)
+    offsets, sets = _as_offsets(segments, n)
+    result = _Triangulation()
+    check(
+        library.triangulate_on_host(
+            _address_of(points), n, _address_or_none(offsets), sets, options, result.place
+        )
+    )
+    return result.arrays(parts)
+
+
+class Triangulator(DeviceHandle):
+    """What computes on one device, or on the host."""
+
+    _destroy = library.triangulator_destroy
+
+    def __init__(self, device: str) -> None:
+        super().__init__()
+        # One thread can come here twice: if the garbage collector destroys a locator while the thread has the turn.
+        self.turn = threading.RLock()
+        check(library.triangulator_create(_encoded(device), self.place))
+
+    @staticmethod
+    def from_handles(context: int, device: int) -> Triangulator:
+        """A triangulator in a context of the caller's, which is retained."""
+        self = Triangulator.__new__(Triangulator)
+        DeviceHandle.__init__(self)
+        self.turn = threading.RLock()
+        check(library.triangulator_create_in_context(context, device, self.place))
+        return self
+
+    def _known(self, value: Optional[int]) -> int:
+        if value is None:
+            raise _library.error_of(library.last_error_status())
+        return value
+
+    # These never change, and so need no turn.
+    @property
+    def context(self) -> int:
+        return self._known(library.triangulator_context(self.pointer))
+
+    @property
+    def device(self) -> int:
+        return self._known(library.triangulator_device_id(self.pointer))
+
+    @property
+    def queue(self) -> int:
+        return self._known(library.triangulator_queue(self.pointer))
+
+    def capacity(self) -> int:
+        """The largest number of points of one call."""
+        with self.turn:
+            return self._known(library.triangulator_capacity(self.pointer) or None)
+
+    def triangulate(
+        self, points: FloatArray, segments: Optional[_Offsets], mode: str, wanted: set[str]
+    ) -> dict[str, Any]:
+        """Triangulates points in host memory. wanted: names of the optional arrays."""
+        n = _count_points(points)
+        parts = _parts_of(wanted) | PARTS["triangles"]
+        options = _options_for(mode, parts)
+        coordinates: FloatArray
+        if points.dtype == _FLOAT32:
+            call = library.triangulate_float
+            coordinates = cast(FloatArray, np.ascontiguousarray(points))
+        else:
+            call, coordinates = library.triangulate, _as_doubles(points)
+        offsets, sets = _as_offsets(segments, n)
+        result = _Triangulation()
+        with self.turn:
+            check(
+                call(
+                    self.pointer,
+                    _address_of(coordinates),
+                    n,
+                    _address_or_none(offsets),
+                    sets,
+                    options,
+                    result.place,
+                )
+            )
+        return result.arrays(parts)
+
+
+def _encoded(text: str) -> bytes:
+    if "\0" in text:
+        raise UsageError(f"{text!r} has a character that no name can have")
+    return text.encode("utf-8", "surrogateescape")
+
+
+def first_triangles(triangles: _Indices, n: int) -> _Indices:
+    """For each point the first triangle that has it, -1 where there is none."""
+    corners = _as_corners(triangles)
+    first = np.empty(n, _INT32)
+    _check_changed(
+        library.first_triangles(_address_of(corners), len(corners), n, _address_of(first))
+    )
+    return first
+
+
+def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indices, _Indices]:
+    """For each point its neighbours in the mesh, in increasing order.
+
+    Those of point i are the second array's from the first's entry i to its entry i + 1.
+    """
+    corners, ring = _as_corners(triangles), _as_indices(hull, "hull", (-1,))
+    starts = np.empty(n + 1, _INT32)
+    neighbors = np.empty(corners.size + ring.size if len(corners) else 0, _INT32)
+    _check_changed(
+        library.vertex_neighbors(
+            _address_of(corners),
+            len(corners),
+            _address_of(ring),
+            len(ring),
+            n,
+            _address_of(starts),
+            _address_of(neighbors),
+        )
+    )
+    return starts, neighbors
+
+
+# ---- Points and results in device memory; handles of OpenCL are integers, as pyopencl has them
+
+
+class DevicePoints:
+    """Points in device memory, whose buffers must be alive during a call."""
+
+    def __init__(
+        self,
+        memory: int,
+        count: int,
+        single: bool,
+        first: int,
+        segments: Optional[_Offsets] = None,
+        device_segments: int = 0,
+        sets: int = 0,
+    ) -> None:
+        self.struct = _library.DevicePoints(
+            memory=memory or None,
+            count=count,
+            precision=_library.FLOAT32 if single else _library.FLOAT64,
+            first=first,
+            device_offsets=device_segments or None,
+            sets=sets,
+        )
+        self._offsets, host_sets = _as_offsets(segments, count)
+        if self._offsets is not None:
+            self.struct.offsets, self.struct.sets = _address_of(self._offsets), host_sets
+
+
+class DeviceResult(DeviceHandle):
+    """A triangulation in device memory, with the triangulator that made it."""
+
+    _destroy = library.device_triangulation_destroy
+
+    def __init__(self, triangulator: Triangulator) -> None:
+        super().__init__()
+        self._triangulator = triangulator
+        check(library.device_triangulation_create(self.place))
+
+    def arrays(self) -> dict[str, Optional[tuple[int, tuple[int, ...]]]]:
+        """For each array by its name the handle of its buffer and its shape; None if it was not computed."""
+        triangles: int = library.device_triangulation_triangle_count(self.pointer)
+        shapes: dict[str, tuple[int, ...]] = {
+            "triangles": (triangles, 3),
+            "neighbors": (triangles, 3),
+            "halfedges": (3 * triangles,),
+            "hull": (library.device_triangulation_hull_count(self.pointer),),
+            "representatives": (library.device_triangulation_point_count(self.pointer),),
+        }
+        computed = library.device_triangulation_parts(self.pointer)
+        return {
+            name: (
+                (library.device_triangulation_buffer(self.pointer, PARTS[name]) or 0, shape)
+                if computed & PARTS[name]
+                else None
+            )
+            for name, shape in shapes.items()
+        }
+
+    def _offsets(self, address: Optional[int]) -> _Offsets:
+        # A copy: the caller keeps the offsets for longer than the buffers.
+        sets = library.device_triangulation_set_count(self.pointer)
+        return _view(self, address, (sets + 1,), _INT64).copy()
+
+    @property
+    def triangle_offsets(self) -> _Offsets:
+        return self._offsets(library.device_triangulation_triangle_offsets(self.pointer))
+
+    @property
+    def hull_offsets(self) -> _Offsets:
+        return self._offsets(library.device_triangulation_hull_offsets(self.pointer))
+
+    @property
+    def statistics(self) -> dict[str, Any]:
+        return _statistics_of(library.device_triangulation_statistics(self.pointer)[0])
+
+
+def triangulate_device(
+    triangulator: Triangulator,
+    points: DevicePoints,
+    wanted: set[str],
+    queue: int,
+    wait_for: list[int],
+) -> tuple[DeviceResult, int]:
+    """Triangulates points in device memory; the event that is returned is the caller's to release."""
+    result = DeviceResult(triangulator)
+    events = (ctypes.c_void_p * len(wait_for))(*wait_for)
+    event = ctypes.c_void_p()
+    enqueue = _library.Enqueue(
+        queue=queue or None,
+        wait_for=ctypes.addressof(events) if wait_for else None,
+        wait_for_count=len(wait_for),
+        event=ctypes.addressof(event),
+    )
+    with triangulator.turn:
+        check(
+            library.triangulate_device(
+                triangulator.pointer, points.struct, _parts_of(wanted), enqueue, result.pointer
+            )
+        )
+    return result, event.value or 0
+
+
+# ---- Chunks
+
+
+class _ChunkReport(Handle):
+    _destroy = library.chunk_report_destroy
+
+
+class _ChunkCall:
+    """One triangulation in chunks: its arguments, which must live as long as it, and its outcome."""
+
+    def __init__(
+        self,
+        points: FloatArray,
+        wanted: dict[str, Optional[bytes]],
+        wide: bool,
+        options: _library.ChunkOptions,
+        names: list[bytes],
+    ) -> None:
+        n = _count_points(points)
+        if points.dtype not in (_FLOAT64, _FLOAT32):
+            raise UsageError("points must be float64 or float32")
+        self._points = points
+        self._struct = _library.StridedPoints(
+            coordinates=points.__array_interface__["data"][0] if n else None,
+            count=n,
+            precision=_library.FLOAT64 if points.dtype == _FLOAT64 else _library.FLOAT32,
+            point_stride=points.strides[0],
+            coordinate_stride=points.strides[1],
+        )
+        self.arrays: dict[str, npt.NDArray[Any]] = {}
+        self._places = _library.MeshArrays(index_type=_library.INT64 if wide else _library.INT32)
+        self._files = _library.MeshFiles()
+        for name, path in wanted.items():
+            if path is not None:
+                setattr(self._files, name, path)
+                continue
+            # Room for as many rows as there may be. What is never written is never in memory.
+            rows = name in ("triangles", "neighbors")
+            self.arrays[name] = np.empty((2 * n, 3) if rows else n, _INT64 if wide else _INT32)
+            setattr(self._places, name, self.arrays[name].ctypes.data if n else None)
+        self._names = (ctypes.c_char_p * len(names))(*names)
+        self._options = options
+        options.devices = ctypes.addressof(self._names) if names else None
+        options.device_count = len(names)
+        options.progress = _library.ChunkProgress(self._progress)
+        self.report = _ChunkReport()
+        self.error: Optional[Exception] = None
+        self.is_over = False
+        self._is_begun = threading.Lock()
+        # None: the call is over.
+        self.stages: queue.SimpleQueue[Optional[tuple[str, int, float]]] = queue.SimpleQueue()
+        self.answers: queue.SimpleQueue[bool] = queue.SimpleQueue()
+
+    def _progress(self, stage: bytes, round: int, done: float, _: Any) -> int:
+        self.stages.put((text_of(stage), round, done))
+        return 0 if self.answers.get() else 1
+
+    def begins(self) -> bool:
+        """True for the first who asks."""
+        return self._is_begun.acquire(blocking=False)
+
+    def work(self) -> None:
+        """The call itself, to be made on a thread of its own."""
+        if not self.begins():
+            return
+        try:
+            check(
+                library.triangulate_chunks_to_files(
+                    self._struct, self._places, self._files, self._options, self.report.place
+                )
+            )
+        except Exception as error:
+            self.error = error
+        finally:
+            self.is_over = True
+            self.stages.put(None)
+
+    def follow(self, progress: Optional[Callable[[str, int, float], object]]) -> None:
+        """Hands the reports of the call on, until it is over."""
+        while not self.is_over:
+            stage = self.stages.get()
+            if stage is not None:
+                if progress is not None:
+                    progress(*stage)
+                self.answers.put(True)
+
+
+def triangulate_chunks(
+    points: FloatArray,
+    wanted: dict[str, Optional[bytes]],
+    wide: bool,
+    memory: int,
+    scratch: bytes,
+    devices: list[str],
+    chunk_points: int,
+    progress: Optional[Callable[[str, int, float], object]],
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
+
+    Returns the arrays in memory, with room for more rows than there are, and the statistics.
+
+    The library works on a thread of its own, while this one waits for its reports. So an exception of `progress`, and
+    one that a signal raises, as Ctrl-C does, is never in the library's way: Python runs handlers of signals on the
+    main thread anywhere, and what one raised as the library calls back would be lost.
+    """
+    options = _library.ChunkOptions(memory_bytes=memory, scratch=scratch, chunk_points=chunk_points)
+    call = _ChunkCall(points, wanted, wide, options, [_encoded(name) for name in devices])
+    raised: Optional[BaseException] = None
+    is_started = False
+    while not call.is_over:
+        # A signal can interrupt this anywhere.
+        try:
+            if not is_started:
+                is_started = True
+                _thread.start_new_thread(call.work, ())
+            call.follow(progress)
+        except BaseException as error:
+            if call.begins():
+                raise  # the thread has not, and will find that it need not
+            raised, progress = error, None
+            call.answers.put(False)
+    if raised is not None:
+        raise raised
+    if call.error is not None:
+        raise call.error
+    statistics = library.chunk_report_statistics(call.report.pointer)[0]
+    return call.arrays, _chunk_statistics_of(statistics)
+
+
+# ---- Voronoi diagrams and queries
+
+
+def _triangulation_of(
+    n: int, triangles: _Indices, neighbors: _Indices, hull: _Indices, representatives: _Indices
+) -> _Triangulation:
+    corners = _as_corners(triangles)
+    t = len(corners)
+    beyond = _as_indices(neighbors, "neighbors", (t, 3))
+    ring = _as_indices(hull, "hull", (-1,))
+    equal = _as_indices(representatives, "representatives", (n,))
+    result = _Triangulation()
+    _check_changed(
+        library.triangulation_create(
+            n,
+            _address_of(corners),
+            t,
+            _address_of(beyond),
+            _address_of(ring),
+            len(ring),
+            _address_of(equal),
+            result.place,
+        )
+    )
+    return result
+
+
+class _Voronoi(Handle):
+    _destroy = library.voronoi_destroy
+
+
+def voronoi(
+    triangulator: Triangulator,
+    points: _Doubles,
+    triangles: _Indices,
+    neighbors: _Indices,
+    hull: _Indices,
+    representatives: _Indices,
+) -> tuple[_Doubles, _Indices, _Indices, npt.NDArray[np.uint8]]:
+    """The circumcentres of triangles, the offsets of cells, their corners, and which are unbounded."""
+    n = _count_points(points)
+    points = _as_doubles(points)
+    primal = _triangulation_of(n, triangles, neighbors, hull, representatives)
+    result = _Voronoi()
+    with triangulator.turn:
+        check(
+            library.voronoi_compute(
+                triangulator.pointer, _address_of(points), n, primal.pointer, result.place
+            )
+        )
+    of = result.pointer
+    centres = (library.voronoi_triangle_count(of), 2)
+    corners = (library.voronoi_corner_count(of),)
+    return (
+        _view(result, library.voronoi_circumcentres(of), centres, _FLOAT64),
+        _view(result, library.voronoi_cell_offsets(of), (n + 1,), _INT32),
+        _view(result, library.voronoi_cells(of), corners, _INT32),
+        _view(result, library.voronoi_unbounded(of), (n,), _UINT8),
+    )
+
+
+class Locator(DeviceHandle):
+    """Answers queries on a triangulation, in the turns of its triangulator."""
+
+    _destroy = library.locator_destroy
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: _Doubles,
+        triangles: _Indices,
+        neighbors: _Indices,
+        hull: _Indices,
+        representatives: _Indices,
+    ) -> None:
+        super().__init__()
+        self._triangulator = triangulator
+        self._point_count = n = _count_points(points)
+        points = _as_doubles(points)
+        mesh = _triangulation_of(n, triangles, neighbors, hull, representatives)
+        with triangulator.turn:
+            check(
+                library.locator_create(
+                    triangulator.pointer,
+                    _address_of(points),
+                    n,
+                    None,
+                    0,
+                    mesh.pointer,
+                    self.place,
+                )
+            )
+
+    def _release(self) -> None:
+        with self._triangulator.turn:
+            super()._release()
+
+    def _answers(self, ask: Any, queries: _Doubles, dtype: np.dtype[Any], *given: int) -> Any:
+        """One answer for each query. given: what the function takes before the queries."""
+        m = _count_points(queries)
+        queries = _as_doubles(queries)
+        answers = np.empty(m, dtype)
+        with self._triangulator.turn:
+            check(ask(self.pointer, *given, _address_of(queries), m, None, 0, _address_of(answers)))
+        return answers
+
+    def locate(self, queries: _Doubles) -> _Indices:
+        """The triangle of each query; -1 outside of the hull."""
+        return cast(_Indices, self._answers(library.locator_locate, queries, _INT32))
+
+    def nearest(self, queries: _Doubles) -> _Indices:
+        """The point that is nearest to each query; -1 if there is none."""
+        return cast(_Indices, self._answers(library.locator_nearest, queries, _INT32))
+
+    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
+        """The interpolated value at each query. values: one for each point."""
+        if values.size != self._point_count:
+            raise UsageError(
+                f"points were changed: there are {values.size} values for the {self._point_count} of the "
+                "triangulation"
+            )
+        values = _as_doubles(values)
+        answers = self._answers(library.locator_interpolate, queries, _FLOAT64, _address_of(values))
+        return cast(_Doubles, answers)

@@ -1,0 +1,162 @@
+#include "c/chunk_files.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "chunks/array_sink.hpp"
+#include "io/mesh_stream.hpp"
+#include "io/output.hpp"
+
+namespace flaunay::c {
+namespace {
+
+template <typename Coordinate>
+class StridedPoints : public PointSource {
+ public:
+  explicit StridedPoints(const flaunay_strided_points& given)
+      : data_(static_cast<const char*>(given.coordinates)),
+        n_(given.count),
+        point_(given.point_stride),
+        coordinate_(given.coordinate_stride) {}
+
+  std::uint64_t size() const override { return n_; }
+
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    const char* point = data_ + static_cast<std::ptrdiff_t>(first) * point_;
+    for (std::size_t k = 0; k < count; ++k, point += point_) {
+      coordinates[2 * k] = at(point);
+      coordinates[2 * k + 1] = at(point + coordinate_);
+    }
+  }
+
+ private:
+  // A coordinate may be anywhere, as in a field of records.
+  static double at(const char* place) {
+    Coordinate value;
+    std::memcpy(&value, place, sizeof value);
+    return value;
+  }
+
+  const char* data_;
+  std::uint64_t n_;
+  std::ptrdiff_t point_, coordinate_;
+};
+
+using Paths = std::array<std::string, io::kMeshArrays>;
+
+Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& arrays) {
+  struct Part {
+    const char* name;
+    const char* path;
+    const void* array;
+  };
+  // In the order of MeshArray.
+  const std::array<Part, io::kMeshArrays> parts = {{
+      {"triangles", files.triangles, arrays.triangles},
+      {"neighbors", files.neighbors, arrays.neighbors},
+      {"hull", files.hull, arrays.hull},
+      {"representatives", files.representatives, arrays.representatives},
+  }};
+  Paths paths;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (parts[k].path == nullptr) continue;
+    if (parts[k].array != nullptr) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} are wanted in an array and in a file; only one of them is possible",
+                              parts[k].name));
+    }
+    paths[k] = parts[k].path;
+    io::check_output(paths[k], ".npy");
+  }
+  return paths;
+}
+
+// Each part goes to its file, or else to its array.
+template <typename Index>
+class Results : public MeshSink {
+ public:
+  Results(const flaunay_mesh_arrays& arrays, const flaunay_mesh_files& files, std::uint64_t n,
+          const std::string& scratch)
+      : paths_(to_paths(files, arrays)), files_(outputs_, paths_, kType), arrays_(to_arrays<Index>(arrays)) {
+    io::check_room(paths_, n, kType, scratch);
+  }
+
+  bool wants(MeshArray array) const override { return files_.wants(array) || arrays_.wants(array); }
+
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
+    if (files_.wants(array)) {
+      files_.write(array, first, values, count);
+    } else {
+      arrays_.write(array, first, values, count);
+    }
+  }
+
+  // Gives the files their names, all or none.
+  void commit() {
+    files_.finish();
+    outputs_.commit();
+  }
+
+ private:
+  static constexpr io::IndexType kType = sizeof(Index) == 4 ? io::IndexType::int32 : io::IndexType::int64;
+
+  io::Outputs outputs_;
+  Paths paths_;
+  io::MeshFiles files_;
+  chunks::ArraySink<Index> arrays_;
+};
+
+// Neighbours refer to triangles, of which there may be twice as many as points.
+template <typename Index>
+void check_index_type(std::uint64_t n, bool has_neighbors) {
+  const std::uint64_t most = std::numeric_limits<Index>::max() / (has_neighbors ? 2 : 1);
+  if (n <= most) return;
+  throw Error(ErrorKind::input,
+              fmt::format("{} points are too many for indices of {} bits; at most {} are possible", n,
+                          8 * sizeof(Index), most));
+}
+
+template <typename Index>
+ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arrays,
+                            const flaunay_mesh_files& files, const ChunkOptions& options) {
+  Results<Index> results(arrays, files, source.size(), options.scratch);
+  check_index_type<Index>(source.size(), results.wants(MeshArray::neighbors));
+  ChunkStatistics statistics = triangulate_chunks(source, results, options);
+  results.commit();
+  return statistics;
+}
+
+ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arrays,
+                            const flaunay_mesh_files& files, const ChunkOptions& options) {
+  switch (arrays.index_type) {
+    case FLAUNAY_INT32:
+      return triangulate<std::int32_t>(source, arrays, files, options);
+    case FLAUNAY_INT64:
+      return triangulate<std::int64_t>(source, arrays, files, options);
+  }
+  throw Error(ErrorKind::usage, fmt::format("there is no type of indices {}", arrays.index_type));
+}
+
+}  // namespace
+
+ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
+                                     const flaunay_mesh_files& files, const ChunkOptions& options) {
+  check_reserved(points, "flaunay_strided_points");
+  check_reserved(arrays, "flaunay_mesh_arrays");
+  check_reserved(files, "flaunay_mesh_files");
+  if (points.count > 0) required(static_cast<const char*>(points.coordinates), "the coordinates of points");
+  if (to_precision(points.precision) == Precision::float64) {
+    StridedPoints<double> source(points);
+    return triangulate(source, arrays, files, options);
+  }
+  StridedPoints<float> source(points);
+  return triangulate(source, arrays, files, options);
+}
+
+}  // namespace flaunay::c

@@ -1,0 +1,19 @@
+// Triangulations in chunks whose points have any strides, and whose results go to arrays or files.
+#pragma once
+
+#include "flaunay/chunks.hpp"
+#include "flaunay/flaunay.h"
+
+namespace flaunay::c {
+
+template <typename Index>
+MeshArrays<Index> to_arrays(const flaunay_mesh_arrays& given) {
+  return {static_cast<Index*>(given.triangles), static_cast<Index*>(given.neighbors),
+          static_cast<Index*>(given.hull), static_cast<Index*>(given.representatives)};
+}
+
+/// Does flaunay_triangulate_chunks_to_files.
+ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
+                                     const flaunay_mesh_files& files, const ChunkOptions& options);
+
+}  // namespace flaunay::c

@@ -1,0 +1,109 @@
+// The C interface to triangulations that the caller keeps as arrays, and tables made from their triangles.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::guarded;
+using c::required;
+
+namespace {
+
+using Indices = std::vector<std::int32_t>;
+
+// A copy of the caller's indices, from `lowest` to n - 1. They are checked in the copy, since the caller's
+// other threads may change the original. name: the array; what: that of which there are n.
+Indices checked(const std::int32_t* given, std::size_t count, std::int32_t lowest, std::size_t n,
+                const char* name, const char* what) {
+  if (count == 0) return {};
+  if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+    throw Error(ErrorKind::usage, fmt::format("{} are more than 32-bit indices can count", name));
+  }
+  const std::int32_t* const first = &required(given, name);
+  Indices copy(first, first + count);
+  for (const std::int32_t index : copy) {
+    if (index < lowest || index >= static_cast<std::int64_t>(n)) {
+      throw Error(ErrorKind::usage, fmt::format("{}: {} is none of the {} {}", name, index, n, what));
+    }
+  }
+  return copy;
+}
+
+// 3 t; the product of a number that is too large stays too large.
+std::size_t entries_of(std::size_t t) {
+  return 3 * std::min(t, static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
+}
+
+Indices checked_corners(const std::int32_t* triangles, std::size_t t, std::size_t n) {
+  return checked(triangles, entries_of(t), 0, n, "triangles", "points");
+}
+
+// Calls visit(from, to) for each edge of a mesh from each of its ends: a triangle has its edges one way
+// round, and edges without a triangle on the other side are on the hull.
+template <typename Visit>
+void for_each_edge(const Indices& corners, const Indices& hull, const Visit& visit) {
+  for (std::size_t t = 0; t < corners.size(); t += 3) {
+    for (std::size_t k = 0; k < 3; ++k) visit(corners[t + k], corners[t + (k + 1) % 3]);
+  }
+  for (std::size_t i = 0; i < hull.size(); ++i) visit(hull[(i + 1) % hull.size()], hull[i]);
+}
+
+}  // namespace
+
+flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, size_t t,
+                                            const int32_t* neighbors, const int32_t* hull, size_t h,
+                                            const int32_t* representatives,
+                                            flaunay_triangulation** triangulation) {
+  return create(triangulation, [&] {
+    Triangulation made;
+    made.triangles = checked_corners(triangles, t, n);
+    made.neighbors = checked(neighbors, entries_of(t), -1, t, "neighbors", "triangles");
+    made.hull = checked(hull, h, 0, n, "hull", "points");
+    made.representatives = checked(representatives, n, 0, n, "representatives", "points");
+    made.triangle_offsets = {0, t};
+    made.hull_offsets = {0, h};
+    made.statistics.points = n;
+    made.statistics.triangles = t;
+    made.statistics.hull_vertices = h;
+    return std::make_unique<flaunay_triangulation>(std::move(made));
+  });
+}
+
+flaunay_status flaunay_first_triangles(const int32_t* triangles, size_t t, size_t n, int32_t* first) {
+  return guarded([&] {
+    const Indices corners = checked_corners(triangles, t, n);
+    if (n == 0) return;
+    std::fill_n(&required(first, "the array of results"), n, -1);
+    for (std::size_t i = corners.size(); i-- > 0;) first[corners[i]] = static_cast<std::int32_t>(i / 3);
+  });
+}
+
+flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, const int32_t* hull, size_t h,
+                                        size_t n, int32_t* starts, int32_t* neighbors) {
+  return guarded([&] {
+    const Indices corners = checked_corners(triangles, t, n);
+    Indices ring = checked(hull, h, 0, n, "hull", "points");
+    // Points on one line have no edges.
+    if (t == 0) ring.clear();
+    if (corners.size() + ring.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+      throw Error(ErrorKind::usage, "the points have more neighbours than 32-bit indices can count");
+    }
+    std::fill_n(&required(starts, "the array of starts"), n + 1, 0);
+    if (t == 0) return;
+    required(neighbors, "the array of neighbours");
+    for_each_edge(corners, ring, [&](std::int32_t from, std::int32_t) { ++starts[from + 1]; });
+    for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
+    Indices next(starts, starts + n);
+    for_each_edge(corners, ring, [&](std::int32_t from, std::int32_t to) { neighbors[next[from]++] = to; });
+    for (std::size_t i = 0; i < n; ++i) std::sort(neighbors + starts[i], neighbors + starts[i + 1]);
+  });
+}

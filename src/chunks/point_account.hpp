@@ -1,0 +1,31 @@
+// What has to be known of all points before the first of them is triangulated.
+#pragma once
+
+#include <cstddef>
+
+#include "geometry/magnitudes.hpp"
+#include "host/native/threads.hpp"
+#include "shared/records.h"
+
+namespace flaunay::chunks {
+
+/// The box that has no point.
+kernel::vertex_box no_box();
+
+/// The smallest box that has both.
+kernel::vertex_box joined(const kernel::vertex_box& a, const kernel::vertex_box& b);
+
+/// The magnitudes of points, and the box around them.
+struct PointAccount {
+  geometry::Magnitudes magnitudes;
+  kernel::vertex_box box = no_box();
+};
+
+/// That of n points, by several threads. If a point is not finite, `magnitudes.bad` says so, and the rest may
+/// lack points.
+PointAccount account_of(host::Threads& threads, const double* coordinates, std::size_t n);
+
+/// That of two sets of points together.
+PointAccount joined(const PointAccount& a, const PointAccount& b);
+
+}  // namespace flaunay::chunks

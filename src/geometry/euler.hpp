@@ -1,0 +1,15 @@
+// Euler's formula, as a check that nothing is lost.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace flaunay::geometry {
+
+/// Throws Error(internal) unless so many triangles and hull vertices can be those of a triangulation of so
+/// many vertices: 2 vertices - 2 - hull triangles, or none if all vertices are on one line. where: the end of
+/// the message's first half, such as " in set 3".
+void check_euler(std::uint64_t triangles, std::uint64_t hull, std::uint64_t vertices,
+                 const std::string& where = {});
+
+}  // namespace flaunay::geometry
