@@ -1032,6 +1032,35 @@ static void test_locator(void) {
         FLAUNAY_SUCCESS);
   check_answers(mesh, triangles, nearest, values);
 
+  const double rows[] = {1, -1, 4, -4, 7, -7, 2, -2};
+  flaunay_interpolation_options options = {.columns = 2, .has_fill = 1, .fill = 5};
+  double pairs[2 * kQueryCount], gradients[16];
+  for (int method = 0; method <= FLAUNAY_INTERPOLATION_CLOUGH_TOCHER; ++method) {
+    options.method = method;
+    CHECK(flaunay_locator_interpolate_with(locator, rows, kQueries, kQueryCount, NULL, 1, &options, pairs) ==
+          FLAUNAY_SUCCESS);
+    for (int k = 0; k < kQueryCount; ++k) CHECK(pairs[2 * k + 1] == -pairs[2 * k] || pairs[2 * k] == 5);
+    CHECK(pairs[2] == 7 && pairs[4] == (method == FLAUNAY_INTERPOLATION_NEAREST ? 1 : 5));
+  }
+  CHECK(flaunay_locator_gradients(locator, rows, &options, gradients) == FLAUNAY_SUCCESS);
+  for (int k = 0; k < 4; ++k) CHECK(gradients[4 * k] == -gradients[4 * k + 2] && gradients[4 * k] > 0);
+  double again[2 * kQueryCount];
+  options.gradients = gradients;
+  CHECK(flaunay_locator_interpolate_with(locator, rows, kQueries, kQueryCount, NULL, 1, &options, again) ==
+        FLAUNAY_SUCCESS);
+  CHECK(memcmp(pairs, again, sizeof pairs) == 0);
+  CHECK(flaunay_locator_interpolate_with(locator, kValues, kQueries, kQueryCount, NULL, 1, NULL, values) ==
+        FLAUNAY_SUCCESS);
+  check_answers(mesh, triangles, nearest, values);
+  options.method = 77;
+  CHECK(fails(flaunay_locator_interpolate_with(locator, rows, kQueries, 2, NULL, 1, &options, pairs), usage,
+              "77 is no flaunay_interpolation"));
+  options.method = 0;
+  options.reserved[7] = 1;
+  CHECK(fails(flaunay_locator_gradients(locator, rows, &options, gradients), usage, "does not know"));
+  CHECK(fails(flaunay_locator_gradients(locator, NULL, NULL, gradients), usage, "null"));
+  CHECK(fails(flaunay_locator_gradients(locator, kValues, NULL, NULL), usage, "NULL"));
+
   const double bad[] = {0, 0, NAN, 1};
   CHECK(fails(flaunay_locator_locate(locator, bad, 2, NULL, 1, triangles), FLAUNAY_ERROR_INPUT, "query 1"));
   CHECK(fails(flaunay_locator_locate(locator, NULL, 2, NULL, 1, triangles), usage, "NULL"));
@@ -1090,6 +1119,28 @@ static void test_derived_on_device(void) {
   check_answers(mesh, triangles, nearest, interpolated);
   CHECK(fails(flaunay_locator_interpolate_device(locator, values, &queries, &enqueue, &found),
               FLAUNAY_ERROR_USAGE, "too small"));
+  flaunay_interpolation_options options = {0};
+  CHECK(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results) ==
+        FLAUNAY_SUCCESS);
+  clEnqueueReadBuffer(queue, results, CL_TRUE, 0, sizeof interpolated, interpolated, 0, NULL, NULL);
+  check_answers(mesh, triangles, nearest, interpolated);
+  cl_mem gradients = NULL;
+  double slopes[8];
+  CHECK(flaunay_locator_gradients_device(locator, values, NULL, &enqueue, &gradients) == FLAUNAY_SUCCESS);
+  REQUIRE(clEnqueueReadBuffer(queue, gradients, CL_TRUE, 0, sizeof slopes, slopes, 0, NULL, NULL) ==
+          CL_SUCCESS);
+  for (int k = 0; k < 8; ++k) CHECK(isfinite(slopes[k]));
+  options.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER;
+  options.device_gradients = gradients;
+  CHECK(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results) ==
+        FLAUNAY_SUCCESS);
+  clEnqueueReadBuffer(queue, results, CL_TRUE, 0, sizeof interpolated, interpolated, 0, NULL, NULL);
+  CHECK(interpolated[1] == 7 && isnan(interpolated[2]));
+  options.gradients = slopes;
+  CHECK(
+      fails(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results),
+            FLAUNAY_ERROR_USAGE, "host memory"));
+  clReleaseMemObject(gradients);
 
   flaunay_locator_destroy(locator);
   flaunay_device_voronoi_destroy(dual);

@@ -48,6 +48,7 @@ inline double2 convert_double2(float2 value) { return {value.x, value.y}; }
 inline double min(double a, double b) { return b < a ? b : a; }
 inline double max(double a, double b) { return a < b ? b : a; }
 using std::ilogb;
+using std::sqrt;
 inline bool isfinite(double x) { return std::isfinite(x); }
 
 // Atomic operations; as in OpenCL C 1.2, they order nothing else.

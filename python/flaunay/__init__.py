@@ -1,6 +1,8 @@
 """Exact two-dimensional Delaunay triangulation on OpenCL devices.
 
-``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``triangulate`` is the plain call,
+``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``LinearInterpolator``,
+``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with
+SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``triangulate`` is the plain call,
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files.
@@ -18,6 +20,13 @@ from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._flaunay import __version__
+from flaunay._interpolate import (
+    CloughTocherInterpolator,
+    LinearInterpolator,
+    NearestInterpolator,
+    griddata,
+)
+from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._triangulation import Triangulation, modes, triangulate
 from flaunay._triangulators import devices
@@ -25,17 +34,22 @@ from flaunay._voronoi import Voronoi
 
 __all__ = [
     "ChunkedTriangulation",
+    "CloughTocherInterpolator",
     "Delaunay",
     "DeviceError",
     "DeviceTriangulation",
     "Error",
     "InputError",
     "InternalError",
+    "LinearInterpolator",
+    "NaturalNeighborInterpolator",
+    "NearestInterpolator",
     "Triangulation",
     "UsageError",
     "Voronoi",
     "__version__",
     "devices",
+    "griddata",
     "modes",
     "triangulate",
     "triangulate_chunks",

@@ -738,13 +738,71 @@ class Locator(DeviceHandle):
         """The point that is nearest to each query; -1 if there is none."""
         return cast(_Indices, self._answers(library.locator_nearest, queries, _INT32))
 
-    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
-        """The interpolated value at each query. values: one for each point."""
-        if values.size != self._point_count:
+    def _check_rows(self, values: _Doubles) -> None:
+        if len(values) != self._point_count:
             raise UsageError(
-                f"points were changed: there are {values.size} values for the {self._point_count} of the "
+                f"points were changed: there are {len(values)} values for the {self._point_count} of the "
                 "triangulation"
             )
+
+    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
+        """The interpolated value at each query. values: one for each point."""
+        self._check_rows(values)
         values = _as_doubles(values)
         answers = self._answers(library.locator_interpolate, queries, _FLOAT64, _address_of(values))
         return cast(_Doubles, answers)
+
+    def interpolate_with(
+        self,
+        values: _Doubles,
+        queries: _Doubles,
+        method: str,
+        fill: float,
+        gradients: Optional[_Doubles] = None,
+    ) -> _Doubles:
+        """A row of interpolated values at each query. values: a row of some for each point."""
+        self._check_rows(values)
+        values = _as_doubles(values)
+        m = _count_points(queries)
+        queries = _as_doubles(queries)
+        options = _library.InterpolationOptions(
+            method=_library.INTERPOLATIONS[method], columns=values.shape[1], has_fill=1, fill=fill
+        )
+        if gradients is not None:
+            if gradients.shape != (*values.shape, 2):
+                raise UsageError(
+                    f"gradients must have the shape {(*values.shape, 2)}, not {gradients.shape}"
+                )
+            gradients = _as_doubles(gradients)
+            options.gradients = _address_of(gradients)
+        results = np.empty((m, values.shape[1]))
+        with self._triangulator.turn:
+            check(
+                library.locator_interpolate_with(
+                    self.pointer,
+                    _address_of(values),
+                    _address_of(queries),
+                    m,
+                    None,
+                    0,
+                    ctypes.byref(options),
+                    _address_of(results),
+                )
+            )
+        return results
+
+    def gradients(self, values: _Doubles, tolerance: float, iterations: int) -> _Doubles:
+        """The estimated gradients, x and y for each of the values: a row of some for each point."""
+        self._check_rows(values)
+        values = _as_doubles(values)
+        options = _library.InterpolationOptions(
+            columns=values.shape[1], gradient_tolerance=tolerance, gradient_iterations=iterations
+        )
+        results = np.empty((*values.shape, 2))
+        with self._triangulator.turn:
+            check(
+                library.locator_gradients(
+                    self.pointer, _address_of(values), ctypes.byref(options), _address_of(results)
+                )
+            )
+        return results

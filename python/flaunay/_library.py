@@ -35,6 +35,9 @@ _CLASSES: dict[int, type[Error]] = {
 FLOAT64, FLOAT32 = 0, 1
 INT32, INT64 = 0, 1
 
+# The values of flaunay_interpolation.
+INTERPOLATIONS = {"linear": 0, "nearest": 1, "clough_tocher": 2, "sibson": 3, "laplace": 4}
+
 # The bits of flaunay_part.
 PARTS = {"triangles": 1, "neighbors": 2, "halfedges": 4, "hull": 8, "representatives": 16}
 
@@ -89,6 +92,20 @@ class Enqueue(ctypes.Structure):
         ("event", c_void_p),
         ("profile", c_int),
         ("reserved", c_size_t * 4),
+    ]
+
+
+class InterpolationOptions(ctypes.Structure):
+    _fields_ = [
+        ("method", c_int),
+        ("columns", c_size_t),
+        ("has_fill", c_int),
+        ("fill", c_double),
+        ("gradients", c_void_p),
+        ("device_gradients", c_void_p),
+        ("gradient_tolerance", c_double),
+        ("gradient_iterations", c_size_t),
+        ("reserved", c_size_t * 8),
     ]
 
 
@@ -323,6 +340,20 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "locator_locate": (c_int, _ANSWER),
     "locator_nearest": (c_int, _ANSWER),
     "locator_interpolate": (c_int, [c_void_p, *_ANSWER]),
+    "locator_interpolate_with": (
+        c_int,
+        [
+            c_void_p,
+            c_void_p,
+            c_void_p,
+            c_size_t,
+            c_void_p,
+            c_size_t,
+            POINTER(InterpolationOptions),
+            c_void_p,
+        ],
+    ),
+    "locator_gradients": (c_int, [c_void_p, c_void_p, POINTER(InterpolationOptions), c_void_p]),
 }
 
 

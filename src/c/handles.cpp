@@ -136,6 +136,38 @@ flaunay_device_info view_of(const DeviceInfo& info) {
   return view;
 }
 
+InterpolationOptions to_interpolation(const flaunay_interpolation_options* options) {
+  InterpolationOptions result;
+  if (options == nullptr) return result;
+  check_reserved(*options, "flaunay_interpolation_options");
+  switch (options->method) {
+    case FLAUNAY_INTERPOLATION_LINEAR:
+      result.method = Interpolation::linear;
+      break;
+    case FLAUNAY_INTERPOLATION_NEAREST:
+      result.method = Interpolation::nearest;
+      break;
+    case FLAUNAY_INTERPOLATION_CLOUGH_TOCHER:
+      result.method = Interpolation::clough_tocher;
+      break;
+    case FLAUNAY_INTERPOLATION_SIBSON:
+      result.method = Interpolation::sibson;
+      break;
+    case FLAUNAY_INTERPOLATION_LAPLACE:
+      result.method = Interpolation::laplace;
+      break;
+    default:
+      throw Error(ErrorKind::usage, fmt::format("{} is no flaunay_interpolation", options->method));
+  }
+  if (options->columns != 0) result.columns = options->columns;
+  if (options->has_fill != 0) result.fill = options->fill;
+  result.gradients = options->gradients;
+  result.device_gradients = options->device_gradients;
+  if (options->gradient_tolerance != 0) result.estimation.tolerance = options->gradient_tolerance;
+  if (options->gradient_iterations != 0) result.estimation.iterations = options->gradient_iterations;
+  return result;
+}
+
 flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics) {
   flaunay_mesh view{};
   view.point_count = triangulation.representatives.size();

@@ -51,6 +51,9 @@ flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& s
 /// Null: the defaults. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
 research::Options to_options(const flaunay_options* options);
 
+/// Null: the defaults. Throws Error(usage) for an unknown method and for reserved members that are not 0.
+InterpolationOptions to_interpolation(const flaunay_interpolation_options* options);
+
 /// Bits of flaunay_part. Throws Error(usage) for an unknown bit. 0: the defaults.
 Parts to_parts(unsigned parts);
 unsigned to_bits(const Parts& parts);

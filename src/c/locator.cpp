@@ -34,21 +34,31 @@ flaunay_status answer(flaunay_locator* locator, const double* queries, size_t m,
   });
 }
 
-// compute(locator, queries, buffer, enqueue) writes to the caller's buffer. If there is none, it writes to a
-// new buffer, which the caller receives.
+// compute(locator, buffer, enqueue) writes to the caller's buffer. If there is none, it writes to a new
+// buffer, which the caller receives.
 template <typename Compute>
-flaunay_status answer_on_device(flaunay_locator* locator, const flaunay_device_points* queries,
-                                const flaunay_enqueue* enqueue, cl_mem* place, const Compute& compute) {
+flaunay_status write_on_device(flaunay_locator* locator, const flaunay_enqueue* enqueue, cl_mem* place,
+                               const Compute& compute) {
   return guarded([&] {
     const Enqueue queued = c::to_enqueue(enqueue);
     Locator& cpp = required(locator, "the locator").cpp;
     DeviceBuffer buffer = c::to_buffer(required(place, "the pointer to the buffer of results"));
-    compute(cpp, c::to_points(queries), buffer, queued);
+    compute(cpp, buffer, queued);
     if (*place == nullptr && buffer.memory() != nullptr) {
       clRetainMemObject(buffer.memory());
       *place = buffer.memory();
     }
   });
+}
+
+// compute(locator, queries, buffer, enqueue).
+template <typename Compute>
+flaunay_status answer_on_device(flaunay_locator* locator, const flaunay_device_points* queries,
+                                const flaunay_enqueue* enqueue, cl_mem* place, const Compute& compute) {
+  return write_on_device(locator, enqueue, place,
+                         [&](Locator& cpp, DeviceBuffer& buffer, const Enqueue& queued) {
+                           compute(cpp, c::to_points(queries), buffer, queued);
+                         });
 }
 
 }  // namespace
@@ -117,4 +127,46 @@ flaunay_status flaunay_locator_interpolate_device(flaunay_locator* locator, cl_m
                                                   const flaunay_enqueue* enqueue, cl_mem* results) {
   return answer_on_device(locator, queries, enqueue, results,
                           [&](Locator& cpp, auto&&... given) { cpp.interpolate(values, given...); });
+}
+
+flaunay_status flaunay_locator_interpolate_with(flaunay_locator* locator, const double* values,
+                                                const double* queries, size_t m, const size_t* offsets,
+                                                size_t sets, const flaunay_interpolation_options* options,
+                                                double* results) {
+  return answer(locator, queries, m, offsets, sets, results, [&](Locator& cpp, const auto& checked) {
+    if (m > 0) required(values, "the values of points");
+    return cpp.interpolate(values, queries, checked, c::to_interpolation(options));
+  });
+}
+
+flaunay_status flaunay_locator_interpolate_with_device(flaunay_locator* locator, cl_mem values,
+                                                       const flaunay_device_points* queries,
+                                                       const flaunay_interpolation_options* options,
+                                                       const flaunay_enqueue* enqueue, cl_mem* results) {
+  return answer_on_device(
+      locator, queries, enqueue, results,
+      [&](Locator& cpp, const DevicePoints& points, DeviceBuffer& buffer, const Enqueue& queued) {
+        cpp.interpolate(values, points, buffer, c::to_interpolation(options), queued);
+      });
+}
+
+flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double* values,
+                                         const flaunay_interpolation_options* options, double* gradients) {
+  return guarded([&] {
+    Locator& cpp = required(locator, "the locator").cpp;
+    const InterpolationOptions checked = c::to_interpolation(options);
+    const auto found = cpp.gradients(values, checked.columns, checked.estimation);
+    if (!found.empty()) required(gradients, "the array of gradients");
+    std::copy(found.begin(), found.end(), gradients);
+  });
+}
+
+flaunay_status flaunay_locator_gradients_device(flaunay_locator* locator, cl_mem values,
+                                                const flaunay_interpolation_options* options,
+                                                const flaunay_enqueue* enqueue, cl_mem* gradients) {
+  return write_on_device(locator, enqueue, gradients,
+                         [&](Locator& cpp, DeviceBuffer& buffer, const Enqueue& queued) {
+                           const InterpolationOptions checked = c::to_interpolation(options);
+                           cpp.gradients(values, buffer, checked.columns, checked.estimation, queued);
+                         });
 }

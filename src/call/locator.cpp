@@ -2,6 +2,7 @@
 #include "locate/locator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -59,29 +60,38 @@ struct Locator::Implementation {
     });
   }
 
-  /// Answers queries in device memory. columns: the length of each result. values: a further buffer that is
-  /// read, or null.
-  template <typename Result, typename Work>
-  void answer(const DevicePoints& queries, cl_mem values, DeviceBuffer& result, std::size_t columns,
-              const char* what, const Enqueue& enqueue, const Work& work) {
+  /// Runs a call on device memory. work(runtime) enqueues it.
+  template <typename Work>
+  void on_device(const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
       call::expect(
           !engine.runtime.is_native(),
           "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
           "make it from device memory, or name a device");
       engine.use_own_memory();
-      host::Runtime& runtime = engine.runtime;
-      call::check_enqueue(runtime, enqueue);
+      call::check_enqueue(engine.runtime, enqueue);
+      call::QueuedCall queued(engine.runtime, enqueue);
+      Arena::Scope scope(engine.runtime.arena());
+      work(engine.runtime);
+      queued.end();
+    });
+  }
+
+  /// Answers queries in device memory. columns: the length of each result. read: further buffers that are
+  /// read, or null.
+  template <typename Result, typename Work>
+  void answer(const DevicePoints& queries, const std::vector<cl_mem>& read, DeviceBuffer& result,
+              std::size_t columns, const char* what, const Enqueue& enqueue, const Work& work) {
+    on_device(enqueue, [&](host::Runtime& runtime) {
       call::check_points(runtime, queries, "queries");
-      call::QueuedCall queued(runtime, enqueue);
-      Arena::Scope scope(runtime.arena());
       check_queries(queries.count, columns);
       const std::vector<std::size_t> offsets = call::checked_offsets(runtime, queries);
       const auto output = call::result_buffer<Result>(runtime, result, queries.count * columns, what,
                                                       engine.buffer_allocations);
-      call::check_distinct({queries.memory, queries.device_offsets, values, result.memory()});
+      std::vector<cl_mem> buffers{queries.memory, queries.device_offsets, result.memory()};
+      buffers.insert(buffers.end(), read.begin(), read.end());
+      call::check_distinct(buffers);
       work(runtime, call::wide_points(runtime, runtime.arena(), queries), queries.count, offsets, output);
-      queued.end();
     });
   }
 
@@ -99,22 +109,39 @@ struct Locator::Implementation {
                                            : flaunay::interpolate::NaturalWeights::laplace;
   }
 
+  /// Estimated, unless there are some. given: the caller's, in host or device memory.
+  static flaunay::interpolate::Gradients gradients_by(const GradientOptions& options, bool are_given,
+                                                      Buffer<cl_double> given) {
+    call::expect(!std::isnan(options.tolerance), "the tolerance of gradients is not a number");
+    return {are_given, std::move(given), options.tolerance, options.iterations};
+  }
+
   /// queries: as the functions in interpolate/interpolate.hpp take them.
   template <typename... Queries>
   void interpolate(host::Runtime& runtime, const InterpolationOptions& options,
-                   const Buffer<cl_double>& values, const Queries&... queries) {
+                   const Buffer<cl_double>& values, const flaunay::interpolate::Gradients& gradients,
+                   const Queries&... queries) {
     const flaunay::interpolate::Table table{values, options.columns, options.fill};
     switch (options.method) {
       case Interpolation::linear:
         return flaunay::interpolate::linear(runtime, locator, table, queries...);
       case Interpolation::nearest:
         return flaunay::interpolate::nearest(runtime, locator, table, queries...);
+      case Interpolation::clough_tocher:
+        return flaunay::interpolate::clough_tocher(runtime, locator, table, gradients, queries...);
       case Interpolation::sibson:
       case Interpolation::laplace:
         return flaunay::interpolate::natural(runtime, locator, natural_weights(options.method), table,
                                              queries...);
     }
     throw Error(ErrorKind::usage, "no such method of interpolation");
+  }
+
+  void estimate_gradients(host::Runtime& runtime, const Buffer<cl_double>& values, std::size_t columns,
+                          const GradientOptions& options, const Buffer<cl_double>& results) {
+    const flaunay::interpolate::Table table{values, columns, std::numeric_limits<double>::quiet_NaN()};
+    flaunay::interpolate::estimate_gradients(runtime, locator, table, gradients_by(options, false, {}),
+                                             results);
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
@@ -183,7 +210,7 @@ std::vector<std::int32_t> Locator::locate(const double* queries, const std::vect
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
   implementation_->answer<cl_int>(
-      queries, nullptr, triangles, 1, "located triangles", enqueue,
+      queries, {}, triangles, 1, "located triangles", enqueue,
       [&](auto& runtime, const auto&... all) { locate::locate(runtime, implementation_->locator, all...); });
 }
 
@@ -199,7 +226,7 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vec
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
   implementation_->answer<cl_int>(
-      queries, nullptr, points, 1, "nearest points", enqueue,
+      queries, {}, points, 1, "nearest points", enqueue,
       [&](auto& runtime, const auto&... all) { locate::nearest(runtime, implementation_->locator, all...); });
 }
 
@@ -227,23 +254,62 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
                                          const InterpolationOptions& options) {
   const std::size_t numbers = implementation_->numbers(options.columns);
   if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
+  call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
   return implementation_->answer<double>(
       queries, offsets, options.columns, [&](auto& runtime, const auto&... all) {
-        implementation_->interpolate(runtime, options, runtime.view(values, numbers), all...);
+        const bool are_given = options.gradients != nullptr;
+        const auto gradients = Implementation::gradients_by(
+            options.estimation, are_given, runtime.view(options.gradients, are_given ? 2 * numbers : 0));
+        implementation_->interpolate(runtime, options, runtime.view(values, numbers), gradients, all...);
       });
 }
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
   implementation_->answer<cl_double>(
-      queries, values, results, options.columns, "interpolated values", enqueue,
+      queries, {values, options.device_gradients}, results, options.columns, "interpolated values", enqueue,
       [&](auto& runtime, const auto&... all) {
-        implementation_->interpolate(
-            runtime, options,
-            call::given_buffer<cl_double>(runtime, values, implementation_->numbers(options.columns),
-                                          "values"),
-            all...);
+        call::expect(options.gradients == nullptr, "gradients in host memory of values in device memory");
+        const std::size_t numbers = implementation_->numbers(options.columns);
+        const bool are_given = options.device_gradients != nullptr;
+        const auto gradients = Implementation::gradients_by(
+            options.estimation, are_given,
+            call::given_buffer<cl_double>(runtime, options.device_gradients, are_given ? 2 * numbers : 0,
+                                          "gradients"));
+        implementation_->interpolate(runtime, options,
+                                     call::given_buffer<cl_double>(runtime, values, numbers, "values"),
+                                     gradients, all...);
       });
+}
+
+std::vector<double> Locator::gradients(const double* values, std::size_t columns,
+                                       const GradientOptions& options) {
+  return call::take_turn(*implementation_->owner, [&] {
+    const std::size_t numbers = implementation_->numbers(columns);
+    if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
+    const call::OwnCall own_call(implementation_->engine);
+    host::Runtime& runtime = own_call.runtime;
+    std::vector<double> result;
+    runtime.resize(result, 2 * numbers);
+    const host::Runtime::Settled settled(runtime);
+    const auto output = runtime.output(result);
+    implementation_->estimate_gradients(runtime, runtime.view(values, numbers), columns, options, output);
+    runtime.fetch_later(output, result);
+    runtime.finish();
+    return result;
+  });
+}
+
+void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t columns,
+                        const GradientOptions& options, const Enqueue& enqueue) {
+  implementation_->on_device(enqueue, [&](host::Runtime& runtime) {
+    const std::size_t numbers = implementation_->numbers(columns);
+    const auto output = call::result_buffer<cl_double>(runtime, gradients, 2 * numbers, "gradients",
+                                                       implementation_->engine.buffer_allocations);
+    call::check_distinct({values, gradients.memory()});
+    implementation_->estimate_gradients(
+        runtime, call::given_buffer<cl_double>(runtime, values, numbers, "values"), columns, options, output);
+  });
 }
 
 }  // namespace flaunay

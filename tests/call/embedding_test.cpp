@@ -616,6 +616,7 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
       {"locate", [=, &locator, &xy] { locator.locate(xy.data(), n); }},
       {"nearest", [=, &locator, &xy] { locator.nearest(xy.data(), n); }},
       {"interpolate", [=, &locator, &xy] { locator.interpolate(xy.data(), xy.data(), n); }},
+      {"gradients", [=, &locator, &xy] { locator.gradients(xy.data()); }},
       {"locate on device", [=, &locator, &enqueue] { locator.locate(points, *buffer, enqueue); }},
       {"nearest on device", [=, &locator, &enqueue] { locator.nearest(points, *buffer, enqueue); }},
       {"research",
@@ -835,6 +836,63 @@ TEST(SmallLocator, AnswersInDeviceMemory) {
                    embedder().download<std::int32_t>(nearest_points.memory(), m),
                    embedder().download<double>(results.memory(), m));
   }
+}
+
+/// By every method, from host and from device memory, with gradients that are given and not: the same bytes.
+TEST(SmallLocator, InterpolatesInBothMemories) {
+  const Queried q;
+  const std::size_t n = q.offsets.back(), m = q.query_offsets.back();
+  Coordinates rows(3 * n);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = q.values[i / 3] * static_cast<double>(1 + i % 3);
+  Locator on_host(triangulator(), q.points.data(), q.offsets, expected_of(q.points, q.offsets));
+  const Memory memory = embedder().upload(q.points), values = embedder().upload(rows),
+               asked = embedder().upload(q.queries);
+  DevicePoints points = points_in(memory, n), queries = points_in(asked, m);
+  points.offsets = q.offsets;
+  queries.offsets = q.query_offsets;
+  DeviceTriangulation mesh;
+  embedded().triangulate(points, mesh, kAll);
+  Locator on_device(embedded(), points, mesh);
+  InterpolationOptions options;
+  options.columns = 3;
+  options.fill = -5;
+  const std::vector<double> gradients = on_host.gradients(rows.data(), 3);
+  DeviceBuffer device_gradients, results;
+  on_device.gradients(values.get(), device_gradients, 3);
+  check(clFinish(embedded().queue()), "clFinish");
+  const auto bytes = [](const std::vector<double>& numbers) {
+    return std::string(reinterpret_cast<const char*>(numbers.data()), sizeof(double) * numbers.size());
+  };
+  EXPECT_EQ(bytes(gradients), bytes(embedder().download<double>(device_gradients.memory(), 6 * n)));
+  for (const auto method : {Interpolation::linear, Interpolation::nearest, Interpolation::clough_tocher}) {
+    options.method = method;
+    options.gradients = nullptr;
+    options.device_gradients = nullptr;
+    const auto expected = on_host.interpolate(rows.data(), q.queries.data(), q.query_offsets, options);
+    ASSERT_EQ(expected.size(), 3 * m);
+    for (const bool are_given : {false, true}) {
+      options.gradients = are_given ? gradients.data() : nullptr;
+      options.device_gradients = nullptr;
+      EXPECT_EQ(bytes(on_host.interpolate(rows.data(), q.queries.data(), q.query_offsets, options)),
+                bytes(expected));
+      options.gradients = nullptr;
+      options.device_gradients = are_given ? device_gradients.memory() : nullptr;
+      on_device.interpolate(values.get(), queries, results, options);
+      check(clFinish(embedded().queue()), "clFinish");
+      EXPECT_EQ(bytes(embedder().download<double>(results.memory(), 3 * m)), bytes(expected));
+    }
+  }
+  options.columns = 0;
+  expect_usage_error({"no columns"},
+                     [&] { on_host.interpolate(rows.data(), q.queries.data(), q.query_offsets, options); });
+  expect_usage_error({"no columns"}, [&] { on_host.gradients(rows.data(), 0); });
+  options.columns = 3;
+  options.gradients = gradients.data();
+  expect_usage_error({"host memory"},
+                     [&] { on_device.interpolate(values.get(), queries, results, options); });
+  options.device_gradients = device_gradients.memory();
+  expect_usage_error({"device memory"},
+                     [&] { on_host.interpolate(rows.data(), q.queries.data(), q.query_offsets, options); });
 }
 
 TEST(SmallLocator, OutlivesItsTriangulator) {

@@ -109,6 +109,21 @@ typedef enum flaunay_voronoi_part {
   FLAUNAY_VORONOI_UNBOUNDED = 8       ///< uchar, n
 } flaunay_voronoi_part;
 
+/// How values are computed between points.
+typedef enum flaunay_interpolation {
+  FLAUNAY_INTERPOLATION_LINEAR = 0,   ///< linearly in each triangle; continuous
+  FLAUNAY_INTERPOLATION_NEAREST = 1,  ///< the values of the nearest point
+  /// By cubics, with a continuous gradient: the reduced element of Hsieh, Clough and Tocher, as SciPy's
+  /// CloughTocher2DInterpolator.
+  FLAUNAY_INTERPOLATION_CLOUGH_TOCHER = 2,
+  /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
+  /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
+  FLAUNAY_INTERPOLATION_SIBSON = 3,
+  /// By Laplace's natural-neighbour weights: the lengths of that cell's edges over the distances of the
+  /// points. Continuous, and exact for linear functions, up to rounding.
+  FLAUNAY_INTERPOLATION_LAPLACE = 4
+} flaunay_interpolation;
+
 /// Owns the programs and memory of a device. The context is the triangulator's own or the caller's.
 typedef struct flaunay_triangulator flaunay_triangulator;
 /// The triangulations of one or more point sets, in host memory.
@@ -184,6 +199,22 @@ typedef struct flaunay_enqueue {
   int profile;
   uintptr_t reserved[4];  ///< 0
 } flaunay_enqueue;
+
+/// How values are interpolated. {0} sets the defaults.
+typedef struct flaunay_interpolation_options {
+  int method;      ///< a flaunay_interpolation
+  size_t columns;  ///< numbers per point: values are rows of so many, and so are results; 0: one
+  int has_fill;    ///< other than 0: the result outside of the hull is `fill`; 0: it is NaN
+  double fill;     ///< the nearest point has none, except in a set without points
+  /// For FLAUNAY_INTERPOLATION_CLOUGH_TOCHER: x and y per number of the values, such as those of
+  /// flaunay_locator_gradients. NULL: they are estimated in each call.
+  const double* gradients;
+  cl_mem device_gradients;  ///< the gradients for values in device memory
+  /// The error of estimated gradients, relative to all gradients together; 0: 1e-6.
+  double gradient_tolerance;
+  size_t gradient_iterations;  ///< no more than these are made; 0: 400
+  uintptr_t reserved[8];       ///< 0
+} flaunay_interpolation_options;
 
 /// Options for triangulating points in chunks. {0} sets the defaults.
 typedef struct flaunay_chunk_options {
@@ -735,6 +766,36 @@ FLAUNAY_API flaunay_status flaunay_locator_interpolate_device(flaunay_locator* l
                                                               const flaunay_device_points* queries,
                                                               const flaunay_enqueue* enqueue,
                                                               cl_mem* results);
+
+// ---- Interpolation
+
+/// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
+/// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
+/// every method gives exactly that point's values; for duplicates, those of their representative are used.
+/// The other arguments and the errors are those of flaunay_locator_locate.
+FLAUNAY_API flaunay_status flaunay_locator_interpolate_with(flaunay_locator* locator, const double* values,
+                                                            const double* queries, size_t m,
+                                                            const size_t* offsets, size_t sets,
+                                                            const flaunay_interpolation_options* options,
+                                                            double* results);
+/// flaunay_locator_interpolate_with for values and queries in device memory; see
+/// flaunay_locator_locate_device. values and *results: double, 8 bytes per number.
+FLAUNAY_API flaunay_status flaunay_locator_interpolate_with_device(
+    flaunay_locator* locator, cl_mem values, const flaunay_device_points* queries,
+    const flaunay_interpolation_options* options, const flaunay_enqueue* enqueue, cl_mem* results);
+/// Estimates the gradients of values at the points, so that the curvature along all edges is least (Nielson,
+/// 1983; Renka and Cline, 1984). values: one row of options->columns numbers per input point. gradients: x
+/// and y per number, the caller's array. They are NaN at points that another one represents, and at those of
+/// a set on one line. Of the options, columns and those of gradients count. NULL: the defaults.
+FLAUNAY_API flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double* values,
+                                                     const flaunay_interpolation_options* options,
+                                                     double* gradients);
+/// flaunay_locator_gradients for values in device memory, enqueued like flaunay_triangulate_device.
+/// *gradients: double, 16 bytes per number; see flaunay_locator_locate_device.
+FLAUNAY_API flaunay_status flaunay_locator_gradients_device(flaunay_locator* locator, cl_mem values,
+                                                            const flaunay_interpolation_options* options,
+                                                            const flaunay_enqueue* enqueue,
+                                                            cl_mem* gradients);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,176 @@
+// Gradients at the vertices, estimated from values: those for which the Clough-Tocher interpolant bends least along the
+// edges (Nielson, "A method for interpolating scattered data based upon a minimum norm network", 1983; Renka and Cline,
+// "A triangle-based C1 interpolation method", 1984).
+//
+// On an edge of length L from v to u, e = u - v, the interpolant is the cubic with the values and slopes of both ends.
+// The integral of its squared second derivative is least, over all edges, where at each vertex
+//   4 sum e (e.g_v) / L^3 + 2 sum e (e.g_u) / L^3 = 6 sum e (f_u - f_v) / L^3.
+// With D the 2 by 2 blocks of the first sums, all eigenvalues of the system preconditioned by D lie in [1/2, 3/2], as
+// those of each edge do. So Chebyshev's semi-iteration (Golub and Varga, 1961) needs no products of whole vectors: each
+// step is one pass, a step's share of the error is known beforehand, and the result does not depend on the device.
+//
+// 1. count_edges counts the edges of each vertex, by a walk around it. The host scans the numbers.
+// 2. write_edges writes each vertex' neighbours, the weights of the edges, and the inverse of its block.
+// 3. start_gradients computes the first approximation from the values, improve_gradients the next one, as often as the
+//    host says. Columns share all but the approximations.
+// 4. take_gradients brings them to the points, in the caller's units; place_gradients brings the caller's to vertices.
+// Passes have one work-item per vertex, which walks through its edges.
+
+#include "shared/coordinates.h"
+#include "shared/halfedges.h"
+#include "shared/records.h"
+#include "shared/search.h"
+#include "shared/stars.h"
+
+// n: points, of which the first so many are vertices as vertices[0] says. The others have no edges.
+kernel void count_edges(int n, global const int* restrict vertices, global const face* restrict faces,
+                        global const int* restrict first_triangle, global uint* restrict counts) {
+  const int v = get_global_id(0);
+  if (v < n) {
+    uint count = 0;
+    if (v < *vertices) {
+      star_walk walk = star_begin(v, first_triangle[v]);
+      while (star_next(&walk, faces)) ++count;
+    }
+    counts[v] = count;
+  }
+}
+
+// inverse[3v]: xx, xy and yy of the inverse of the block. Where all edges are on one line but for rounding, it is the
+// inverse on that line, 0 across it: no number says what the slope across is.
+static inline void invert_block(double xx, double xy, double yy, global double* inverse) {
+  const double trace = xx + yy, determinant = xx * yy - xy * xy;
+  if (determinant > 0x1p-46 * (trace * trace)) {
+    inverse[0] = yy / determinant;
+    inverse[1] = -xy / determinant;
+    inverse[2] = xx / determinant;
+  } else {
+    inverse[0] = xx / (trace * trace);
+    inverse[1] = xy / (trace * trace);
+    inverse[2] = yy / (trace * trace);
+  }
+}
+
+// room: no edge is written there or behind; there are more only if the mesh is none. weights: 1 / L^3, relative to 1 /
+// L of the vertex' shortest edge, which keeps them in range.
+kernel void write_edges(int n, int room, global const int* restrict vertices, global const uint* restrict firsts,
+                        global const double2* restrict points, global const face* restrict faces,
+                        global const int* restrict first_triangle, global int* restrict neighbors,
+                        global double* restrict weights, global double* restrict inverses) {
+  const int v = get_global_id(0);
+  if (v < n && v < *vertices) {
+    const double2 at = points[v];
+    const int first = min((int)firsts[v], room), last = min((int)firsts[v + 1], room);
+    star_walk walk = star_begin(v, first_triangle[v]);
+    double least = 0.0;
+    for (int i = first; i < last && star_next(&walk, faces); ++i) {
+      const double2 edge = points[walk.neighbor] - at;
+      const double squared = edge.x * edge.x + edge.y * edge.y;
+      neighbors[i] = walk.neighbor;
+      weights[i] = squared;
+      if (i == first || squared < least) least = squared;
+    }
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (int i = first; i < last; ++i) {
+      const double2 edge = points[neighbors[i]] - at;
+      const double weight = sqrt(least / weights[i]) / weights[i];
+      weights[i] = weight;
+      xx += 4.0 * (weight * edge.x) * edge.x;
+      xy += 4.0 * (weight * edge.x) * edge.y;
+      yy += 4.0 * (weight * edge.y) * edge.y;
+    }
+    invert_block(xx, xy, yy, inverses + 3 * (size_t)v);
+  }
+}
+
+static inline double2 solved(global const double* inverse, double x, double y) {
+  return VECTOR(double2, inverse[0] * x + inverse[1] * y, inverse[1] * x + inverse[2] * y);
+}
+
+// values: rows of `columns` numbers by point, as are all arrays of gradients by vertex.
+kernel void start_gradients(int n, int columns, int room, global const int* restrict vertices,
+                            global const uint* restrict firsts, global const int* restrict neighbors,
+                            global const double* restrict weights, global const double* restrict inverses,
+                            global const double2* restrict points, global const int* restrict source,
+                            global const double* restrict values, global double2* restrict start,
+                            global double2* restrict gradients) {
+  const int v = get_global_id(0);
+  if (v < n && v < *vertices) {
+    const double2 at = points[v];
+    const int last = min((int)firsts[v + 1], room);
+    for (int c = 0; c < columns; ++c) {
+      const double value = values[(size_t)source[v] * columns + c];
+      double x = 0.0, y = 0.0;
+      for (int i = min((int)firsts[v], room); i < last; ++i) {
+        const int u = neighbors[i];
+        const double2 edge = points[u] - at;
+        const double rise = 6.0 * (values[(size_t)source[u] * columns + c] - value);
+        x += weights[i] * edge.x * rise;
+        y += weights[i] * edge.y * rise;
+      }
+      const size_t to = (size_t)v * columns + c;
+      start[to] = solved(inverses + 3 * (size_t)v, x, y);
+      gradients[to] = start[to];
+    }
+  }
+}
+
+// before: the approximation before `gradients`, which the next one replaces; if this is the second one, it is not read
+// but 0. start: the first one.
+kernel void improve_gradients(int n, int columns, int room, int is_second, double factor,
+                              global const int* restrict vertices, global const uint* restrict firsts,
+                              global const int* restrict neighbors, global const double* restrict weights,
+                              global const double* restrict inverses, global const double2* restrict points,
+                              global const double2* restrict start, global const double2* restrict gradients,
+                              global double2* restrict before) {
+  const int v = get_global_id(0);
+  if (v < n && v < *vertices) {
+    const double2 at = points[v];
+    const int last = min((int)firsts[v + 1], room);
+    for (int c = 0; c < columns; ++c) {
+      double x = 0.0, y = 0.0;
+      for (int i = min((int)firsts[v], room); i < last; ++i) {
+        const int u = neighbors[i];
+        const double2 edge = points[u] - at, gradient = gradients[(size_t)u * columns + c];
+        const double slope = 2.0 * (weights[i] * edge.x * gradient.x + weights[i] * edge.y * gradient.y);
+        x += slope * edge.x;
+        y += slope * edge.y;
+      }
+      const size_t to = (size_t)v * columns + c;
+      const double2 local_best = start[to] - solved(inverses + 3 * (size_t)v, x, y);
+      const double2 old = is_second ? VECTOR(double2, 0.0, 0.0) : before[to];
+      before[to] = factor * (local_best - old) + old;
+    }
+  }
+}
+
+// scales: what a slope in the units of `points` is multiplied by for the caller's units, by set. results: n rows of
+// `columns` gradients by point, NaN throughout.
+kernel void take_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
+                           global const scaling* restrict scales, global const int* restrict source,
+                           global const double2* restrict gradients, global double* restrict results) {
+  const int v = get_global_id(0);
+  if (v < n && v < first_vertices[sets]) {
+    const scaling scale = scales[segment_of(v, sets, first_vertices)];
+    for (int c = 0; c < columns; ++c) {
+      const double2 gradient = gradients[(size_t)v * columns + c];
+      global double* to = results + 2 * ((size_t)source[v] * columns + c);
+      to[0] = scaled(gradient.x, scale);
+      to[1] = scaled(gradient.y, scale);
+    }
+  }
+}
+
+// scales: the other way.
+kernel void place_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
+                            global const scaling* restrict scales, global const int* restrict source,
+                            global const double* restrict given, global double2* restrict gradients) {
+  const int v = get_global_id(0);
+  if (v < n && v < first_vertices[sets]) {
+    const scaling scale = scales[segment_of(v, sets, first_vertices)];
+    for (int c = 0; c < columns; ++c) {
+      global const double* from = given + 2 * ((size_t)source[v] * columns + c);
+      gradients[(size_t)v * columns + c] = VECTOR(double2, scaled(from[0], scale), scaled(from[1], scale));
+    }
+  }
+}

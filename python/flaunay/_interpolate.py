@@ -1,0 +1,459 @@
+"""Interpolation of values between points, with the calls of SciPy's interpolators."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import as_floats
+from flaunay._delaunay import Delaunay
+from flaunay._errors import UsageError
+
+Doubles = npt.NDArray[np.float64]
+Points = Union[npt.ArrayLike, Delaunay]
+
+# Of the tolerances of gradients; each iteration multiplies their error by this.
+_RATE = 2 - 3**0.5
+
+
+def _as_coordinates(given: Any, name: str) -> Doubles:
+    """Points of shape (..., 2), from such an array or a tuple of two that broadcast."""
+    if isinstance(given, tuple):
+        if len(given) != 2:
+            raise UsageError(f"{name} must be coordinates x and y, not {len(given)} arrays")
+        parts = [np.asarray(as_floats(part, name), np.float64) for part in given]
+        try:
+            return np.stack(np.broadcast_arrays(*parts), axis=-1)
+        except ValueError as error:
+            raise UsageError(f"{name}: {error}") from error
+    points = np.asarray(as_floats(given, name), np.float64)
+    if points.ndim == 1 and points.size % 2 == 0:
+        points = points.reshape(-1, 2)
+    if points.ndim == 0 or points.shape[-1] != 2:
+        raise UsageError(f"{name} must have the shape (..., 2), not {points.shape}")
+    return points
+
+
+class _Scale:
+    """Brings points to the unit square, where one is asked for."""
+
+    def __init__(self, points: Doubles, is_wanted: bool) -> None:
+        self._offset: Any = 0.0
+        self._size: Any = 1.0
+        self.is_wanted = is_wanted and len(points) > 0
+        if self.is_wanted:
+            self._offset = np.mean(points, axis=0)
+            size = np.ptp(points, axis=0)
+            self._size = np.where(size > 0, size, 1.0)
+
+    def __call__(self, points: Doubles) -> Doubles:
+        if not self.is_wanted:
+            return points
+        scaled: Doubles = (points - self._offset) / self._size
+        return scaled
+
+
+class _Interpolator:
+    """Values at points, and a triangulation of these."""
+
+    def __call__(self, *xi: Any) -> npt.NDArray[Any]:
+        raise NotImplementedError
+
+    def __init__(
+        self, points: Points, values: npt.ArrayLike, rescale: bool, device: Optional[str]
+    ) -> None:
+        if isinstance(points, Delaunay):
+            if rescale:
+                raise UsageError("rescale needs points, not their triangulation")
+            self.tri = points
+            self._scale = _Scale(np.empty((0, 2)), False)
+        else:
+            if hasattr(points, "simplices"):
+                raise UsageError(
+                    "points must be an array or a flaunay.Delaunay, not another triangulation"
+                )
+            coordinates = _as_coordinates(points, "points")
+            if coordinates.ndim != 2:
+                raise UsageError(f"points must have the shape (n, 2), not {coordinates.shape}")
+            self._scale = _Scale(coordinates, rescale)
+            self.tri = Delaunay(self._scale(coordinates), device=device)
+        self.points = self.tri.points
+        self.values = self._as_values(values)
+        if self.values.ndim == 0 or len(self.values) != self.tri.npoints:
+            raise UsageError(
+                f"values must have the shape ({self.tri.npoints}, ...), not {self.values.shape}: "
+                "one row for each point"
+            )
+
+    def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
+        array = np.asarray(values)
+        if array.dtype.kind == "c":
+            return array.astype(np.complex128)
+        return np.asarray(as_floats(values, "values"), np.float64)
+
+    def _queries(self, given: tuple[Any, ...]) -> tuple[Doubles, tuple[int, ...]]:
+        """The queries in rows, in the scale of the points, and the shape in which they came."""
+        if not given:
+            raise UsageError("xi is missing: where to interpolate")
+        queries = _as_coordinates(given[0] if len(given) == 1 else given, "xi")
+        return self._scale(queries.reshape(-1, 2)), queries.shape[:-1]
+
+    def _finite(self, queries: Doubles) -> tuple[Doubles, Optional[npt.NDArray[np.bool_]]]:
+        """Queries that can be asked, and which of them stand for others that are not finite."""
+        if np.isfinite(queries).all():
+            return queries, None
+        are_bad: npt.NDArray[np.bool_] = ~np.asarray(np.isfinite(queries).all(axis=1))
+        queries = queries.copy()
+        queries[are_bad] = self.points[0] if len(self.points) else 0.0
+        return queries, are_bad
+
+
+class _Columns(_Interpolator):
+    """Interpolation of numbers, all that a point has in one call."""
+
+    _method: str
+
+    def __init__(
+        self,
+        points: Points,
+        values: npt.ArrayLike,
+        fill_value: complex,
+        rescale: bool,
+        device: Optional[str],
+    ) -> None:
+        super().__init__(points, values, rescale, device)
+        self._is_complex = self.values.dtype.kind == "c"
+        if not self._is_complex and isinstance(fill_value, complex):
+            raise UsageError("fill_value is complex, but values are real")
+        self.fill_value = fill_value
+        rows = self.values.reshape(self.tri.npoints, -1) if self.values.size else None
+        if rows is None:
+            self._rows = np.empty((self.tri.npoints, 0))
+        elif self._is_complex:
+            # A further column is 0, but outside of the hull.
+            self._rows = np.concatenate(
+                [rows.real, rows.imag, np.zeros((self.tri.npoints, 1))], axis=1
+            )
+        else:
+            self._rows = np.ascontiguousarray(rows)
+
+    def _gradients(self) -> Optional[Doubles]:
+        return None
+
+    def __call__(self, *xi: Any) -> npt.NDArray[Any]:
+        """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast."""
+        queries, shape = self._queries(xi)
+        shape += self.values.shape[1:]
+        columns = self._rows.shape[1]
+        if columns == 0 or len(queries) == 0:
+            return np.full(shape, self.fill_value, self.values.dtype)
+        queries, are_bad = self._finite(queries)
+        fill = np.nan if self._is_complex else float(self.fill_value.real)
+        rows = self.tri._locator.interpolate_with(
+            self._rows, queries, self._method, fill, self._gradients()
+        )
+        if are_bad is not None:
+            rows[are_bad] = fill
+        if not self._is_complex:
+            return rows.reshape(shape)
+        k = columns // 2
+        result = np.empty((len(rows), k), np.complex128)
+        result.real, result.imag = rows[:, :k], rows[:, k : 2 * k]
+        result[np.isnan(rows[:, -1])] = complex(self.fill_value)
+        return result.reshape(shape)
+
+
+class LinearInterpolator(_Columns):
+    """Linear interpolation in the triangles, as `scipy.interpolate.LinearNDInterpolator`.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2), or Delaunay
+        Where values are known, or the triangulation of these points. A tuple of x and y is taken too.
+    values : array_like, shape (npoints, ...)
+        What the points have, real or complex. Of equal points, the one of the smallest index counts.
+    fill_value : float or complex, optional
+        The result outside of the hull.
+    rescale : bool, optional
+        Bring the points to the unit square before. This helps if x and y have different units.
+    device : str, optional
+        As of `triangulate`.
+
+    Attributes
+    ----------
+    tri : Delaunay
+        The triangulation, of the rescaled points if they are rescaled.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As of `Delaunay`, and for another number of values than of points.
+
+    Notes
+    -----
+    Queries are located exactly, and at a point the result is exactly its value. A query that is not
+    finite is outside. Points on one line have no triangles, so that all queries are outside; SciPy
+    raises an exception for them.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> interpolate = flaunay.LinearInterpolator([[0, 0], [4, 0], [0, 4]], [0, 8, 4])
+    >>> interpolate([[1, 1], [9, 9]])
+    array([ 3., nan])
+    >>> interpolate(1, [0, 2])
+    array([2., 4.])
+    """
+
+    _method = "linear"
+
+    def __init__(
+        self,
+        points: Points,
+        values: npt.ArrayLike,
+        fill_value: complex = np.nan,
+        rescale: bool = False,
+        *,
+        device: Optional[str] = None,
+    ) -> None:
+        super().__init__(points, values, fill_value, rescale, device)
+
+
+class CloughTocherInterpolator(_Columns):
+    """Smooth interpolation by cubics, as `scipy.interpolate.CloughTocher2DInterpolator`.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2), or Delaunay
+        As of `LinearInterpolator`.
+    values : array_like, shape (npoints, ...)
+        As of `LinearInterpolator`.
+    fill_value : float or complex, optional
+        The result outside of the hull.
+    tol : float, optional
+        The error of the gradients that are estimated, relative to all of them.
+    maxiter : int, optional
+        The iterations that may be made for that; 14 reach the default tolerance.
+    rescale : bool, optional
+        As of `LinearInterpolator`.
+    gradients : array_like, shape (npoints, ..., 2), optional
+        The gradients of the values at the points, of the rescaled ones if they are rescaled; None:
+        they are estimated, so that the interpolant has the least curvature along the edges.
+    device : str, optional
+        As of `triangulate`.
+
+    Attributes
+    ----------
+    tri : Delaunay
+        The triangulation, of the rescaled points if they are rescaled.
+    grad : ndarray, shape (npoints, ..., 2)
+        The gradients, NaN at points that another one represents and on one line.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As of `Delaunay`, and for another number of values or gradients than of points.
+
+    Notes
+    -----
+    The result has a continuous gradient. It is SciPy's up to rounding for the same triangulation and
+    gradients; estimated gradients differ by less than the tolerance. Otherwise as `LinearInterpolator`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> points = [[0, 0], [4, 0], [0, 4], [4, 5]]
+    >>> interpolate = flaunay.CloughTocherInterpolator(points, [0, 8, 4, 13])
+    >>> interpolate([[1, 1], [9, 9]]).round(4)
+    array([ 3., nan])
+    """
+
+    _method = "clough_tocher"
+
+    def __init__(
+        self,
+        points: Points,
+        values: npt.ArrayLike,
+        fill_value: complex = np.nan,
+        tol: float = 1e-6,
+        maxiter: int = 400,
+        rescale: bool = False,
+        gradients: Optional[npt.ArrayLike] = None,
+        *,
+        device: Optional[str] = None,
+    ) -> None:
+        super().__init__(points, values, fill_value, rescale, device)
+        if not tol > 0:
+            raise UsageError(f"tol must be greater than 0, not {tol}")
+        if maxiter < 1:
+            raise UsageError(f"maxiter must be 1 or more, not {maxiter}")
+        if gradients is None:
+            if 2 * _RATE**maxiter > tol:
+                warnings.warn(
+                    f"{maxiter} iterations do not reach the tolerance of gradients, {tol}",
+                    stacklevel=2,
+                )
+            self._slopes = self._estimated(tol, maxiter)
+        else:
+            self._slopes = self._given(gradients)
+
+    def _estimated(self, tol: float, maxiter: int) -> Doubles:
+        if self._rows.size == 0:
+            return np.empty((*self._rows.shape, 2))
+        return self.tri._locator.gradients(self._rows, tol, maxiter)
+
+    def _given(self, gradients: npt.ArrayLike) -> Doubles:
+        wanted = (*self.values.shape, 2)
+        given = self._as_values(gradients)
+        if given.shape != wanted:
+            raise UsageError(f"gradients must have the shape {wanted}, not {given.shape}")
+        if given.dtype.kind == "c" and not self._is_complex:
+            raise UsageError("gradients are complex, but values are real")
+        n = self.tri.npoints
+        rows = given.reshape(n, -1, 2) if given.size else np.empty((n, 0, 2))
+        if not self._is_complex or self.values.size == 0:
+            return np.ascontiguousarray(rows)
+        return np.concatenate([rows.real, rows.imag, np.zeros((n, 1, 2))], axis=1)
+
+    def _gradients(self) -> Optional[Doubles]:
+        return self._slopes
+
+    @property
+    def grad(self) -> npt.NDArray[Any]:
+        shape = (*self.values.shape, 2)
+        if not self._is_complex or self.values.size == 0:
+            return self._slopes.reshape(shape).astype(self.values.dtype)
+        k = self._rows.shape[1] // 2
+        slopes: npt.NDArray[Any] = self._slopes[:, :k] + 1j * self._slopes[:, k : 2 * k]
+        return slopes.reshape(shape)
+
+
+class NearestInterpolator(_Interpolator):
+    """The values of the nearest point, as `scipy.interpolate.NearestNDInterpolator`.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 2), or Delaunay
+        As of `LinearInterpolator`.
+    values : array_like, shape (npoints, ...)
+        What the points have, of any type.
+    rescale : bool, optional
+        As of `LinearInterpolator`.
+    device : str, optional
+        As of `triangulate`.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As of `Delaunay`; for another number of values than of points, or none; and for a query that
+        is not finite, if values are no numbers: otherwise its result is NaN.
+
+    Notes
+    -----
+    The nearest point is found by exact comparisons; of several, it is the first in the order of x, then
+    y. As in SciPy, results of real numbers are float64.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> interpolate = flaunay.NearestInterpolator([[0, 0], [4, 0], [0, 4]], [0, 8, 4])
+    >>> interpolate([[1, 1], [9, 8]])
+    array([0., 8.])
+    """
+
+    def __init__(
+        self,
+        points: Points,
+        values: npt.ArrayLike,
+        rescale: bool = False,
+        *,
+        device: Optional[str] = None,
+    ) -> None:
+        super().__init__(points, values, rescale, device)
+        if self.tri.npoints == 0:
+            raise UsageError("there are no points, so none is nearest")
+
+    def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
+        array = np.asarray(values)
+        return array.astype(np.float64) if array.dtype.kind in "biuf" else array
+
+    def __call__(self, *xi: Any) -> npt.NDArray[Any]:
+        """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast."""
+        queries, shape = self._queries(xi)
+        queries, are_bad = self._finite(queries)
+        result: npt.NDArray[Any] = self.values[self.tri._locator.nearest(queries)]
+        if are_bad is not None:
+            if result.dtype.kind not in "fc":
+                raise UsageError(f"xi are not finite, and values of {result.dtype} have no NaN")
+            result[are_bad] = np.nan
+        return result.reshape(shape + self.values.shape[1:])
+
+
+def griddata(
+    points: Points,
+    values: npt.ArrayLike,
+    xi: Any,
+    method: str = "linear",
+    fill_value: complex = np.nan,
+    rescale: bool = False,
+    *,
+    device: Optional[str] = None,
+) -> npt.NDArray[Any]:
+    """Interpolates scattered values, as `scipy.interpolate.griddata`.
+
+    Parameters
+    ----------
+    points, values
+        As of `LinearInterpolator`.
+    xi : array_like, shape (..., 2), or tuple of x and y
+        Where to interpolate.
+    method : {"linear", "nearest", "cubic", "natural"}
+        `LinearInterpolator`, `NearestInterpolator`, `CloughTocherInterpolator`, or
+        `NaturalNeighborInterpolator` with Sibson's weights, which SciPy does not have.
+    fill_value : float or complex, optional
+        The result outside of the hull; the nearest point has none.
+    rescale : bool, optional
+        As of `LinearInterpolator`.
+    device : str, optional
+        As of `triangulate`.
+
+    Returns
+    -------
+    ndarray
+        The values at `xi`.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As of the interpolators, and for another method.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.griddata([[0, 0], [4, 0], [0, 4]], [0, 8, 4], ([1, 3], [1, 0.5]))
+    array([3. , 6.5])
+    """
+    interpolator: _Interpolator
+    if method == "nearest":
+        interpolator = NearestInterpolator(points, values, rescale, device=device)
+    elif method == "linear":
+        interpolator = LinearInterpolator(points, values, fill_value, rescale, device=device)
+    elif method == "cubic":
+        interpolator = CloughTocherInterpolator(
+            points, values, fill_value, rescale=rescale, device=device
+        )
+    elif method == "natural":
+        # Which itself needs this module.
+        from flaunay._natural import NaturalNeighborInterpolator
+
+        interpolator = NaturalNeighborInterpolator(
+            points, values, fill_value=fill_value, rescale=rescale, device=device
+        )
+    else:
+        raise UsageError(
+            f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
+        )
+    return interpolator(xi)
