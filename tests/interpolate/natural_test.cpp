@@ -375,5 +375,45 @@ TEST(Natural, AllFixtures) {
   }
 }
 
+TEST(Natural, Magnitudes) {
+  for (const double factor : {1e-290, 1e290}) {
+    SCOPED_TRACE(factor);
+    check_natural(locate::make_case(testing::scaled(make_fixture("uniform", 40, 5), factor), 5, 6));
+  }
+}
+
+// The centre of hundreds of cocircular points and a query near one of them: cavities whose triangles form
+// long paths.
+TEST(Natural, ARing) {
+  Coordinates ring;
+  const std::int64_t far = 5 * 13 * 17 * 29 * 37;
+  for (std::int64_t x = 0; x <= far; ++x) {
+    const auto y =
+        static_cast<std::int64_t>(std::llround(std::sqrt(static_cast<double>((far - x) * (far + x)))));
+    if (x * x + y * y != far * far) continue;
+    for (const int sign : {-1, 1}) {
+      ring.insert(ring.end(), {static_cast<double>(sign * x), static_cast<double>(y)});
+      ring.insert(ring.end(), {static_cast<double>(x), static_cast<double>(sign * y)});
+      ring.insert(ring.end(), {static_cast<double>(sign * y), static_cast<double>(-x)});
+    }
+  }
+  Case input;
+  input.add(ring, {0, 0, 1e6, -3e6, 0x1p-20, 0x1p-21});
+  input.triangulate();
+  for (const NaturalWeights method : kBoth) {
+    const NaturalAnswers answers = ask_natural(Runtimes::get("own"), input, method);
+    // All points but duplicates are neighbours, and linear functions are exact.
+    const std::set<cl_int> distinct(input.mesh.representatives.begin(), input.mesh.representatives.end());
+    for (std::size_t i = 0; i < input.query_count(); ++i) {
+      EXPECT_EQ(answers.offsets[i + 1] - answers.offsets[i], distinct.size());
+      for (std::size_t c = 0; c < 2; ++c) {
+        const double error = static_cast<double>(far) * NATURAL_ERROR;
+        EXPECT_NEAR(answers.values[kColumns * i + c], input.query(i)[c], error);
+        EXPECT_NEAR(answers.exact_values[kColumns * i + c], input.query(i)[c], error);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flaunay::interpolate
