@@ -171,9 +171,10 @@ typedef struct {
 #define LEAST_WEIGHTS 0x1p-700
 #define MOST_SLENDER 0x1p30
 
-// A query's sums: of the weights, and of what bounds their errors. steps: how many terms there were.
+// A query's sums: of the weights, and of what bounds their errors. steps: how many terms there were. unit: a power of
+// two that brings weights, but not errors, to about 1, so that products with values do not underflow.
 typedef struct {
-  double weights, errors;
+  double weights, errors, unit;
   int steps, is_sound;
 } estimate;
 
@@ -229,7 +230,7 @@ static inline double laplace_weight(sight v, centre from, centre to, estimate* a
 }
 
 static inline void give_estimate(receiver* to, int what, natural_mesh mesh, sight v, double weight, estimate* all) {
-  const double positive = max(weight, 0.0);
+  const double positive = max(weight, 0.0) * all->unit;
   all->weights += positive;
   give(to, what, mesh, v.vertex, positive);
 }
@@ -272,6 +273,10 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
   sight x = see(mesh, q, f.corner[0]), y = see(mesh, q, f.corner[1]);
   const sight first = x, third = see(mesh, q, f.corner[2]);
   const int is_sibson = method == SIBSON;
+  if (is_sibson) {
+    const double largest = max(x.lift, max(y.lift, third.lift));
+    all->unit = power_of_two(1023 - (int)(as_ulong(largest) >> 52));
+  }
   int t = start, u = f.neighbor[2], depth = 1;
   const centre middle = centre_of_triangle(circle_through(x, y, third), x, y, third, all);
   enter(&path[0], middle, first, start, f.neighbor[1]);
@@ -344,10 +349,10 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
 static inline int weigh_by_estimate(natural_mesh mesh, double2 q, int start, int method, int what, receiver* to) {
   const int on_hull = weigh_on_hull(mesh, q, start, 0, what, to);
   if (on_hull != 0) return on_hull;
-  estimate all = {0.0, 0.0, 0, 1};
+  estimate all = {0.0, 0.0, 1.0, 0, 1};
   const int outcome = estimate_weights(mesh, q, start, method, what, &all, to);
-  const double errors = all.errors * (1.0 + 0.125 * all.steps);
-  if (outcome != WEIGHED || !all.is_sound || !(all.weights > LEAST_WEIGHTS) ||
+  const double errors = all.errors * (1.0 + 0.125 * all.steps) * all.unit;
+  if (outcome != WEIGHED || !all.is_sound || !(all.weights > LEAST_WEIGHTS * all.unit) ||
       !(errors <= NATURAL_ERROR / (2.0 * ROUNDOFF) * all.weights)) {
     return UNDECIDED;
   }

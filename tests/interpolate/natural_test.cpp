@@ -378,7 +378,11 @@ TEST(Natural, AllFixtures) {
 TEST(Natural, Magnitudes) {
   for (const double factor : {1e-290, 1e290}) {
     SCOPED_TRACE(factor);
-    check_natural(locate::make_case(testing::scaled(make_fixture("uniform", 40, 5), factor), 5, 6));
+    const Coordinates points = make_fixture("uniform", 40, 5);
+    Case input;
+    input.add(testing::scaled(points, factor), testing::scaled(locate::make_queries(points, 5, 6), factor));
+    input.triangulate();
+    check_natural(input);
   }
 }
 
@@ -398,7 +402,7 @@ TEST(Natural, ARing) {
     }
   }
   Case input;
-  input.add(ring, {0, 0, 1e6, -3e6, 0x1p-20, 0x1p-21});
+  input.add(ring, {0, 0, 1e5, -3e5, 0x1p-20, 0x1p-21});
   input.triangulate();
   for (const NaturalWeights method : kBoth) {
     const NaturalAnswers answers = ask_natural(Runtimes::get("own"), input, method);
