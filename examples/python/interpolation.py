@@ -32,8 +32,8 @@ def terrain() -> npt.NDArray[np.float64]:
 def shaded(heights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Colours by height, with light from the north-west."""
     light = LightSource(azdeg=315, altdeg=40)
-    known = np.nan_to_num(heights, nan=np.nanmin(heights))
-    colours = light.shade(
+    known = np.nan_to_num(heights, nan=float(np.nanmin(heights)))
+    colours: npt.NDArray[np.float64] = light.shade(
         known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=100, vmax=1050, blend_mode="soft"
     )
     colours[np.isnan(heights)] = 1

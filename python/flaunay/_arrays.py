@@ -77,13 +77,16 @@ def is_masked(given: object) -> TypeGuard[np.ma.MaskedArray[Any, Any]]:
 
 def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any]:
     """The numbers of a masked array; UsageError if one is masked, since leaving points out would renumber the rest."""
-    masked = np.argwhere(np.ma.getmaskarray(given))
+    # The annotations of NumPy 1 lack these two functions.
+    numpy_ma: Any = np.ma
+    masked = np.argwhere(numpy_ma.getmaskarray(given))
     if len(masked):
         hint = ", as points[~points.mask.any(axis=1)]" if name == "points" else ""
         raise UsageError(
             f"{name}{masked[0].tolist()} is masked: leave masked ones out before{hint}"
         )
-    return np.ma.getdata(given)
+    numbers: npt.NDArray[Any] = numpy_ma.getdata(given)
+    return numbers
 
 
 def _of_arrow(given: Any, name: str) -> npt.NDArray[Any]:
