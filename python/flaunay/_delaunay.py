@@ -191,7 +191,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         """The smallest coordinates, shape (2,); NaN if there are no points."""
         bound: FloatArray = np.full(2, np.nan)
         if self.npoints:
-            bound = np.min(self.points, axis=0)
+            bound = self.points.min(axis=0)
         return frozen(bound)
 
     @cached_property
@@ -199,7 +199,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         """The largest coordinates, shape (2,); NaN if there are no points."""
         bound: FloatArray = np.full(2, np.nan)
         if self.npoints:
-            bound = np.max(self.points, axis=0)
+            bound = self.points.max(axis=0)
         return frozen(bound)
 
     @cached_property
