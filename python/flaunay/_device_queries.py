@@ -55,9 +55,7 @@ class DeviceLocator:
         Complete when the points and the triangulation have been read.
     """
 
-    def __init__(
-        self, handle: _flaunay.DeviceLocator, npoints: int, event: pyopencl.Event
-    ) -> None:
+    def __init__(self, handle: _flaunay.DeviceLocator, npoints: int, event: pyopencl.Event) -> None:
         self._handle: Optional[_flaunay.DeviceLocator] = handle
         self.npoints = npoints
         self.event = event

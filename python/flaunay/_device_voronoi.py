@@ -76,8 +76,13 @@ class DeviceClippedVoronoi:
 
     def get(self) -> ClippedVoronoi:
         """Copies all to host memory, when it is there."""
-        arrays = (self.vertices, self.offsets, self.areas, self.centroids)
-        return ClippedVoronoi(*(array.get() for array in arrays), bounds=self.bounds)
+        return ClippedVoronoi(
+            self.vertices.get(),
+            self.offsets.get(),
+            self.areas.get(),
+            self.centroids.get(),
+            self.bounds,
+        )
 
 
 def voronoi(
