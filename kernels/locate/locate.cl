@@ -29,10 +29,6 @@
 #include "shared/records.h"
 #include "shared/search.h"
 
-static inline int corner_opposite(face f, int neighbor) {
-  return f.neighbor[0] == neighbor ? 0 : f.neighbor[1] == neighbor ? 1 : 2;
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Making
 

@@ -1,7 +1,8 @@
 """Exact two-dimensional Delaunay triangulation on OpenCL devices.
 
 ``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``LinearInterpolator``,
-``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with SciPy's calls. ``triangulate`` is the plain call,
+``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with
+SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``triangulate`` is the plain call,
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
@@ -30,6 +31,7 @@ from flaunay._interpolate import (
     NearestInterpolator,
     griddata,
 )
+from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._triangulation import Triangulation, modes, triangulate
 from flaunay._triangulators import devices
@@ -50,6 +52,7 @@ __all__ = [
     "InputError",
     "InternalError",
     "LinearInterpolator",
+    "NaturalNeighborInterpolator",
     "NearestInterpolator",
     "Triangulation",
     "UsageError",

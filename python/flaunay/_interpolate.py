@@ -412,8 +412,9 @@ def griddata(
         As of `LinearInterpolator`.
     xi : array_like, shape (..., 2), or tuple of x and y
         Where to interpolate.
-    method : {"linear", "nearest", "cubic"}
-        `LinearInterpolator`, `NearestInterpolator` or `CloughTocherInterpolator`.
+    method : {"linear", "nearest", "cubic", "natural"}
+        `LinearInterpolator`, `NearestInterpolator`, `CloughTocherInterpolator`, or
+        `NaturalNeighborInterpolator` with Sibson's weights, which SciPy does not have.
     fill_value : float or complex, optional
         The result outside of the hull; the nearest point has none.
     rescale : bool, optional
@@ -446,6 +447,15 @@ def griddata(
         interpolator = CloughTocherInterpolator(
             points, values, fill_value, rescale=rescale, device=device
         )
+    elif method == "natural":
+        # Which itself needs this module.
+        from flaunay._natural import NaturalNeighborInterpolator
+
+        interpolator = NaturalNeighborInterpolator(
+            points, values, fill_value=fill_value, rescale=rescale, device=device
+        )
     else:
-        raise UsageError(f"method must be 'linear', 'nearest' or 'cubic', not {method!r}")
+        raise UsageError(
+            f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
+        )
     return interpolator(xi)

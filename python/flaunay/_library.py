@@ -36,7 +36,7 @@ FLOAT64, FLOAT32 = 0, 1
 INT32, INT64 = 0, 1
 
 # The values of flaunay_interpolation.
-INTERPOLATIONS = {"linear": 0, "nearest": 1, "clough_tocher": 2}
+INTERPOLATIONS = {"linear": 0, "nearest": 1, "clough_tocher": 2, "sibson": 3, "laplace": 4}
 
 # The bits of flaunay_part.
 PARTS = {"triangles": 1, "neighbors": 2, "halfedges": 4, "hull": 8, "representatives": 16}

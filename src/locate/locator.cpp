@@ -202,7 +202,7 @@ void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<c
 }
 
 Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets) {
+             const std::vector<std::size_t>& query_offsets, const QueryLimits& limits = kOrientLimits) {
   check_offsets(query_offsets);
   if (query_offsets.size() != locator.sets + 1 || query_offsets.back() != m) {
     throw Error(
@@ -211,7 +211,7 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
                     query_offsets.size() - 1, query_offsets.back(), m, locator.sets));
   }
   Pass pass{};
-  QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets);
+  QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets, limits);
   pass.orient_bound = scaling.orient_bound;
   pass.nearness_bound = scaling.nearness_bound;
   pass.frames = runtime.upload(runtime.arena(), std::move(scaling.frames));
@@ -389,6 +389,15 @@ LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets) {
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  const auto found = runtime.arena().allocate<cl_int>(m);
+  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
+  return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};
+}
+
+LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
+                               const Buffer<cl_double>& queries, std::size_t m,
+                               const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets, limits);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
   return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};

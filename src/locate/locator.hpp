@@ -71,9 +71,10 @@ struct LocatedQueries {
 };
 
 /// Finds the triangle of each query, for kernels that continue from there. The result is allocated in the
-/// runtime's arena, in the caller's scope.
+/// runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
-                               const std::vector<std::size_t>& query_offsets);
+                               const std::vector<std::size_t>& query_offsets,
+                               const QueryLimits& limits = kOrientLimits);
 
 }  // namespace flaunay::locate

@@ -124,7 +124,13 @@ typedef enum flaunay_interpolation {
   FLAUNAY_INTERPOLATION_NEAREST = 1,  ///< the values of the nearest point
   /// By cubics, with a continuous gradient: the reduced element of Hsieh, Clough and Tocher, as SciPy's
   /// CloughTocher2DInterpolator.
-  FLAUNAY_INTERPOLATION_CLOUGH_TOCHER = 2
+  FLAUNAY_INTERPOLATION_CLOUGH_TOCHER = 2,
+  /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
+  /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
+  FLAUNAY_INTERPOLATION_SIBSON = 3,
+  /// By Laplace's natural-neighbour weights: the lengths of that cell's edges over the distances of the
+  /// points. Continuous, and exact for linear functions, up to rounding.
+  FLAUNAY_INTERPOLATION_LAPLACE = 4
 } flaunay_interpolation;
 
 /// Owns the programs and memory of a device. The context is the triangulator's own or the caller's.
