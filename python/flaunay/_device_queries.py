@@ -19,7 +19,13 @@ if TYPE_CHECKING:
     from flaunay._on_device import DeviceTriangulation
 
 # The methods by their names, and those that the library has for them.
-_METHODS = {"linear": "linear", "nearest": "nearest", "clough-tocher": "clough_tocher"}
+_METHODS = {
+    "linear": "linear",
+    "nearest": "nearest",
+    "clough-tocher": "clough_tocher",
+    "sibson": "sibson",
+    "laplace": "laplace",
+}
 
 
 class DeviceLocator:
@@ -142,7 +148,8 @@ class DeviceLocator:
             As the class says.
         method : str
             ``"linear"``, ``"nearest"`` or ``"clough-tocher"``: as `LinearInterpolator`,
-            `NearestInterpolator` and `CloughTocherInterpolator`.
+            `NearestInterpolator` and `CloughTocherInterpolator`. ``"sibson"`` or ``"laplace"``: as
+            `NaturalNeighborInterpolator` with this method.
         fill_value : float
             The result outside of the hull. The nearest point has none, except in a set without points.
         gradients : pyopencl.array.Array of float64, shape (npoints, 2) or (npoints, k, 2), optional

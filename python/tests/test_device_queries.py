@@ -1,5 +1,6 @@
 """Queries, interpolation, Voronoi diagrams and relaxation from pyopencl arrays to pyopencl arrays."""
 
+import functools
 import gc
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -18,6 +19,8 @@ METHODS = {
     "linear": flaunay.LinearInterpolator,
     "nearest": flaunay.NearestInterpolator,
     "clough-tocher": flaunay.CloughTocherInterpolator,
+    "sibson": flaunay.NaturalNeighborInterpolator,
+    "laplace": functools.partial(flaunay.NaturalNeighborInterpolator, method="laplace"),
 }
 BOX = (0.1, 0.2, 0.8, 1.3)
 TRIANGLE = [[0, 0], [2, 0.5], [0.5, 1]]
@@ -242,6 +245,9 @@ def test_sets_of_queries_are_for_sets_of_points(random, queue, on_device):
         assert np.array_equal(near[theirs], np.where(closest < 0, -1, closest + SEGMENTS[s])), s
         linear = flaunay.LinearInterpolator(host, values[mine])(queries[theirs])
         assert same(between["linear"][theirs], linear), s
+        for method in "sibson", "laplace":
+            natural = METHODS[method](host, values[mine])(queries[theirs])
+            assert same(between[method][theirs], natural), (s, method)
         if SIZES[s] > 0:
             assert np.array_equal(between["nearest"][theirs], values[mine][closest]), s
             # The tolerance is of all gradients together.
