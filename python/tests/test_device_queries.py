@@ -2,6 +2,8 @@
 
 import functools
 import gc
+import subprocess
+import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
@@ -545,6 +547,65 @@ def test_threads_share_a_locator(case, context):
     with ThreadPoolExecutor(3) as pool:
         for k, result in enumerate(pool.map(work, range(12))):
             assert np.array_equal(result, expected[k:])
+
+
+PROGRAM = """if True:
+    import gc
+    import os
+
+    import numpy as np
+    import pyopencl as cl
+    import pyopencl.array
+
+    import flaunay
+
+    queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    points = cl.array.to_device(queue, np.random.default_rng(1).random((3000, 2)))
+    tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+    locator = tri.locator()
+    near = locator.nearest(points)
+"""
+
+
+def run(program):
+    subprocess.run([sys.executable, "-c", PROGRAM + program], check=True, timeout=120)
+
+
+def test_a_process_ends_with_all_alive_and_work_in_flight():
+    run("""
+    locator.cycle = [tri, locator]
+    """)
+    run("""
+    for _ in range(5):
+        near = locator.nearest(points)
+    del points, tri, queue, locator
+    """)
+
+
+def test_a_forked_child_is_told():
+    run("""
+    queue.finish()
+    child = os.fork()
+    if child == 0:
+        told = 0
+        for call in (
+            lambda: locator.nearest(points),
+            lambda: locator.gradients(points),
+            tri.locator,
+            tri.voronoi,
+            lambda: tri.clipped_voronoi((0, 0, 1, 1)),
+            lambda: flaunay.relax_device(points, (0, 0, 1, 1)),
+        ):
+            try:
+                call()
+            except flaunay.DeviceError as error:
+                told += "forked" in str(error)
+        locator.close()
+        gc.collect()
+        os._exit(0 if told == 6 else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    assert locator.nearest(points).get().tolist() == list(range(3000))
+    """)
 
 
 # ---- Voronoi diagrams
