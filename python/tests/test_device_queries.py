@@ -435,7 +435,7 @@ def test_interpolators_of_host_memory_name_the_call(case, cls):
 # ---- Queues, events and lifetimes
 
 
-@pytest.mark.parametrize("properties", [None, OUT_OF_ORDER])
+@pytest.mark.parametrize("properties", [0, OUT_OF_ORDER])
 def test_other_queues_of_the_context(case, context, queue, properties):
     others = [cl.CommandQueue(context, properties=properties) for _ in range(3)]
     tri = flaunay.triangulate_device(case.tri.points, queue=others[0], **PARTS)
