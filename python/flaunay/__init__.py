@@ -4,7 +4,8 @@
 ``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with
 SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``triangulate`` is the plain call,
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
-memory, as ``pyopencl.array.Array``. ``triangulate_chunks`` is for more points than fit memory: it reads
+memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
+result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files.
 
 Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
@@ -20,6 +21,8 @@ from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
+from flaunay._device_queries import DeviceLocator
+from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._flaunay import __version__
 from flaunay._interpolate import (
@@ -40,8 +43,11 @@ __all__ = [
     "ClippedVoronoi",
     "CloughTocherInterpolator",
     "Delaunay",
+    "DeviceClippedVoronoi",
     "DeviceError",
+    "DeviceLocator",
     "DeviceTriangulation",
+    "DeviceVoronoi",
     "Error",
     "InputError",
     "InternalError",
@@ -57,6 +63,7 @@ __all__ = [
     "griddata",
     "modes",
     "relax",
+    "relax_device",
     "triangulate",
     "triangulate_chunks",
     "triangulate_device",

@@ -41,6 +41,15 @@ _DEVICE_MEMORY = {
     10: "a ROCm device",
 }
 
+_INTERPOLATE = "call triangulate_device(...).locator().interpolate, or "
+# What takes arrays of pyopencl as they are.
+_DEVICE_CALLS = {
+    "points": "call triangulate_device, or ",
+    "xi": _INTERPOLATE,
+    "values": _INTERPOLATE,
+    "gradients": _INTERPOLATE,
+}
+
 # Rows of a part; a few arrays of so many doubles fit a processor's cache.
 _ROWS = 1 << 14
 
@@ -111,10 +120,10 @@ def _of_dlpack(given: Any) -> npt.NDArray[Any]:
     return array
 
 
-def _check_memory(given: Any, name: str) -> None:
+def check_memory(given: Any, name: str) -> None:
     """UsageError for an array that is in a device's memory."""
     if type(given).__module__.partition(".")[0] == "pyopencl":
-        hint = "call triangulate_device, or " if name == "points" else ""
+        hint = _DEVICE_CALLS.get(name, "")
         raise UsageError(f"{name} are in the memory of an OpenCL device: {hint}take {name}.get()")
     kind = int(given.__dlpack_device__()[0]) if hasattr(given, "__dlpack_device__") else 1
     if kind not in _HOST_MEMORY:
@@ -132,7 +141,7 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     try:
         if library == "pyarrow":
             return _of_arrow(given, name)
-        _check_memory(given, name)
+        check_memory(given, name)
         if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
             return _of_dlpack(given)
         array = np.asarray(given)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _Doubles = npt.NDArray[np.float64]
 
 
-def _corners_of(bounds: Any) -> _Doubles:
+def corners_of(bounds: Any) -> _Doubles:
     """The corners of a box or polygon, counter-clockwise, without a last one that repeats the first."""
     exterior = getattr(bounds, "exterior", None)
     given = bounds if exterior is None else exterior.coords
@@ -40,6 +40,13 @@ def _corners_of(bounds: Any) -> _Doubles:
     with np.errstate(all="ignore"):
         area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
     return corners[::-1] if area < 0 else corners
+
+
+def as_iterations(given: Any) -> int:
+    iterations = operator.index(given)
+    if iterations < 0:
+        raise UsageError(f"iterations must not be negative: {iterations}")
+    return iterations
 
 
 class ClippedVoronoi:
@@ -149,7 +156,7 @@ def clipped(voronoi: Voronoi, bounds: Any) -> ClippedVoronoi:
     >>> len(cells.polygon(0))
     4
     """
-    tri, corners = voronoi.delaunay, _corners_of(bounds)
+    tri, corners = voronoi.delaunay, corners_of(bounds)
     arrays = _flaunay.clipped_voronoi(
         _triangulators.of_device(tri._device),
         np.asarray(tri.points, np.float64),
@@ -228,8 +235,6 @@ def relax(
     array([[1.33, 1.33],
            [2.67, 2.67]])
     """
-    times = operator.index(iterations)
-    if times < 0:
-        raise UsageError(f"iterations must not be negative: {times}")
+    times = as_iterations(iterations)
     given = np.asarray(as_points(points), np.float64)
-    return _flaunay.relax(_triangulators.of_device(device), given, _corners_of(bounds), times)
+    return _flaunay.relax(_triangulators.of_device(device), given, corners_of(bounds), times)

@@ -8,7 +8,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import as_floats
+from flaunay._arrays import as_floats, check_memory
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 
@@ -81,6 +81,7 @@ class _Interpolator:
             self._scale = _Scale(coordinates, rescale)
             self.tri = Delaunay(self._scale(coordinates), device=device)
         self.points = self.tri.points
+        check_memory(values, "values")
         self.values = self._as_values(values)
         if self.values.ndim == 0 or len(self.values) != self.tri.npoints:
             raise UsageError(
@@ -307,6 +308,7 @@ class CloughTocherInterpolator(_Columns):
 
     def _given(self, gradients: npt.ArrayLike) -> Doubles:
         wanted = (*self.values.shape, 2)
+        check_memory(gradients, "gradients")
         given = self._as_values(gradients)
         if given.shape != wanted:
             raise UsageError(f"gradients must have the shape {wanted}, not {given.shape}")
