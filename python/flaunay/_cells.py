@@ -21,6 +21,8 @@ _Doubles = npt.NDArray[np.float64]
 def _corners_of(bounds: Any) -> _Doubles:
     """The corners of a box or polygon, counter-clockwise, without a last one that repeats the first."""
     exterior = getattr(bounds, "exterior", None)
+    if exterior is not None and len(getattr(bounds, "interiors", ())):
+        raise UsageError("bounds must be a convex polygon, but the one given has holes")
     given = bounds if exterior is None else exterior.coords
     corners = np.asarray(as_floats(given, "bounds"), np.float64)
     if corners.shape == (4,):
@@ -36,8 +38,10 @@ def _corners_of(bounds: Any) -> _Doubles:
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]
     # The library decides exactly whether it is convex; here only which way around it goes.
-    across = corners - corners[:1]
     with np.errstate(all="ignore"):
+        across = corners - corners[:1]
+        # Neither overflows nor underflows.
+        across = across / (np.max(np.abs(across), initial=0.0) or 1.0)
         area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
     return corners[::-1] if area < 0 else corners
 
