@@ -359,7 +359,7 @@ def alpha_shape(
     Raises
     ------
     UsageError
-        For an alpha that is negative or no number.
+        For an alpha that is negative, NaN or no number.
     UsageError, InputError, DeviceError
         As of `Delaunay`.
     ImportError
@@ -400,7 +400,10 @@ def alpha_shape(
         if alpha != "auto":
             raise UsageError(f"alpha must be a number or 'auto', not {alpha!r}")
         return AlphaShape(tri, _covering_alpha(tri))
-    radius = float(alpha)
+    try:
+        radius = float(alpha)
+    except TypeError as error:
+        raise UsageError(f"alpha must be a number or 'auto', not {alpha!r}") from error
     if not radius >= 0:
         raise UsageError(f"alpha must not be negative, nor NaN: {radius}")
     return AlphaShape(tri, radius)
