@@ -11,6 +11,7 @@ import numpy.typing as npt
 from flaunay import _flaunay, _triangulators
 from flaunay._arrays import as_floats, as_points, summary
 from flaunay._errors import UsageError
+from flaunay._optional import optional
 
 if TYPE_CHECKING:
     from flaunay._voronoi import Voronoi
@@ -103,10 +104,16 @@ class ClippedVoronoi:
     def to_shapely(self) -> npt.NDArray[np.object_]:
         """An array of one shapely.Polygon per point, empty polygons for cells without vertices.
 
-        Needs shapely 2. A geopandas.GeoSeries takes the array as it is.
-        """
-        import shapely  # the caller's, and slow to import
+        Needs shapely 2. A geopandas.GeoSeries takes the array as it is. Vertices are rounded, so a
+        polygon can cross itself where vertices nearly coincide, as for points on a circle:
+        ``shapely.is_valid`` finds those, and ``shapely.make_valid`` mends them.
 
+        Raises
+        ------
+        ImportError
+            Without shapely.
+        """
+        shapely = optional("shapely", "ClippedVoronoi.to_shapely")
         has_cell = np.diff(self.offsets) > 0
         # Shapely's rings end where they begin.
         sizes = np.diff(self.offsets)[has_cell] + 1
