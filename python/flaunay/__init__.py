@@ -2,7 +2,9 @@
 
 ``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``LinearInterpolator``,
 ``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with
-SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``triangulate`` is the plain call,
+SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clipped`` and
+``voronoi_polygons`` clip cells to a box or a convex polygon, ``relax`` spreads points evenly, and
+``alpha_shape`` finds the outline of points. ``triangulate`` is the plain call,
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads

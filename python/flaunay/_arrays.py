@@ -155,6 +155,17 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
         raise UsageError(f"{name} are no array of numbers: {error}") from error
 
 
+def as_any(given: ArrayLike, name: str) -> npt.NDArray[Any]:
+    """An array of whatever type numpy finds; UsageError if something is masked, or in a device's memory."""
+    if is_masked(given):
+        return _of_masked(given, name)
+    _check_memory(given, name)
+    try:
+        return np.asarray(given)
+    except ValueError as error:
+        raise UsageError(f"{name} are no array: {error}") from error
+
+
 def as_floats(given: ArrayLike, name: str) -> FloatArray:
     """A C-contiguous, aligned array of float32 or float64, copied only if it is none already.
 
