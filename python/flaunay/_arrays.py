@@ -159,7 +159,7 @@ def as_any(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     """An array of whatever type numpy finds; UsageError if something is masked, or in a device's memory."""
     if is_masked(given):
         return _of_masked(given, name)
-    _check_memory(given, name)
+    check_memory(given, name)
     try:
         return np.asarray(given)
     except ValueError as error:

@@ -54,6 +54,9 @@ class NaturalNeighborInterpolator(_Columns):
     except at the points with Sibson's weights, and except on the circles of triangles with Laplace's.
     Otherwise as `LinearInterpolator`.
 
+    A query takes as many steps as it has neighbours: at the centre of very many cocircular points, all of
+    them.
+
     Examples
     --------
     >>> import flaunay
