@@ -9,6 +9,7 @@
 // One pass, with one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
 #include "shared/barycentric.h"
+#include "shared/queries_ahead.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
@@ -72,6 +73,7 @@ kernel void interpolate_clough_tocher(int n, int sets, int columns, double outsi
                                       global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
+    fetch_rows(i, n, columns, found, faces, points, source, values);
     global double* result = results + (size_t)order[i] * columns;
     if (found[i] >= 0) {
       const face f = faces[found[i]];

@@ -2,6 +2,7 @@
 // one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
 #include "shared/barycentric.h"
+#include "shared/queries_ahead.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
@@ -15,6 +16,7 @@ kernel void interpolate_linear(int n, int sets, int columns, double outside, glo
                                global const double* restrict values, global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
+    fetch_rows(i, n, columns, found, faces, points, source, values);
     global double* result = results + (size_t)order[i] * columns;
     if (found[i] >= 0) {
       const face f = faces[found[i]];
