@@ -15,8 +15,8 @@ BEGIN_SHARED
 static inline int triangle_ahead(int i, int n, GLOBAL const int* found) { return max(0, found[min(n - 1, i)]); }
 
 // found: the triangles of n queries, of which query i is the present one. values: rows by point.
-static inline void fetch_rows(int i, int n, int columns, GLOBAL const int* found, GLOBAL const face* faces,
-                              GLOBAL const double2* points, GLOBAL const int* source, GLOBAL const double* values) {
+FETCHING void fetch_rows(int i, int n, int columns, GLOBAL const int* found, GLOBAL const face* faces,
+                         GLOBAL const double2* points, GLOBAL const int* source, GLOBAL const double* values) {
 #if FETCH_AHEAD
   fetch(&faces[triangle_ahead(i + 3 * QUERIES_AHEAD, n, found)]);
   GLOBAL const face* at = &faces[triangle_ahead(i + 2 * QUERIES_AHEAD, n, found)];
