@@ -18,9 +18,13 @@
 
 #include "shared/coordinates.h"
 #include "shared/halfedges.h"
+#include "shared/prefetch.h"
 #include "shared/records.h"
 #include "shared/search.h"
 #include "shared/stars.h"
+
+// How many edges ahead of its use memory is fetched that is read by vertex.
+#define EDGES_AHEAD 192
 
 // n: points, of which the first so many are vertices as vertices[0] says. The others have no edges.
 kernel void count_edges(int n, global const int* restrict vertices, global const face* restrict faces,
@@ -97,11 +101,17 @@ kernel void start_gradients(int n, int columns, int room, global const int* rest
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     const double2 at = points[v];
-    const int last = min((int)firsts[v + 1], room);
+    const int last = min((int)firsts[v + 1], room), edges = min((int)firsts[n], room);
     for (int c = 0; c < columns; ++c) {
       const double value = values[(size_t)source[v] * columns + c];
       double x = 0.0, y = 0.0;
       for (int i = min((int)firsts[v], room); i < last; ++i) {
+#if FETCH_AHEAD
+        fetch(&source[neighbors[min(i + 2 * EDGES_AHEAD, edges - 1)]]);
+        const int ahead = neighbors[min(i + EDGES_AHEAD, edges - 1)];
+        fetch(&points[ahead]);
+        fetch(&values[(size_t)source[ahead] * columns + c]);
+#endif
         const int u = neighbors[i];
         const double2 edge = points[u] - at;
         const double rise = 6.0 * (values[(size_t)source[u] * columns + c] - value);
@@ -126,10 +136,15 @@ kernel void improve_gradients(int n, int columns, int room, int is_second, doubl
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     const double2 at = points[v];
-    const int last = min((int)firsts[v + 1], room);
+    const int last = min((int)firsts[v + 1], room), edges = min((int)firsts[n], room);
     for (int c = 0; c < columns; ++c) {
       double x = 0.0, y = 0.0;
       for (int i = min((int)firsts[v], room); i < last; ++i) {
+#if FETCH_AHEAD
+        const int ahead = neighbors[min(i + EDGES_AHEAD, edges - 1)];
+        fetch(&points[ahead]);
+        fetch(&gradients[(size_t)ahead * columns + c]);
+#endif
         const int u = neighbors[i];
         const double2 edge = points[u] - at, gradient = gradients[(size_t)u * columns + c];
         const double slope = 2.0 * (weights[i] * edge.x * gradient.x + weights[i] * edge.y * gradient.y);

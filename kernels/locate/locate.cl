@@ -285,6 +285,7 @@ static inline void approach(int first, int last, double bound, double unit, glob
     moved = 0;
     for (int k = 0; k < last - first; ++k) {
       const int next = step_towards(placed[first + k], at[k], bound, unit, points, faces);
+      fetch(&faces[next]);
       moved += next != at[k];
       at[k] = next;
     }
