@@ -73,9 +73,9 @@ kernel void interpolate_clough_tocher(int n, int sets, int columns, double outsi
                                       global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
-    fetch_rows(i, n, columns, found, faces, points, source, values);
     global double* result = results + (size_t)order[i] * columns;
     if (found[i] >= 0) {
+      fetch_rows(i, n, columns, found, faces, points, source, values);
       const face f = faces[found[i]];
       const double unit = frames[sets > 1 ? segment_of(i, sets, query_offsets) : 0].unit;
       double2 p[3];

@@ -27,7 +27,7 @@ struct Locator {
   Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
   Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
   std::size_t most_triangles = 0;      ///< of one set
-  bool has_clearances = false;  ///< measured only when queries for nearest points come
+  bool has_clearances = false;         ///< measured only when queries for nearest points come
   /// For the search of nearest points. There are none until a query needs them.
   Levels levels{};
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
