@@ -5,9 +5,8 @@
 // 1. make_faces, one pass over the triangles, finds the first triangle of each vertex. The host scans the numbers of
 //    vertices that each triangle is the first of; number_vertices numbers and copies them, and renumber_faces puts the
 //    numbers into the triangles. find_first_vertices says where each set's vertices begin.
-// 2. place_hull copies the hull, for sets without triangles. measure_clearances computes how near other vertices are,
-// when
-//    the first query for a nearest point comes.
+// 2. place_hull copies the hull, for sets without triangles. measure_clearances, which waits for the first query for a
+//    nearest point, computes how near other vertices are.
 // 3. start_triangles gives each leaf of the sets' cut trees the triangle where walks begin.
 // make_faces, place_hull and check_representatives find indices that are out of range.
 //
