@@ -16,8 +16,9 @@ static inline int next_corner(int k) { return k == 2 ? 0 : k + 1; }
 static inline int corner_before(int k) { return k == 0 ? 2 : k - 1; }
 
 // The corner opposite to a neighbour of the triangle.
+// Without branches, since they could not be predicted.
 static inline int corner_opposite(face f, int neighbor) {
-  return f.neighbor[0] == neighbor ? 0 : f.neighbor[1] == neighbor ? 1 : 2;
+  return (f.neighbor[0] != neighbor) + ((f.neighbor[0] != neighbor) & (f.neighbor[1] != neighbor));
 }
 
 // A corner and the half-edge of its triangle that does not touch it.
