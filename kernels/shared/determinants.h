@@ -3,6 +3,7 @@
 #ifndef FLAUNAY_DETERMINANTS_H
 #define FLAUNAY_DETERMINANTS_H
 
+#include "shared/areas.h"
 #include "shared/language.h"
 #include "shared/nearness.h"
 #include "shared/planar.h"
@@ -14,30 +15,12 @@ BEGIN_SHARED
 
 static inline int is_accurate(double det, double error) { return error <= DETERMINANT_ERROR * fabs(det); }
 
-// Of a compressed expansion, with all bits right except the last.
-static inline double expansion_value(const expansion* e) {
-  double value = 0.0;
-  for (int k = 0; k < e->size; ++k) value += e->part[k];
-  return value;
-}
-
-OUT_OF_LINE static inline double orient_value_exact(double2 a, double2 b, double2 c) {
-  const double2 ax = two_sum(a.x, -c.x), ay = two_sum(a.y, -c.y);
-  const double2 bx = two_sum(b.x, -c.x), by = two_sum(b.y, -c.y);
-  expansion sum;
-  sum.size = 0;
-  expansion_add_product(&sum, ax, by);
-  expansion_add_product(&sum, -ay, bx);
-  expansion_compress(&sum);
-  return expansion_value(&sum);
-}
+OUT_OF_LINE static inline double orient_value_exact(double2 a, double2 b, double2 c) { return area_exact(a, b, c); }
 
 // Twice the area of a, b, c, positive if they turn left.
 static inline double orient_value(double2 a, double2 b, double2 c) {
-  const double left = (a.x - c.x) * (b.y - c.y);
-  const double right = (a.y - c.y) * (b.x - c.x);
-  const double det = left - right;
-  return is_accurate(det, ORIENT_BOUND * (fabs(left) + fabs(right))) ? det : orient_value_exact(a, b, c);
+  const double2 area = area_filtered(a, b, c);
+  return is_accurate(area.x, ORIENT_BOUND * area.y) ? area.x : orient_value_exact(a, b, c);
 }
 
 static inline integer256 negated_256(integer256 x) {
