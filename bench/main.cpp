@@ -60,6 +60,9 @@ void add(CLI::App& app, Action& action);
 namespace primitives {
 void add(CLI::App& app, Action& action);
 }
+namespace natural {
+void add(CLI::App& app, Action& action);
+}
 namespace paper {
 void add(CLI::App& app, Action& action);
 }
@@ -79,8 +82,8 @@ int run(int argc, char** argv) {
   Action action;
   for (const auto add :
        {targets::add, peers::add, modes::add, sizes::add_scaling, cliffs::add, sizes::add_small, batches::add,
-        chunks::add, embedding::add, interpolation::add, cells::add, threads::add, processes::add, ranks::add,
-        launches::add, device::add, primitives::add, paper::add}) {
+        chunks::add, embedding::add, interpolation::add, natural::add, cells::add, threads::add,
+        processes::add, ranks::add, launches::add, device::add, primitives::add, paper::add}) {
     add(app, action);
   }
   try {

@@ -62,6 +62,10 @@ class CgalQueries {
                         std::vector<Corners>& corners) const = 0;
   virtual double nearest(Start start, const std::vector<double>& queries,
                          std::vector<std::int32_t>& points) const = 0;
+  /// Sibson's interpolation of one value per point by natural_neighbor_coordinates_2; NaN outside of the
+  /// hull.
+  virtual double natural(Start start, const std::vector<double>& queries, const std::vector<double>& values,
+                         std::vector<double>& results) const = 0;
   /// Circumcentres and cells; how many corners the cell of each point has.
   virtual double voronoi(std::vector<std::int32_t>& cell_sizes) const = 0;
   /// Whether two points are equally far from a query, exactly.

@@ -5,6 +5,7 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_hierarchy_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/natural_neighbor_coordinates_2.h>
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
@@ -104,9 +105,9 @@ struct Indexed {
     append_faces(triangulation, mesh);
   }
 
-  /// Runs answer(query, hint), which gives an index and the next hint, for all queries; the seconds.
-  template <typename Answer>
-  double answer_all(Start start, const std::vector<double>& coordinates, std::vector<std::int32_t>& indices,
+  /// Runs answer(query, hint), which gives an answer and the next hint, for all queries; the seconds.
+  template <typename Value, typename Answer>
+  double answer_all(Start start, const std::vector<double>& coordinates, std::vector<Value>& indices,
                     const Answer& answer) const {
     const Stopwatch watch;
     std::vector<IndexedPoint> queries;
@@ -148,6 +149,24 @@ struct Indexed {
     });
   }
 
+  double natural(Start start, const std::vector<double>& queries, const std::vector<double>& values,
+                 std::vector<double>& results) const {
+    using Weight = std::pair<typename Triangulation::Vertex_handle, double>;
+    std::vector<Weight> weights;
+    return answer_all(start, queries, results, [&](const Point& query, FaceHandle& hint) {
+      weights.clear();
+      const auto found = CGAL::natural_neighbor_coordinates_2(
+          triangulation, query, std::back_inserter(weights), CGAL::Identity<Weight>(), hint);
+      if (!found.third) return std::numeric_limits<double>::quiet_NaN();
+      hint = weights.front().first->face();
+      double sum = 0;
+      for (const auto& [vertex, weight] : weights) {
+        sum += weight * values[static_cast<std::size_t>(vertex->info().value)];
+      }
+      return sum / found.second;
+    });
+  }
+
   Triangulation triangulation;
   Mesh mesh;
 };
@@ -169,6 +188,12 @@ class Queries : public CgalQueries {
                  std::vector<std::int32_t>& points) const override {
     return start == Start::hierarchy ? with_hierarchy_.nearest(start, queries, points)
                                      : plain_.nearest(start, queries, points);
+  }
+
+  double natural(Start start, const std::vector<double>& queries, const std::vector<double>& values,
+                 std::vector<double>& results) const override {
+    return start == Start::hierarchy ? with_hierarchy_.natural(start, queries, values, results)
+                                     : plain_.natural(start, queries, values, results);
   }
 
   double voronoi(std::vector<std::int32_t>& cell_sizes) const override;

@@ -199,7 +199,6 @@ def main():
         return SKIPPED
 
     expected = comparison.run_on(REFERENCE, "")
-    comparison.compare(comparison.run_on(REFERENCE, "gpu"), expected)
     for runtime in installed:
         for tuning in TUNINGS:
             comparison.compare(comparison.run_on(runtime, tuning), expected)

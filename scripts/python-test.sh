@@ -28,7 +28,10 @@ rm -rf build/python-wheel
 # What triangulations are handed over to, in versions for the system's NumPy. The test of PyVista runs where that is
 # installed: it brings all of VTK.
 numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
-"${pip[@]}" install --quiet meshio networkx shapely "numpy==$numpy"
+"${pip[@]}" install --quiet meshio networkx shapely mypy "numpy==$numpy"
+
+# The annotations of the package and of what its users are shown.
+"$python" -m mypy --strict python/flaunay examples/python
 
 # The programs in the guide.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md

@@ -1066,6 +1066,97 @@ static void test_clipped_voronoi(void) {
   flaunay_triangulation_destroy(mesh);
 }
 
+// One part of clipped cells, after a call on the test's queue.
+static void check_part(const flaunay_device_clipped_voronoi* cells, flaunay_clipped_voronoi_part part,
+                       const void* expected, size_t bytes) {
+  unsigned char* found = malloc(bytes);
+  REQUIRE(found != NULL);
+  read_buffer(flaunay_device_clipped_voronoi_buffer(cells, part), bytes, found);
+  CHECK(memcmp(found, expected, bytes) == 0);
+  free(found);
+}
+
+static void check_same_cells(const flaunay_device_clipped_voronoi* cells,
+                             const flaunay_clipped_voronoi* expected) {
+  const size_t n = flaunay_clipped_voronoi_point_count(expected);
+  const size_t vertices = flaunay_clipped_voronoi_vertex_count(expected);
+  REQUIRE(flaunay_device_clipped_voronoi_vertex_count(cells) == vertices && vertices > 0);
+  check_part(cells, FLAUNAY_CLIPPED_VORONOI_VERTICES, flaunay_clipped_voronoi_vertices(expected),
+             2 * vertices * sizeof(double));
+  check_part(cells, FLAUNAY_CLIPPED_VORONOI_OFFSETS, flaunay_clipped_voronoi_offsets(expected),
+             (n + 1) * sizeof(int32_t));
+  check_part(cells, FLAUNAY_CLIPPED_VORONOI_AREAS, flaunay_clipped_voronoi_areas(expected),
+             n * sizeof(double));
+  check_part(cells, FLAUNAY_CLIPPED_VORONOI_CENTROIDS, flaunay_clipped_voronoi_centroids(expected),
+             2 * n * sizeof(double));
+}
+
+// All cells have area in the box, so that no centroid is NaN, of which there are many.
+static void test_clipped_voronoi_on_device(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const double box[] = {-9, -9, 9, -9, 9, 9, -9, 9}, bow[] = {0, 0, 3, 3, 3, 0, 0, 3};
+  flaunay_triangulation* mesh = NULL;
+  flaunay_clipped_voronoi* expected = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, box, 4, &expected) == FLAUNAY_SUCCESS);
+
+  const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  flaunay_device_triangulation* device_mesh = make_device_triangulation();
+  flaunay_device_clipped_voronoi* cells = NULL;
+  REQUIRE(flaunay_device_clipped_voronoi_create(&cells) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_clipped_voronoi_vertex_count(cells) == 0);
+  CHECK(flaunay_device_clipped_voronoi_buffer(cells, FLAUNAY_CLIPPED_VORONOI_AREAS) == NULL);
+  cl_event done = NULL;
+  const flaunay_enqueue enqueue = {.queue = queue, .event = &done};
+  CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, box, 4, NULL, cells), usage,
+              "parts"));
+  REQUIRE(flaunay_triangulate_device(triangulator, &square, kAllParts, NULL, device_mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, box, 4, &enqueue, cells) ==
+          FLAUNAY_SUCCESS);
+  REQUIRE(done != NULL);
+  CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
+  clReleaseEvent(done);
+  check_same_cells(cells, expected);
+
+  // The caller's buffer, and one that is too small.
+  const size_t bytes = 16 * flaunay_clipped_voronoi_vertex_count(expected);
+  cl_mem enough = make_buffer(context, bytes, NULL), small = make_buffer(context, bytes - 1, NULL);
+  const flaunay_clipped_voronoi_part vertices = FLAUNAY_CLIPPED_VORONOI_VERTICES;
+  const flaunay_enqueue plain = {.queue = queue};
+  CHECK(flaunay_device_clipped_voronoi_set_buffer(cells, vertices, enough) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_clipped_voronoi_buffer(cells, vertices) == enough);
+  REQUIRE(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, box, 4, &plain, cells) ==
+          FLAUNAY_SUCCESS);
+  check_same_cells(cells, expected);
+  CHECK(flaunay_device_clipped_voronoi_set_buffer(cells, vertices, small) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, box, 4, &plain, cells), usage,
+              "vertices"));
+
+  CHECK(flaunay_device_clipped_voronoi_set_buffer(cells, vertices, NULL) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_device_clipped_voronoi_set_buffer(cells, 3, NULL), usage, "not one part"));
+  CHECK(flaunay_device_clipped_voronoi_set_buffer(NULL, vertices, NULL) == usage);
+  CHECK(flaunay_device_clipped_voronoi_create(NULL) == usage);
+  CHECK(flaunay_device_clipped_voronoi_buffer(NULL, vertices) == NULL);
+  CHECK(flaunay_device_clipped_voronoi_vertex_count(NULL) == 0);
+  CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, bow, 4, &plain, cells),
+              FLAUNAY_ERROR_INPUT, "corner 1"));
+  CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, NULL, 4, &plain, cells), usage,
+              "null"));
+  CHECK(fails(flaunay_voronoi_clip_device(NULL, &square, device_mesh, box, 4, &plain, cells), usage, "NULL"));
+  CHECK(
+      fails(flaunay_voronoi_clip_device(triangulator, &square, NULL, box, 4, &plain, cells), usage, "NULL"));
+  CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, box, 4, &plain, NULL), usage,
+              "NULL"));
+  flaunay_device_clipped_voronoi_destroy(cells);
+  flaunay_device_clipped_voronoi_destroy(NULL);
+  flaunay_device_triangulation_destroy(device_mesh);
+  flaunay_clipped_voronoi_destroy(expected);
+  flaunay_triangulation_destroy(mesh);
+  clReleaseMemObject(square.memory);
+  clReleaseMemObject(enough);
+  clReleaseMemObject(small);
+}
+
 static void test_relax(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4};
   double places[] = {1, 1, 1, 3, 9, 9}, expected[] = {2, 1, 2, 3, 9, 9};
@@ -1707,6 +1798,7 @@ static void test_all(void) {
   test_out_of_memory();
   test_voronoi();
   test_clipped_voronoi();
+  test_clipped_voronoi_on_device();
   test_relax();
   test_locator();
   test_derived_on_device();

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Terrain from scattered heights, interpolated in triangles: interpolation.py PICTURE.png"""
+"""Terrain from scattered heights: linear, Clough-Tocher, natural neighbours: interpolation.py PICTURE.png"""
 
 import sys
 
@@ -15,6 +15,11 @@ from matplotlib.colors import LightSource
 import flaunay
 
 HEIGHTS = 4000
+INTERPOLATORS = {
+    "linear": flaunay.LinearInterpolator,
+    "Clough-Tocher": flaunay.CloughTocherInterpolator,
+    "natural neighbours": flaunay.NaturalNeighborInterpolator,
+}
 
 
 def terrain() -> npt.NDArray[np.float64]:
@@ -27,8 +32,8 @@ def terrain() -> npt.NDArray[np.float64]:
 def shaded(heights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Colours by height, with light from the north-west."""
     light = LightSource(azdeg=315, altdeg=40)
-    known = np.nan_to_num(heights, nan=np.nanmin(heights))
-    colours = light.shade(
+    known = np.nan_to_num(heights, nan=float(np.nanmin(heights)))
+    colours: npt.NDArray[np.float64] = light.shade(
         known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=100, vmax=1050, blend_mode="soft"
     )
     colours[np.isnan(heights)] = 1
@@ -45,16 +50,17 @@ def main(path: str) -> None:
     values = truth.ravel()[places]
     grid = np.moveaxis(np.mgrid[:height, :width], 0, -1)
 
-    surface = flaunay.Delaunay(points).interpolate(values, grid)
-    error = np.sqrt(np.nanmean((surface - truth) ** 2))
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.3), layout="constrained")
-    left.imshow(shaded(truth))
-    left.plot(points[:, 1], points[:, 0], ".", color="black", markersize=0.8)
-    left.set_title(f"terrain, and {HEIGHTS:,} places in it")
-    right.imshow(shaded(surface))
-    right.set_title(f"linear interpolation: {error:.1f} m off")
-    for axes in (left, right):
+    figure, panels = plt.subplots(2, 2, figsize=(7, 6.6), layout="constrained")
+    first, *others = panels.flat
+    first.imshow(shaded(truth))
+    first.plot(points[:, 1], points[:, 0], ".", color="black", markersize=0.8)
+    first.set_title(f"terrain, and {HEIGHTS:,} places in it")
+    for axes, (name, interpolator) in zip(others, INTERPOLATORS.items()):
+        surface = interpolator(points, values)(grid)
+        error = np.sqrt(np.nanmean((surface - truth) ** 2))
+        axes.imshow(shaded(surface))
+        axes.set_title(f"{name}: {error:.1f} m off")
+    for axes in panels.flat:
         axes.set_axis_off()
     figure.savefig(path, dpi=100)
 

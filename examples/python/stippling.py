@@ -25,7 +25,8 @@ def photograph() -> npt.NDArray[np.float64]:
     path = matplotlib.cbook.get_sample_data("grace_hopper.jpg", asfileobj=False)
     brightness = plt.imread(str(path)) / 255 @ [0.299, 0.587, 0.114]
     # Each pixel as four, so that the smallest cells have enough of them.
-    return 1 - brightness[:470, 60:470].repeat(2, axis=0).repeat(2, axis=1)
+    darkness: npt.NDArray[np.float64] = 1 - brightness[:470, 60:470]
+    return darkness.repeat(2, axis=0).repeat(2, axis=1)
 
 
 def stipple(
@@ -36,7 +37,7 @@ def stipple(
     column, row = np.meshgrid(np.arange(width) + 0.5, height - np.arange(height) - 0.5)
     pixels = np.stack([column, row], axis=-1).reshape(-1, 2)
     mass = weights.ravel()
-    dots = pixels[random.choice(len(pixels), DOTS, p=mass / mass.sum())]
+    dots: npt.NDArray[np.float64] = pixels[random.choice(len(pixels), DOTS, p=mass / mass.sum())]
     dots = dots + random.uniform(-0.5, 0.5, dots.shape)
     for _ in range(ROUNDS):
         nearest = flaunay.Delaunay(dots).nearest(pixels)

@@ -18,17 +18,38 @@
 
 #include "shared/coordinates.h"
 #include "shared/halfedges.h"
+#include "shared/prefetch.h"
 #include "shared/records.h"
 #include "shared/search.h"
 #include "shared/stars.h"
 
+// How many edges ahead of its use memory is fetched that is read by vertex.
+#define EDGES_AHEAD 192
+
+// Fetches what a walk around a vertex begins with: of vertex v, and at twice the distance its first triangle. last: the
+// last vertex.
+#define VERTICES_AHEAD 24
+FETCHING void fetch_star(int v, int last, global const double2* points, global const face* faces,
+                         global const int* first_triangle) {
+#if FETCH_AHEAD
+  fetch(&faces[first_triangle[min(v + VERTICES_AHEAD, last)]]);
+  global const face* at = &faces[first_triangle[min(v, last)]];
+  for (int k = 0; k < 3; ++k) {
+    fetch(&faces[max(0, at->neighbor[k])]);
+    fetch(&points[at->corner[k]]);
+  }
+#endif
+}
+
 // n: points, of which the first so many are vertices as vertices[0] says. The others have no edges.
-kernel void count_edges(int n, global const int* restrict vertices, global const face* restrict faces,
-                        global const int* restrict first_triangle, global uint* restrict counts) {
+kernel void count_edges(int n, global const int* restrict vertices, global const double2* restrict points,
+                        global const face* restrict faces, global const int* restrict first_triangle,
+                        global uint* restrict counts) {
   const int v = get_global_id(0);
   if (v < n) {
     uint count = 0;
     if (v < *vertices) {
+      fetch_star(v + VERTICES_AHEAD, *vertices - 1, points, faces, first_triangle);
       star_walk walk = star_begin(v, first_triangle[v]);
       while (star_next(&walk, faces)) ++count;
     }
@@ -59,6 +80,7 @@ kernel void write_edges(int n, int room, global const int* restrict vertices, gl
                         global double* restrict weights, global double* restrict inverses) {
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
+    fetch_star(v + VERTICES_AHEAD, *vertices - 1, points, faces, first_triangle);
     const double2 at = points[v];
     const int first = min((int)firsts[v], room), last = min((int)firsts[v + 1], room);
     star_walk walk = star_begin(v, first_triangle[v]);
@@ -97,11 +119,17 @@ kernel void start_gradients(int n, int columns, int room, global const int* rest
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     const double2 at = points[v];
-    const int last = min((int)firsts[v + 1], room);
+    const int last = min((int)firsts[v + 1], room), edges = min((int)firsts[n], room);
     for (int c = 0; c < columns; ++c) {
       const double value = values[(size_t)source[v] * columns + c];
       double x = 0.0, y = 0.0;
       for (int i = min((int)firsts[v], room); i < last; ++i) {
+#if FETCH_AHEAD
+        fetch(&source[neighbors[min(i + 2 * EDGES_AHEAD, edges - 1)]]);
+        const int ahead = neighbors[min(i + EDGES_AHEAD, edges - 1)];
+        fetch(&points[ahead]);
+        fetch(&values[(size_t)source[ahead] * columns + c]);
+#endif
         const int u = neighbors[i];
         const double2 edge = points[u] - at;
         const double rise = 6.0 * (values[(size_t)source[u] * columns + c] - value);
@@ -126,18 +154,23 @@ kernel void improve_gradients(int n, int columns, int room, int is_second, doubl
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     const double2 at = points[v];
-    const int last = min((int)firsts[v + 1], room);
+    const int last = min((int)firsts[v + 1], room), edges = min((int)firsts[n], room);
     for (int c = 0; c < columns; ++c) {
       double x = 0.0, y = 0.0;
       for (int i = min((int)firsts[v], room); i < last; ++i) {
+#if FETCH_AHEAD
+        const int ahead = neighbors[min(i + EDGES_AHEAD, edges - 1)];
+        fetch(&points[ahead]);
+        fetch(&gradients[(size_t)ahead * columns + c]);
+#endif
         const int u = neighbors[i];
         const double2 edge = points[u] - at, gradient = gradients[(size_t)u * columns + c];
-        const double slope = 2.0 * (weights[i] * edge.x * gradient.x + weights[i] * edge.y * gradient.y);
+        const double slope = weights[i] * (edge.x * gradient.x + edge.y * gradient.y);
         x += slope * edge.x;
         y += slope * edge.y;
       }
       const size_t to = (size_t)v * columns + c;
-      const double2 local_best = start[to] - solved(inverses + 3 * (size_t)v, x, y);
+      const double2 local_best = start[to] - solved(inverses + 3 * (size_t)v, 2.0 * x, 2.0 * y);
       const double2 old = is_second ? VECTOR(double2, 0.0, 0.0) : before[to];
       before[to] = factor * (local_best - old) + old;
     }

@@ -2,6 +2,7 @@
 // one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
 #include "shared/barycentric.h"
+#include "shared/queries_ahead.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
@@ -17,6 +18,7 @@ kernel void interpolate_linear(int n, int sets, int columns, double outside, glo
   if (i < n) {
     global double* result = results + (size_t)order[i] * columns;
     if (found[i] >= 0) {
+      fetch_rows(i, n, columns, found, faces, points, source, values);
       const face f = faces[found[i]];
       const double unit = frames[sets > 1 ? segment_of(i, sets, query_offsets) : 0].unit;
       double2 p[3];

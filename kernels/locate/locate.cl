@@ -5,7 +5,8 @@
 // 1. make_faces, one pass over the triangles, finds the first triangle of each vertex. The host scans the numbers of
 //    vertices that each triangle is the first of; number_vertices numbers and copies them, and renumber_faces puts the
 //    numbers into the triangles. find_first_vertices says where each set's vertices begin.
-// 2. measure_clearances computes how near other vertices are. place_hull copies the hull, for sets without triangles.
+// 2. place_hull copies the hull, for sets without triangles. measure_clearances, which waits for the first query for a
+//    nearest point, computes how near other vertices are.
 // 3. start_triangles gives each leaf of the sets' cut trees the triangle where walks begin.
 // make_faces, place_hull and check_representatives find indices that are out of range.
 //
@@ -29,12 +30,11 @@
 #include "shared/records.h"
 #include "shared/search.h"
 
-static inline int corner_opposite(face f, int neighbor) {
-  return f.neighbor[0] == neighbor ? 0 : f.neighbor[1] == neighbor ? 1 : 2;
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Making
+
+// Per triangle, memory is fetched of the corners of the one that is so many later: points may be in any order.
+#define TRIANGLES_AHEAD 16
 
 static inline face read_face(int t, global const int* triangles, global const int* neighbors) {
   face f;
@@ -53,8 +53,8 @@ static inline int is_mutual(int t, face f, int k, int first, int last, global co
   if (u < first || u >= last || u == t) return 0;
   const face beyond = read_face(u, triangles, neighbors);
   const int back = corner_opposite(beyond, t);
-  return beyond.neighbor[back] == t && beyond.corner[next_corner(back)] == f.corner[corner_before(k)] &&
-         beyond.corner[corner_before(back)] == f.corner[next_corner(k)];
+  return (beyond.neighbor[back] == t) & (beyond.corner[next_corner(back)] == f.corner[corner_before(k)]) &
+         (beyond.corner[corner_before(back)] == f.corner[next_corner(k)]);
 }
 
 // incident: INT_MAX throughout; gets the first triangle of each vertex. bad[0]: the first triangle that cannot be.
@@ -64,6 +64,11 @@ kernel void make_faces(int n, int sets, global const int* restrict triangle_offs
                        global volatile int* restrict incident, global volatile int* restrict bad) {
   const int t = get_global_id(0);
   if (t < n) {
+#if FETCH_AHEAD
+    for (int k = 0; k < 3; ++k) {
+      fetch((global const int*)&incident[triangles[3 * min(n - 1, t + TRIANGLES_AHEAD) + k]]);
+    }
+#endif
     const int s = segment_of(t, sets, triangle_offsets);
     face f = read_face(t, triangles, neighbors);
     int good = f.corner[0] != f.corner[1] && f.corner[1] != f.corner[2] && f.corner[2] != f.corner[0];
@@ -102,6 +107,12 @@ kernel void number_vertices(int n, global const face* restrict faces, global con
                             global int* restrict first_triangle) {
   const int t = get_global_id(0);
   if (t < n) {
+#if FETCH_AHEAD
+    const int ahead = min(n - 1, t + TRIANGLES_AHEAD);
+    if (firsts[ahead] != firsts[min(n - 1, ahead + 1)]) {
+      for (int k = 0; k < 3; ++k) fetch(&input[2 * faces[ahead].corner[k]]);
+    }
+#endif
     int to = (int)firsts[t];
     for (int k = 0; k < 3; ++k) {
       const int from = faces[t].corner[k];
@@ -244,6 +255,39 @@ static inline int walk(double2 q, int start, int most, double bound, double unit
   return GIVEN_UP;
 }
 
+// Where a walk from triangle t goes that has q strictly beyond an edge, as far as the filter can decide; t if it does
+// not. Without branches, since they could not be predicted.
+static inline int step_towards(double2 q, int t, double bound, double unit, global const double2* points,
+                               global const face* faces) {
+  global const face* f = &faces[t];
+  const double2 a = unit * points[f->corner[0]] - q, b = unit * points[f->corner[1]] - q,
+                c = unit * points[f->corner[2]] - q;
+  const double ab = a.x * b.y, ba = a.y * b.x, bc = b.x * c.y, cb = b.y * c.x, ca = c.x * a.y, ac = c.y * a.x;
+  const int beyond_bc = bc - cb < -bound * (fabs(bc) + fabs(cb));
+  const int beyond_ca = ca - ac < -bound * (fabs(ca) + fabs(ac));
+  const int beyond_ab = ab - ba < -bound * (fabs(ab) + fabs(ba));
+  const int u = f->neighbor[beyond_ca + 2 * (beyond_ab & !beyond_ca)];
+  const int moves = -((beyond_bc | beyond_ca | beyond_ab) & (u >= 0));
+  return t ^ ((t ^ u) & moves);
+}
+
+// Brings walks of queries [first, last), DESCENTS at most, nearer to their ends at the same time, as each step waits
+// for the one before: until few of them move, and by no more than so many steps.
+#define MOST_APPROACH 32
+static inline void approach(int first, int last, double bound, double unit, global const double2* placed,
+                            global const double2* points, global const face* faces, int* at) {
+  int moved = last - first;
+  for (int step = 0; step < MOST_APPROACH && 2 * moved >= last - first; ++step) {
+    moved = 0;
+    for (int k = 0; k < last - first; ++k) {
+      const int next = step_towards(placed[first + k], at[k], bound, unit, points, faces);
+      fetch(&faces[next]);
+      moved += next != at[k];
+      at[k] = next;
+    }
+  }
+}
+
 // n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set. keys: each
 // query's leaf, counted over all sets, where a set has one leaf more than its tree, or one alone: so in the order of
 // keys each set's queries take the places that they had. order: 0, 1, 2...
@@ -322,6 +366,9 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
         fetch(&faces[start[j]]);
       }
       for (int j = 0; j < end - begin && set.triangles > 0; ++j) fetch(&points[faces[start[j]].corner[0]]);
+#if FETCH_AHEAD
+      if (set.triangles > 0) approach(begin, end, bound, frame.unit, placed, points, faces, start);
+#endif
       for (int i = begin; i < end; ++i) {
         int at = -1;
         if (set.triangles > 0) {

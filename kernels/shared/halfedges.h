@@ -4,6 +4,7 @@
 #define FLAUNAY_HALFEDGES_H
 
 #include "shared/language.h"
+#include "shared/records.h"
 
 BEGIN_SHARED
 
@@ -13,6 +14,12 @@ static inline int previous_halfedge(int h) { return h % 3 == 0 ? h + 2 : h - 1; 
 // The corners of a triangle by their numbers in it: 0, 1 and 2.
 static inline int next_corner(int k) { return k == 2 ? 0 : k + 1; }
 static inline int corner_before(int k) { return k == 0 ? 2 : k - 1; }
+
+// The corner opposite to a neighbour of the triangle.
+// Without branches, since they could not be predicted.
+static inline int corner_opposite(face f, int neighbor) {
+  return (f.neighbor[0] != neighbor) + ((f.neighbor[0] != neighbor) & (f.neighbor[1] != neighbor));
+}
 
 // A corner and the half-edge of its triangle that does not touch it.
 static inline int opposite_halfedge(int corner) { return next_halfedge(corner); }

@@ -61,24 +61,29 @@ OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
   return cross_by_expansions(bx, by, cx, cy);
 }
 
-// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it, UNDECIDED.
-static inline int circle_filtered(double2 a, double2 b, double2 c, double2 d, double bound) {
-  const double2 ad = a - d;
-  const double2 bd = b - d;
-  const double2 cd = c - d;
+// The in-circle determinant of a, b, c and the point from which these are seen, and the sum of its terms' magnitudes;
+// with the squares of their distances.
+static inline double2 circle_determinant(double2 ad, double2 bd, double2 cd, double al, double bl, double cl) {
   const double bc = bd.x * cd.y;
   const double cb = cd.x * bd.y;
   const double ca = cd.x * ad.y;
   const double ac = ad.x * cd.y;
   const double ab = ad.x * bd.y;
   const double ba = bd.x * ad.y;
-  const double al = ad.x * ad.x + ad.y * ad.y;
-  const double bl = bd.x * bd.x + bd.y * bd.y;
-  const double cl = cd.x * cd.x + cd.y * cd.y;
   const double det = al * (bc - cb) + bl * (ca - ac) + cl * (ab - ba);
   const double magnitude = (fabs(bc) + fabs(cb)) * al + (fabs(ca) + fabs(ac)) * bl + (fabs(ab) + fabs(ba)) * cl;
-  const double error = bound * magnitude;
-  return filtered_sign(det, error, bound);
+  return VECTOR(double2, det, magnitude);
+}
+
+static inline double squared_length(double2 p) { return p.x * p.x + p.y * p.y; }
+
+// 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it, UNDECIDED.
+static inline int circle_filtered(double2 a, double2 b, double2 c, double2 d, double bound) {
+  const double2 ad = a - d;
+  const double2 bd = b - d;
+  const double2 cd = c - d;
+  const double2 det = circle_determinant(ad, bd, cd, squared_length(ad), squared_length(bd), squared_length(cd));
+  return filtered_sign(det.x, bound * det.y, bound);
 }
 
 // The angle under which a point sees the edge from a to b: its cotangent is the dot product over the cross product, of
@@ -157,14 +162,14 @@ static inline integer256 circle_term(long ax, long ay, long bx, long by, long cx
   return product_256(sum_of_squares(ax, ay), cross_product(bx, by, cx, cy));
 }
 
-static inline int circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
-  return sign_of_256(sum_256(sum_256(circle_term(ax, ay, bx, by, cx, cy), circle_term(bx, by, cx, cy, ax, ay)),
-                             circle_term(cx, cy, ax, ay, bx, by)));
+static inline integer256 circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
+  return sum_256(sum_256(circle_term(ax, ay, bx, by, cx, cy), circle_term(bx, by, cx, cy, ax, ay)),
+                 circle_term(cx, cy, ax, ay, bx, by));
 }
 
-OUT_OF_LINE static inline int circle_by_expansions(const double2* dx, const double2* dy) {
-  expansion sum;
-  sum.size = 0;
+// The determinant, compressed.
+static inline void circle_by_expansions(const double2* dx, const double2* dy, expansion* sum) {
+  sum->size = 0;
   // lift(k) times the cross product of the other two: six products of four differences for each coordinate's
   // square, twelve in all.
   for (int term = 0; term < 12; ++term) {
@@ -184,9 +189,14 @@ OUT_OF_LINE static inline int circle_by_expansions(const double2* dx, const doub
       const double factor[2] = {by.x, by.y};
       expansion_multiply(&product, factor, 2);
     }
-    for (int s = 0; s < product.size; ++s) expansion_add(&sum, product.part[s]);
-    expansion_compress(&sum);
+    for (int s = 0; s < product.size; ++s) expansion_add(sum, product.part[s]);
+    expansion_compress(sum);
   }
+}
+
+OUT_OF_LINE static inline int circle_sign_by_expansions(const double2* dx, const double2* dy) {
+  expansion sum;
+  circle_by_expansions(dx, dy, &sum);
   return expansion_sign(&sum);
 }
 
@@ -211,15 +221,23 @@ static inline circle_differences differences_from(double2 d, double2 a, double2 
   return from;
 }
 
+// Whether all differences are integers below 2^WIDE_BITS units, which are put into x and y.
+static inline int are_integers(const circle_differences* from, double factor, long* x, long* y) {
+  int integers = 1;
+  for (int k = 0; k < 3; ++k) {
+    integers &= is_integer(from->x[k], factor, &x[k]) & is_integer(from->y[k], factor, &y[k]);
+  }
+  return integers;
+}
+
 // Of any four points.
 OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
   const circle_differences from = differences_from(d, a, b, c);
   if (from.largest == 0.0) return 0;
-  const double factor = unit_factor(from.largest, WIDE_BITS);
   long x[3], y[3];
-  int integers = 1;
-  for (int k = 0; k < 3; ++k) integers &= is_integer(from.x[k], factor, &x[k]) & is_integer(from.y[k], factor, &y[k]);
-  return integers ? circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]) : circle_by_expansions(from.x, from.y);
+  return are_integers(&from, unit_factor(from.largest, WIDE_BITS), x, y)
+             ? sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]))
+             : circle_sign_by_expansions(from.x, from.y);
 }
 
 // The same, sooner, of points for which circle_filtered or angle_compared could not decide with this bound. A bound

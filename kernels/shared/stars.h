@@ -14,7 +14,10 @@ typedef struct {
   int vertex, first, triangle, is_back, neighbor;
 } star_walk;
 
-static inline int corner_of(face f, int vertex) { return f.corner[0] == vertex ? 0 : f.corner[1] == vertex ? 1 : 2; }
+// Without branches, since they could not be predicted.
+static inline int corner_of(face f, int vertex) {
+  return (f.corner[0] != vertex) + ((f.corner[0] != vertex) & (f.corner[1] != vertex));
+}
 
 static inline star_walk star_begin(int vertex, int triangle) {
   const star_walk walk = {vertex, triangle, triangle, 0, -1};

@@ -1,9 +1,13 @@
 """Exact two-dimensional Delaunay triangulation on OpenCL devices.
 
 ``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``LinearInterpolator``,
-``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with SciPy's calls. ``triangulate`` is the plain call,
+``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with
+SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clipped`` and
+``voronoi_polygons`` clip cells to a box or a convex polygon, ``relax`` spreads points evenly, and
+``alpha_shape`` finds the outline of points. ``triangulate`` is the plain call,
 for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
-memory, as ``pyopencl.array.Array``. ``triangulate_chunks`` is for more points than fit memory: it reads
+memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
+result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files.
 
 Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
@@ -19,6 +23,8 @@ from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
 from flaunay._delaunay import Delaunay
+from flaunay._device_queries import DeviceLocator
+from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._flaunay import __version__
 from flaunay._interpolate import (
@@ -27,6 +33,7 @@ from flaunay._interpolate import (
     NearestInterpolator,
     griddata,
 )
+from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._triangulation import Triangulation, modes, triangulate
 from flaunay._triangulators import devices
@@ -38,12 +45,16 @@ __all__ = [
     "ClippedVoronoi",
     "CloughTocherInterpolator",
     "Delaunay",
+    "DeviceClippedVoronoi",
     "DeviceError",
+    "DeviceLocator",
     "DeviceTriangulation",
+    "DeviceVoronoi",
     "Error",
     "InputError",
     "InternalError",
     "LinearInterpolator",
+    "NaturalNeighborInterpolator",
     "NearestInterpolator",
     "Triangulation",
     "UsageError",
@@ -54,6 +65,7 @@ __all__ = [
     "griddata",
     "modes",
     "relax",
+    "relax_device",
     "triangulate",
     "triangulate_chunks",
     "triangulate_device",

@@ -102,7 +102,7 @@ class Differences:
         return ordinary
 
 
-def _exact_sign(u: Differences, v: Differences, row: int) -> int:
+def _exact_dot(u: Differences, v: Differences, row: int) -> Fraction:
     """In rational numbers."""
     dot = Fraction(0)
     for axis in range(2):
@@ -111,7 +111,7 @@ def _exact_sign(u: Differences, v: Differences, row: int) -> int:
             for side in (u, v)
         )
         dot += first * second
-    return (dot > 0) - (dot < 0)
+    return dot
 
 
 def _twofold_signs(u: Differences, v: Differences) -> tuple[Signs, npt.NDArray[np.bool_]]:
@@ -139,7 +139,8 @@ def _signs(u: Differences, v: Differences) -> Signs:
         signs[unsure], certain = _twofold_signs(u[unsure], v[unsure])
         unsure = unsure[~certain]
     for row in unsure.tolist():
-        signs[row] = _exact_sign(u, v, row)
+        dot = _exact_dot(u, v, row)
+        signs[row] = (dot > 0) - (dot < 0)
     return signs
 
 
@@ -170,8 +171,9 @@ def signs_of_turns(a: Doubles, b: Doubles, c: Doubles) -> Signs:
         return _signs(Differences(b, a), Differences(c, a).turned())
 
 
-# Where terms cancel to less than this part of their magnitude, plain doubles lose too much.
+# Where terms cancel to less than this part of their magnitude, plain doubles lose too much, and twice the precision.
 _CANCELLED = 1 / 16
+_CANCELLED_TWOFOLD = 2.0**48 * _TWOFOLD_ERROR
 
 
 def circumradii_of(a: Doubles, b: Doubles, c: Doubles) -> Doubles:
@@ -192,6 +194,9 @@ def circumradii_of(a: Doubles, b: Doubles, c: Doubles) -> Doubles:
         if few.size:
             total, rest = u[few].twofold_dot(turned[few])
             cross[few] = total + rest
+            limit = _CANCELLED_TWOFOLD * magnitude[few] + _UNDERFLOW
+            for row in few[np.abs(cross[few]) < limit].tolist():
+                cross[row] = float(_exact_dot(u, turned, row))
         # Squares, which are exact for coordinates of few bits.
         squares = [(side.value**2).sum(axis=1) for side in (u, v, w)]
         product = np.sqrt(squares[0] * squares[1] * squares[2])

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._accurate import signs_of_turns
-from flaunay._arrays import ArrayLike, frozen, summary
+from flaunay._arrays import ArrayLike, freeze_all, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._graphs import minimum_spanning_forest
@@ -41,6 +41,10 @@ class AlphaShape:
         self.delaunay = delaunay
         self.alpha = alpha
         self.inside: Mask = frozen(delaunay.circumradii <= alpha)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=self.delaunay.npoints, triangles=len(self.simplices))
@@ -359,7 +363,7 @@ def alpha_shape(
     Raises
     ------
     UsageError
-        For an alpha that is negative or no number.
+        For an alpha that is negative, NaN or no number.
     UsageError, InputError, DeviceError
         As of `Delaunay`.
     ImportError
@@ -400,7 +404,10 @@ def alpha_shape(
         if alpha != "auto":
             raise UsageError(f"alpha must be a number or 'auto', not {alpha!r}")
         return AlphaShape(tri, _covering_alpha(tri))
-    radius = float(alpha)
+    try:
+        radius = float(alpha)
+    except TypeError as error:
+        raise UsageError(f"alpha must be a number or 'auto', not {alpha!r}") from error
     if not radius >= 0:
         raise UsageError(f"alpha must not be negative, nor NaN: {radius}")
     return AlphaShape(tri, radius)

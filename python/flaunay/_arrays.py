@@ -41,6 +41,15 @@ _DEVICE_MEMORY = {
     10: "a ROCm device",
 }
 
+_INTERPOLATE = "call triangulate_device(...).locator().interpolate, or "
+# What takes arrays of pyopencl as they are.
+_DEVICE_CALLS = {
+    "points": "call triangulate_device, or ",
+    "xi": _INTERPOLATE,
+    "values": _INTERPOLATE,
+    "gradients": _INTERPOLATE,
+}
+
 # Rows of a part; a few arrays of so many doubles fit a processor's cache.
 _ROWS = 1 << 14
 
@@ -77,13 +86,16 @@ def is_masked(given: object) -> TypeGuard[np.ma.MaskedArray[Any, Any]]:
 
 def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any]:
     """The numbers of a masked array; UsageError if one is masked, since leaving points out would renumber the rest."""
-    masked = np.argwhere(np.ma.getmaskarray(given))
+    # The annotations of NumPy 1 lack these two functions.
+    numpy_ma: Any = np.ma
+    masked = np.argwhere(numpy_ma.getmaskarray(given))
     if len(masked):
         hint = ", as points[~points.mask.any(axis=1)]" if name == "points" else ""
         raise UsageError(
             f"{name}{masked[0].tolist()} is masked: leave masked ones out before{hint}"
         )
-    return np.ma.getdata(given)
+    numbers: npt.NDArray[Any] = numpy_ma.getdata(given)
+    return numbers
 
 
 def _of_arrow(given: Any, name: str) -> npt.NDArray[Any]:
@@ -108,10 +120,10 @@ def _of_dlpack(given: Any) -> npt.NDArray[Any]:
     return array
 
 
-def _check_memory(given: Any, name: str) -> None:
+def check_memory(given: Any, name: str) -> None:
     """UsageError for an array that is in a device's memory."""
     if type(given).__module__.partition(".")[0] == "pyopencl":
-        hint = "call triangulate_device, or " if name == "points" else ""
+        hint = _DEVICE_CALLS.get(name, "")
         raise UsageError(f"{name} are in the memory of an OpenCL device: {hint}take {name}.get()")
     kind = int(given.__dlpack_device__()[0]) if hasattr(given, "__dlpack_device__") else 1
     if kind not in _HOST_MEMORY:
@@ -129,7 +141,7 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     try:
         if library == "pyarrow":
             return _of_arrow(given, name)
-        _check_memory(given, name)
+        check_memory(given, name)
         if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
             return _of_dlpack(given)
         array = np.asarray(given)
@@ -141,6 +153,17 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
         raise
     except (ValueError, TypeError, RuntimeError, BufferError) as error:
         raise UsageError(f"{name} are no array of numbers: {error}") from error
+
+
+def as_any(given: ArrayLike, name: str) -> npt.NDArray[Any]:
+    """An array of whatever type numpy finds; UsageError if something is masked, or in a device's memory."""
+    if is_masked(given):
+        return _of_masked(given, name)
+    check_memory(given, name)
+    try:
+        return np.asarray(given)
+    except ValueError as error:
+        raise UsageError(f"{name} are no array: {error}") from error
 
 
 def as_floats(given: ArrayLike, name: str) -> FloatArray:

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_floats, as_points, summary
+from flaunay._arrays import as_floats, as_points, freeze_all, frozen, summary
 from flaunay._errors import UsageError
+from flaunay._optional import optional
 
 if TYPE_CHECKING:
     from flaunay._voronoi import Voronoi
@@ -18,9 +19,11 @@ if TYPE_CHECKING:
 _Doubles = npt.NDArray[np.float64]
 
 
-def _corners_of(bounds: Any) -> _Doubles:
+def corners_of(bounds: Any) -> _Doubles:
     """The corners of a box or polygon, counter-clockwise, without a last one that repeats the first."""
     exterior = getattr(bounds, "exterior", None)
+    if exterior is not None and len(getattr(bounds, "interiors", ())):
+        raise UsageError("bounds must be a convex polygon, but the one given has holes")
     given = bounds if exterior is None else exterior.coords
     corners = np.asarray(as_floats(given, "bounds"), np.float64)
     if corners.shape == (4,):
@@ -36,10 +39,19 @@ def _corners_of(bounds: Any) -> _Doubles:
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]
     # The library decides exactly whether it is convex; here only which way around it goes.
-    across = corners - corners[:1]
     with np.errstate(all="ignore"):
+        across = corners - corners[:1]
+        # Neither overflows nor underflows.
+        across = across / (np.max(np.abs(across), initial=0.0) or 1.0)
         area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
     return corners[::-1] if area < 0 else corners
+
+
+def as_iterations(given: Any) -> int:
+    iterations = operator.index(given)
+    if iterations < 0:
+        raise UsageError(f"iterations must not be negative: {iterations}")
+    return iterations
 
 
 class ClippedVoronoi:
@@ -70,13 +82,15 @@ class ClippedVoronoi:
         centroids: _Doubles,
         bounds: _Doubles,
     ) -> None:
-        self.vertices, self.offsets, self.areas, self.centroids = (
-            vertices,
-            offsets,
-            areas,
-            centroids,
-        )
-        self.bounds = bounds
+        self.vertices: _Doubles = frozen(vertices)
+        self.offsets: npt.NDArray[np.int32] = frozen(offsets)
+        self.areas: _Doubles = frozen(areas)
+        self.centroids: _Doubles = frozen(centroids)
+        self.bounds: _Doubles = frozen(bounds)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=len(self.areas), vertices=len(self.vertices))
@@ -99,10 +113,16 @@ class ClippedVoronoi:
     def to_shapely(self) -> npt.NDArray[np.object_]:
         """An array of one shapely.Polygon per point, empty polygons for cells without vertices.
 
-        Needs shapely 2. A geopandas.GeoSeries takes the array as it is.
-        """
-        import shapely  # the caller's, and slow to import
+        Needs shapely 2. A geopandas.GeoSeries takes the array as it is. Vertices are rounded, so a
+        polygon can cross itself where vertices nearly coincide, as for points on a circle:
+        ``shapely.is_valid`` finds those, and ``shapely.make_valid`` mends them.
 
+        Raises
+        ------
+        ImportError
+            Without shapely.
+        """
+        shapely = optional("shapely", "ClippedVoronoi.to_shapely")
         has_cell = np.diff(self.offsets) > 0
         # Shapely's rings end where they begin.
         sizes = np.diff(self.offsets)[has_cell] + 1
@@ -149,7 +169,7 @@ def clipped(voronoi: Voronoi, bounds: Any) -> ClippedVoronoi:
     >>> len(cells.polygon(0))
     4
     """
-    tri, corners = voronoi.delaunay, _corners_of(bounds)
+    tri, corners = voronoi.delaunay, corners_of(bounds)
     arrays = _flaunay.clipped_voronoi(
         _triangulators.of_device(tri._device),
         np.asarray(tri.points, np.float64),
@@ -228,8 +248,6 @@ def relax(
     array([[1.33, 1.33],
            [2.67, 2.67]])
     """
-    times = operator.index(iterations)
-    if times < 0:
-        raise UsageError(f"iterations must not be negative: {times}")
+    times = as_iterations(iterations)
     given = np.asarray(as_points(points), np.float64)
-    return _flaunay.relax(_triangulators.of_device(device), given, _corners_of(bounds), times)
+    return _flaunay.relax(_triangulators.of_device(device), given, corners_of(bounds), times)

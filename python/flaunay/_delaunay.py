@@ -54,7 +54,8 @@ def _as_queries(xi: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
 
 
 def _are_finite(queries: Doubles) -> npt.NDArray[np.bool_]:
-    return np.isfinite(queries[:, 0]) & np.isfinite(queries[:, 1])
+    are_finite: npt.NDArray[np.bool_] = np.isfinite(queries[:, 0]) & np.isfinite(queries[:, 1])
+    return are_finite
 
 
 def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any) -> _Answers:
@@ -188,12 +189,18 @@ class Delaunay(TrianglePlots, TriangleExports):
     @cached_property
     def min_bound(self) -> FloatArray:
         """The smallest coordinates, shape (2,); NaN if there are no points."""
-        return frozen(np.min(self.points, axis=0) if self.npoints else np.full(2, np.nan))
+        bound: FloatArray = np.full(2, np.nan)
+        if self.npoints:
+            bound = self.points.min(axis=0)
+        return frozen(bound)
 
     @cached_property
     def max_bound(self) -> FloatArray:
         """The largest coordinates, shape (2,); NaN if there are no points."""
-        return frozen(np.max(self.points, axis=0) if self.npoints else np.full(2, np.nan))
+        bound: FloatArray = np.full(2, np.nan)
+        if self.npoints:
+            bound = self.points.max(axis=0)
+        return frozen(bound)
 
     @cached_property
     def convex_hull(self) -> Indices:
@@ -317,7 +324,8 @@ class Delaunay(TrianglePlots, TriangleExports):
         """
         points, shape = _as_queries(xi)
         heights = _scipy.lifted(points, *self._paraboloid) @ self.equations[:, :3].T
-        return (heights + self.equations[:, 3]).reshape(*shape, self.nsimplex)
+        distances: Doubles = heights + self.equations[:, 3]
+        return distances.reshape(*shape, self.nsimplex)
 
     def close(self) -> None:
         """Gives back what queries hold in device memory; the next query makes it again."""

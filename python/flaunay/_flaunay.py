@@ -421,6 +421,25 @@ class DevicePoints:
             self.struct.offsets, self.struct.sets = _address_of(self._offsets), host_sets
 
 
+class Enqueue:
+    """How a call on device memory is enqueued. The queue and the events must be alive during the call."""
+
+    def __init__(self, queue: int, wait_for: list[int]) -> None:
+        self._wait_for = (ctypes.c_void_p * len(wait_for))(*wait_for)
+        self._event = ctypes.c_void_p()
+        self.struct = _library.Enqueue(
+            queue=queue or None,
+            wait_for=ctypes.addressof(self._wait_for) if wait_for else None,
+            wait_for_count=len(wait_for),
+            event=ctypes.addressof(self._event),
+        )
+
+    @property
+    def event(self) -> int:
+        """The event of the call that was made, which is the caller's to release."""
+        return self._event.value or 0
+
+
 class DeviceResult(DeviceHandle):
     """A triangulation in device memory, with the triangulator that made it."""
 
@@ -470,29 +489,120 @@ class DeviceResult(DeviceHandle):
 
 
 def triangulate_device(
-    triangulator: Triangulator,
-    points: DevicePoints,
-    wanted: set[str],
-    queue: int,
-    wait_for: list[int],
-) -> tuple[DeviceResult, int]:
-    """Triangulates points in device memory; the event that is returned is the caller's to release."""
+    triangulator: Triangulator, points: DevicePoints, wanted: set[str], enqueue: Enqueue
+) -> DeviceResult:
+    """Triangulates points in device memory."""
     result = DeviceResult(triangulator)
-    events = (ctypes.c_void_p * len(wait_for))(*wait_for)
-    event = ctypes.c_void_p()
-    enqueue = _library.Enqueue(
-        queue=queue or None,
-        wait_for=ctypes.addressof(events) if wait_for else None,
-        wait_for_count=len(wait_for),
-        event=ctypes.addressof(event),
-    )
     with triangulator.turn:
         check(
             library.triangulate_device(
-                triangulator.pointer, points.struct, _parts_of(wanted), enqueue, result.pointer
+                triangulator.pointer,
+                points.struct,
+                _parts_of(wanted),
+                enqueue.struct,
+                result.pointer,
             )
         )
-    return result, event.value or 0
+    return result
+
+
+class _DeviceArrays(DeviceHandle):
+    """What a call computes in buffers of its own; these are alive as long as it, or retained."""
+
+    _create: Any
+    _buffer: Any
+    _parts: dict[str, int]
+
+    def __init__(self) -> None:
+        super().__init__()
+        check(self._create(self.place))
+
+    def buffers(self) -> dict[str, int]:
+        """For each array by its name the handle of its buffer, 0 if it is empty."""
+        return {name: self._buffer(self.pointer, part) or 0 for name, part in self._parts.items()}
+
+
+class DeviceVoronoi(_DeviceArrays):
+    """The dual of a triangulation in device memory."""
+
+    _create, _destroy = library.device_voronoi_create, library.device_voronoi_destroy
+    _buffer, _parts = library.device_voronoi_buffer, _library.VORONOI_PARTS
+
+
+class DeviceClippedVoronoi(_DeviceArrays):
+    """Clipped cells in device memory."""
+
+    _create = library.device_clipped_voronoi_create
+    _destroy = library.device_clipped_voronoi_destroy
+    _buffer, _parts = library.device_clipped_voronoi_buffer, _library.CLIPPED_VORONOI_PARTS
+
+    @property
+    def vertex_count(self) -> int:
+        return cast(int, library.device_clipped_voronoi_vertex_count(self.pointer))
+
+
+def voronoi_device(
+    triangulator: Triangulator, points: DevicePoints, mesh: DeviceResult, enqueue: Enqueue
+) -> DeviceVoronoi:
+    """The dual of a triangulation of these points."""
+    result = DeviceVoronoi()
+    with triangulator.turn:
+        check(
+            library.voronoi_compute_device(
+                triangulator.pointer, points.struct, mesh.pointer, enqueue.struct, result.pointer
+            )
+        )
+    return result
+
+
+def clipped_voronoi_device(
+    triangulator: Triangulator,
+    points: DevicePoints,
+    mesh: DeviceResult,
+    corners: _Doubles,
+    enqueue: Enqueue,
+) -> DeviceClippedVoronoi:
+    """The clipped cells of these points."""
+    corners = _as_doubles(corners)
+    result = DeviceClippedVoronoi()
+    with triangulator.turn:
+        check(
+            library.voronoi_clip_device(
+                triangulator.pointer,
+                points.struct,
+                mesh.pointer,
+                _address_of(corners),
+                len(corners),
+                enqueue.struct,
+                result.pointer,
+            )
+        )
+    return result
+
+
+def relax_device(
+    triangulator: Triangulator,
+    points: DevicePoints,
+    corners: _Doubles,
+    iterations: int,
+    enqueue: Enqueue,
+) -> int:
+    """The buffer of relaxed points, which is the caller's to release; 0 if there are no points."""
+    corners = _as_doubles(corners)
+    relaxed = ctypes.c_void_p()
+    with triangulator.turn:
+        check(
+            library.relax_device(
+                triangulator.pointer,
+                points.struct,
+                _address_of(corners),
+                len(corners),
+                iterations,
+                enqueue.struct,
+                ctypes.byref(relaxed),
+            )
+        )
+    return relaxed.value or 0
 
 
 # ---- Chunks
@@ -747,10 +857,22 @@ def relax(
     return relaxed
 
 
-class Locator(DeviceHandle):
-    """Answers queries on a triangulation, in the turns of its triangulator."""
+class _Locator(DeviceHandle):
+    """A locator, in the turns of its triangulator."""
 
     _destroy = library.locator_destroy
+
+    def __init__(self, triangulator: Triangulator) -> None:
+        super().__init__()
+        self._triangulator = triangulator
+
+    def _release(self) -> None:
+        with self._triangulator.turn:
+            super()._release()
+
+
+class Locator(_Locator):
+    """Answers queries on a triangulation."""
 
     def __init__(
         self,
@@ -761,8 +883,7 @@ class Locator(DeviceHandle):
         hull: _Indices,
         representatives: _Indices,
     ) -> None:
-        super().__init__()
-        self._triangulator = triangulator
+        super().__init__(triangulator)
         self._point_count = n = _count_points(points)
         points = _as_doubles(points)
         mesh = _triangulation_of(n, triangles, neighbors, hull, representatives)
@@ -778,10 +899,6 @@ class Locator(DeviceHandle):
                     self.place,
                 )
             )
-
-    def _release(self) -> None:
-        with self._triangulator.turn:
-            super()._release()
 
     def _answers(self, ask: Any, queries: _Doubles, dtype: np.dtype[Any], *given: int) -> Any:
         """One answer for each query. given: what the function takes before the queries."""
@@ -868,3 +985,72 @@ class Locator(DeviceHandle):
                 )
             )
         return results
+
+
+class DeviceLocator(_Locator):
+    """Answers queries in device memory. Buffers of results are the caller's to release, 0 if they are empty."""
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: DevicePoints,
+        mesh: DeviceResult,
+        enqueue: Enqueue,
+    ) -> None:
+        super().__init__(triangulator)
+        with triangulator.turn:
+            check(
+                library.locator_create_device(
+                    triangulator.pointer, points.struct, mesh.pointer, enqueue.struct, self.place
+                )
+            )
+
+    def _answers(self, ask: Any, *given: Any) -> int:
+        results = ctypes.c_void_p()
+        with self._triangulator.turn:
+            check(ask(self.pointer, *given, ctypes.byref(results)))
+        return results.value or 0
+
+    def locate(self, queries: DevicePoints, enqueue: Enqueue) -> int:
+        """The triangle of each query."""
+        return self._answers(library.locator_locate_device, queries.struct, enqueue.struct)
+
+    def nearest(self, queries: DevicePoints, enqueue: Enqueue) -> int:
+        """The point that is nearest to each query."""
+        return self._answers(library.locator_nearest_device, queries.struct, enqueue.struct)
+
+    def interpolate(
+        self,
+        values: int,
+        columns: int,
+        queries: DevicePoints,
+        method: str,
+        fill: float,
+        gradients: int,
+        enqueue: Enqueue,
+    ) -> int:
+        """A row of interpolated values at each query. gradients: 0 if they are to be estimated."""
+        options = _library.InterpolationOptions(
+            method=_library.INTERPOLATIONS[method],
+            columns=columns,
+            has_fill=1,
+            fill=fill,
+            device_gradients=gradients or None,
+        )
+        return self._answers(
+            library.locator_interpolate_with_device,
+            values or None,
+            queries.struct,
+            options,
+            enqueue.struct,
+        )
+
+    def gradients(
+        self, values: int, columns: int, tolerance: float, iterations: int, enqueue: Enqueue
+    ) -> int:
+        """The estimated gradients, x and y for each of the values."""
+        options = _library.InterpolationOptions(
+            columns=columns, gradient_tolerance=tolerance, gradient_iterations=iterations
+        )
+        ask = library.locator_gradients_device
+        return self._answers(ask, values or None, options, enqueue.struct)

@@ -8,9 +8,9 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import as_floats
+from flaunay._arrays import as_any, as_floats, check_memory, is_masked
 from flaunay._delaunay import Delaunay
-from flaunay._errors import UsageError
+from flaunay._errors import InputError, UsageError
 
 Doubles = npt.NDArray[np.float64]
 Points = Union[npt.ArrayLike, Delaunay]
@@ -19,8 +19,11 @@ Points = Union[npt.ArrayLike, Delaunay]
 _RATE = 2 - 3**0.5
 
 
-def _as_coordinates(given: Any, name: str) -> Doubles:
-    """Points of shape (..., 2), from such an array or a tuple of two that broadcast."""
+def _as_coordinates(given: Any, name: str, may_be_flat: bool = False) -> Doubles:
+    """Points of shape (..., 2), from such an array or a tuple of two that broadcast.
+
+    may_be_flat: whether x and y may follow each other in one dimension, as SciPy has it for queries.
+    """
     if isinstance(given, tuple):
         if len(given) != 2:
             raise UsageError(f"{name} must be coordinates x and y, not {len(given)} arrays")
@@ -30,11 +33,26 @@ def _as_coordinates(given: Any, name: str) -> Doubles:
         except ValueError as error:
             raise UsageError(f"{name}: {error}") from error
     points = np.asarray(as_floats(given, name), np.float64)
-    if points.ndim == 1 and points.size % 2 == 0:
+    if may_be_flat and points.ndim == 1 and points.size % 2 == 0:
         points = points.reshape(-1, 2)
     if points.ndim == 0 or points.shape[-1] != 2:
         raise UsageError(f"{name} must have the shape (..., 2), not {points.shape}")
     return points
+
+
+def _as_fill(given: Any, is_complex: bool) -> complex:
+    """The number outside of the hull, complex if the values are."""
+    try:
+        if is_masked(given):
+            raise TypeError("it is masked")
+        number = complex(given)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"fill_value must be a number, not {given!r}") from error
+    if is_complex:
+        return number
+    if np.iscomplexobj(given):
+        raise UsageError("fill_value is complex, but values are real")
+    return float(number.real)
 
 
 class _Scale:
@@ -43,10 +61,16 @@ class _Scale:
     def __init__(self, points: Doubles, is_wanted: bool) -> None:
         self._offset: Any = 0.0
         self._size: Any = 1.0
-        self.is_wanted = is_wanted and len(points) > 0
+        # Points that are not finite are left as they are, so that the triangulation names them.
+        self.is_wanted = is_wanted and len(points) > 0 and bool(np.isfinite(points).all())
         if self.is_wanted:
-            self._offset = np.mean(points, axis=0)
-            size = np.ptp(points, axis=0)
+            with np.errstate(over="ignore"):
+                self._offset = np.mean(points, axis=0)
+                size = np.ptp(points, axis=0)
+            if not np.isfinite([self._offset, size]).all():
+                raise InputError(
+                    "points are too large to be rescaled: their extent or sum overflows"
+                )
             self._size = np.where(size > 0, size, 1.0)
 
     def __call__(self, points: Doubles) -> Doubles:
@@ -81,6 +105,7 @@ class _Interpolator:
             self._scale = _Scale(coordinates, rescale)
             self.tri = Delaunay(self._scale(coordinates), device=device)
         self.points = self.tri.points
+        check_memory(values, "values")
         self.values = self._as_values(values)
         if self.values.ndim == 0 or len(self.values) != self.tri.npoints:
             raise UsageError(
@@ -89,7 +114,7 @@ class _Interpolator:
             )
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
-        array = np.asarray(values)
+        array = as_any(values, "values")
         if array.dtype.kind == "c":
             return array.astype(np.complex128)
         return np.asarray(as_floats(values, "values"), np.float64)
@@ -98,7 +123,7 @@ class _Interpolator:
         """The queries in rows, in the scale of the points, and the shape in which they came."""
         if not given:
             raise UsageError("xi is missing: where to interpolate")
-        queries = _as_coordinates(given[0] if len(given) == 1 else given, "xi")
+        queries = _as_coordinates(given[0] if len(given) == 1 else given, "xi", may_be_flat=True)
         return self._scale(queries.reshape(-1, 2)), queries.shape[:-1]
 
     def _finite(self, queries: Doubles) -> tuple[Doubles, Optional[npt.NDArray[np.bool_]]]:
@@ -126,9 +151,7 @@ class _Columns(_Interpolator):
     ) -> None:
         super().__init__(points, values, rescale, device)
         self._is_complex = self.values.dtype.kind == "c"
-        if not self._is_complex and isinstance(fill_value, complex):
-            raise UsageError("fill_value is complex, but values are real")
-        self.fill_value = fill_value
+        self.fill_value = _as_fill(fill_value, self._is_complex)
         rows = self.values.reshape(self.tri.npoints, -1) if self.values.size else None
         if rows is None:
             self._rows = np.empty((self.tri.npoints, 0))
@@ -151,7 +174,7 @@ class _Columns(_Interpolator):
         if columns == 0 or len(queries) == 0:
             return np.full(shape, self.fill_value, self.values.dtype)
         queries, are_bad = self._finite(queries)
-        fill = np.nan if self._is_complex else float(self.fill_value.real)
+        fill = np.nan if self._is_complex else self.fill_value.real
         rows = self.tri._locator.interpolate_with(
             self._rows, queries, self._method, fill, self._gradients()
         )
@@ -162,7 +185,7 @@ class _Columns(_Interpolator):
         k = columns // 2
         result = np.empty((len(rows), k), np.complex128)
         result.real, result.imag = rows[:, :k], rows[:, k : 2 * k]
-        result[np.isnan(rows[:, -1])] = complex(self.fill_value)
+        result[np.isnan(rows[:, -1])] = self.fill_value
         return result.reshape(shape)
 
 
@@ -262,6 +285,9 @@ class CloughTocherInterpolator(_Columns):
     The result has a continuous gradient. It is SciPy's up to rounding for the same triangulation and
     gradients; estimated gradients differ by less than the tolerance. Otherwise as `LinearInterpolator`.
 
+    The tolerance of gradients is relative to the largest of all. If x and y have units so different that
+    gradients in one of them are far smaller, `rescale` makes these as good.
+
     Examples
     --------
     >>> import flaunay
@@ -307,6 +333,7 @@ class CloughTocherInterpolator(_Columns):
 
     def _given(self, gradients: npt.ArrayLike) -> Doubles:
         wanted = (*self.values.shape, 2)
+        check_memory(gradients, "gradients")
         given = self._as_values(gradients)
         if given.shape != wanted:
             raise UsageError(f"gradients must have the shape {wanted}, not {given.shape}")
@@ -377,7 +404,7 @@ class NearestInterpolator(_Interpolator):
             raise UsageError("there are no points, so none is nearest")
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
-        array = np.asarray(values)
+        array = as_any(values, "values")
         return array.astype(np.float64) if array.dtype.kind in "biuf" else array
 
     def __call__(self, *xi: Any) -> npt.NDArray[Any]:
@@ -410,8 +437,9 @@ def griddata(
         As of `LinearInterpolator`.
     xi : array_like, shape (..., 2), or tuple of x and y
         Where to interpolate.
-    method : {"linear", "nearest", "cubic"}
-        `LinearInterpolator`, `NearestInterpolator` or `CloughTocherInterpolator`.
+    method : {"linear", "nearest", "cubic", "natural"}
+        `LinearInterpolator`, `NearestInterpolator`, `CloughTocherInterpolator`, or
+        `NaturalNeighborInterpolator` with Sibson's weights, which SciPy does not have.
     fill_value : float or complex, optional
         The result outside of the hull; the nearest point has none.
     rescale : bool, optional
@@ -444,6 +472,15 @@ def griddata(
         interpolator = CloughTocherInterpolator(
             points, values, fill_value, rescale=rescale, device=device
         )
+    elif method == "natural":
+        # Which itself needs this module.
+        from flaunay._natural import NaturalNeighborInterpolator
+
+        interpolator = NaturalNeighborInterpolator(
+            points, values, fill_value=fill_value, rescale=rescale, device=device
+        )
     else:
-        raise UsageError(f"method must be 'linear', 'nearest' or 'cubic', not {method!r}")
+        raise UsageError(
+            f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
+        )
     return interpolator(xi)

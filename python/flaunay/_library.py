@@ -36,10 +36,14 @@ FLOAT64, FLOAT32 = 0, 1
 INT32, INT64 = 0, 1
 
 # The values of flaunay_interpolation.
-INTERPOLATIONS = {"linear": 0, "nearest": 1, "clough_tocher": 2}
+INTERPOLATIONS = {"linear": 0, "nearest": 1, "clough_tocher": 2, "sibson": 3, "laplace": 4}
 
 # The bits of flaunay_part.
 PARTS = {"triangles": 1, "neighbors": 2, "halfedges": 4, "hull": 8, "representatives": 16}
+
+# The bits of flaunay_voronoi_part, and of flaunay_clipped_voronoi_part.
+VORONOI_PARTS = {"circumcentres": 1, "cell_offsets": 2, "cells": 4, "unbounded": 8}
+CLIPPED_VORONOI_PARTS = {"vertices": 1, "offsets": 2, "areas": 4, "centroids": 8}
 
 # OpenCL's handles and those of flaunay are pointers to what Python does not look into.
 _Progress = ctypes.CFUNCTYPE(None, c_char_p, c_int, c_double, c_void_p)
@@ -263,6 +267,7 @@ class DeviceInfo(ctypes.Structure):
 # The type of the result, and those of the arguments. Arrays and handles are addresses.
 _TRIANGULATE = [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(Options), c_void_p]
 _ANSWER = [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]
+_DEVICE_ANSWER = [c_void_p, POINTER(DevicePoints), POINTER(Enqueue), c_void_p]
 
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "last_error": (c_char_p, []),
@@ -343,6 +348,41 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "clipped_voronoi_offsets": (c_void_p, [c_void_p]),
     "clipped_voronoi_areas": (c_void_p, [c_void_p]),
     "clipped_voronoi_centroids": (c_void_p, [c_void_p]),
+    "device_voronoi_create": (c_int, [c_void_p]),
+    "device_voronoi_destroy": (None, [c_void_p]),
+    "device_voronoi_buffer": (c_void_p, [c_void_p, c_uint]),
+    "voronoi_compute_device": (
+        c_int,
+        [c_void_p, POINTER(DevicePoints), c_void_p, POINTER(Enqueue), c_void_p],
+    ),
+    "device_clipped_voronoi_create": (c_int, [c_void_p]),
+    "device_clipped_voronoi_destroy": (None, [c_void_p]),
+    "device_clipped_voronoi_buffer": (c_void_p, [c_void_p, c_uint]),
+    "device_clipped_voronoi_vertex_count": (c_size_t, [c_void_p]),
+    "voronoi_clip_device": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(DevicePoints),
+            c_void_p,
+            c_void_p,
+            c_size_t,
+            POINTER(Enqueue),
+            c_void_p,
+        ],
+    ),
+    "relax_device": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(DevicePoints),
+            c_void_p,
+            c_size_t,
+            c_size_t,
+            POINTER(Enqueue),
+            c_void_p,
+        ],
+    ),
     "relax": (c_int, [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, c_void_p]),
     "locator_create": (
         c_int,
@@ -364,6 +404,27 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
             POINTER(InterpolationOptions),
             c_void_p,
         ],
+    ),
+    "locator_create_device": (
+        c_int,
+        [c_void_p, POINTER(DevicePoints), c_void_p, POINTER(Enqueue), c_void_p],
+    ),
+    "locator_locate_device": (c_int, _DEVICE_ANSWER),
+    "locator_nearest_device": (c_int, _DEVICE_ANSWER),
+    "locator_interpolate_with_device": (
+        c_int,
+        [
+            c_void_p,
+            c_void_p,
+            POINTER(DevicePoints),
+            POINTER(InterpolationOptions),
+            POINTER(Enqueue),
+            c_void_p,
+        ],
+    ),
+    "locator_gradients_device": (
+        c_int,
+        [c_void_p, c_void_p, POINTER(InterpolationOptions), POINTER(Enqueue), c_void_p],
     ),
     "locator_gradients": (c_int, [c_void_p, c_void_p, POINTER(InterpolationOptions), c_void_p]),
 }

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
-from flaunay._arrays import as_segments, names_of, summary
+from flaunay import _device_queries, _device_voronoi, _flaunay, _triangulators
+from flaunay._arrays import names_of, summary
+from flaunay._device_arrays import DeviceCall, Segments, import_pyopencl, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation
 
@@ -18,18 +19,19 @@ if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
 
-_COORDINATES = (np.dtype(np.float64), np.dtype(np.float32))
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DeviceTriangulation:
     """A triangulation in device memory, of one or more sets of points.
 
     The arrays are views of buffers that flaunay made for this result: nothing is copied to make
-    them, and a buffer lives as long as an array of it.
+    them, and a buffer lives as long as an array of it. Its methods read the points and the arrays
+    again, so neither may be changed before them.
 
     Attributes
     ----------
+    points : pyopencl.array.Array
+        The points that were given.
     triangles, neighbors, halfedges, hull, representatives : pyopencl.array.Array or None
         As those of `Triangulation`, with its shapes, int32; None if not asked for.
     triangle_offsets, hull_offsets : ndarray of int64, shape (sets + 1,)
@@ -40,6 +42,7 @@ class DeviceTriangulation:
         Complete when the results are there. The arrays know it: what pyopencl does with them waits.
     """
 
+    points: pyopencl.array.Array
     triangles: pyopencl.array.Array
     neighbors: Optional[pyopencl.array.Array]
     halfedges: Optional[pyopencl.array.Array]
@@ -49,6 +52,12 @@ class DeviceTriangulation:
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
     event: pyopencl.Event
+    _mesh: _flaunay.DeviceResult = field(repr=False)
+    _queue: pyopencl.CommandQueue = field(repr=False)
+
+    locator = _device_queries.locator
+    voronoi = _device_voronoi.voronoi
+    clipped_voronoi = _device_voronoi.clipped_voronoi
 
     def __repr__(self) -> str:
         # Of the sizes alone, since the arrays are in device memory.
@@ -70,135 +79,39 @@ class DeviceTriangulation:
         """
         if self.hull is None or self.representatives is None:
             raise UsageError("a Triangulation needs hull and representatives: ask for them")
-        cl = _import_pyopencl()
+        cl = import_pyopencl()
+        mine = {name.name: getattr(self, name.name) for name in fields(Triangulation)}
         return Triangulation(
             **{
                 name: value.get() if isinstance(value, cl.array.Array) else value
-                for name, value in vars(self).items()
-                if name != "event"
+                for name, value in mine.items()
             }
         )
 
-
-def _import_pyopencl() -> Any:
-    try:
-        import pyopencl
-        import pyopencl.array
-    except ImportError as error:
-        raise ImportError(
-            "points in device memory need pyopencl, which cannot be imported"
-        ) from error
-    return pyopencl
-
-
-def _handle(array: pyopencl.array.Array) -> int:
-    # An empty array has no buffer.
-    return 0 if array.base_data is None else int(array.base_data.int_ptr)
-
-
-def _check_contiguous(array: pyopencl.array.Array, name: str) -> None:
-    if not array.flags.c_contiguous:
-        raise UsageError(f"{name} must be C-contiguous in device memory; take {name}.copy()")
-
-
-def _first_point(points: pyopencl.array.Array) -> int:
-    """How many points precede a view's in its buffer."""
-    bytes_per_point = 2 * points.dtype.itemsize
-    if points.offset % bytes_per_point:
-        raise UsageError(
-            f"points begin {points.offset} bytes after their buffer's begin, which is no multiple of a "
-            f"point's {bytes_per_point} bytes; take points.copy()"
-        )
-    return int(points.offset // bytes_per_point)
-
-
-def _as_device_segments(
-    segments: pyopencl.array.Array, queue: pyopencl.CommandQueue
-) -> pyopencl.array.Array:
-    if segments.ndim != 1 or segments.dtype != np.int32 or segments.size == 0:
-        raise UsageError(
-            "segments in device memory must be int32 in one dimension, one or more, "
-            f"not {segments.dtype} of shape {segments.shape}"
-        )
-    _check_contiguous(segments, "segments")
-    # The library reads them from the buffer's begin on.
-    return segments.copy(queue=queue) if segments.offset else segments
-
-
-def _to_points(
-    points: pyopencl.array.Array,
-    segments: Union[npt.ArrayLike, pyopencl.array.Array, None],
-    queue: pyopencl.CommandQueue,
-) -> tuple[_flaunay.DevicePoints, list[pyopencl.array.Array]]:
-    """Points as the library takes them, and the arrays that they are in."""
-    cl = _import_pyopencl()
-    if not isinstance(points, cl.array.Array):
-        raise TypeError(
-            f"points must be a pyopencl.array.Array, not {type(points).__name__}; of a pyopencl.Buffer, "
-            "take Array(queue, (n, 2), numpy.float64, data=buffer)"
-        )
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise UsageError(f"points must have the shape (n, 2), not {points.shape}")
-    if points.dtype not in _COORDINATES:
-        raise UsageError(f"points in device memory must be float64 or float32, not {points.dtype}")
-    _check_contiguous(points, "points")
-    place = (
-        _handle(points),
-        int(points.shape[0]),
-        bool(points.dtype == np.float32),
-        _first_point(points),
-    )
-    if segments is None:
-        return _flaunay.DevicePoints(*place), [points]
-    if not isinstance(segments, cl.array.Array):
-        return _flaunay.DevicePoints(*place, segments=as_segments(segments)), [points]
-    offsets = _as_device_segments(segments, queue)
-    device_points = _flaunay.DevicePoints(
-        *place, device_segments=_handle(offsets), sets=int(offsets.size) - 1
-    )
-    return device_points, [points, offsets]
-
-
-def _queue_for(
-    points: pyopencl.array.Array, queue: Optional[pyopencl.CommandQueue]
-) -> pyopencl.CommandQueue:
-    cl = _import_pyopencl()
-    if queue is None:
-        queue = getattr(points, "queue", None)
-        if queue is None and isinstance(points, cl.array.Array):
-            raise UsageError("points have no queue of their own: give one")
-    elif not isinstance(queue, cl.CommandQueue):
-        raise TypeError(f"queue must be a pyopencl.CommandQueue, not {type(queue).__name__}")
-    return queue
-
-
-def _as_events(wait_for: Optional[Iterable[pyopencl.Event]]) -> list[pyopencl.Event]:
-    if wait_for is None:
-        return []
-    cl = _import_pyopencl()
-    events = list(wait_for) if isinstance(wait_for, Iterable) else [None]
-    if not all(isinstance(event, cl.Event) for event in events):
-        raise TypeError(f"wait_for must be a sequence of pyopencl.Event, not {wait_for!r}")
-    return events
-
-
-def _view(
-    handle: int, shape: tuple[int, ...], queue: pyopencl.CommandQueue, event: pyopencl.Event
-) -> pyopencl.array.Array:
-    """An array over a buffer, which is retained."""
-    cl = _import_pyopencl()
-    if 0 in shape:
-        return cl.array.Array(queue, shape, np.int32)
-    data = cl.MemoryObject.from_int_ptr(handle, retain=True)
-    array = cl.array.Array(queue, shape, np.int32, data=data)
-    array.add_event(event)
-    return array
+    def _begin(
+        self,
+        what: str,
+        queue: Optional[pyopencl.CommandQueue],
+        wait_for: Optional[Sequence[pyopencl.Event]],
+    ) -> tuple[DeviceCall, _flaunay.DevicePoints]:
+        """A call that reads the triangulation, and its points. what: what it makes, for errors."""
+        arrays = {name: getattr(self, name) for name in ("neighbors", "hull", "representatives")}
+        missing = [name for name, array in arrays.items() if array is None]
+        if missing:
+            raise UsageError(
+                f"{what} needs neighbors, hull and representatives, but the triangulation has no "
+                f"{' and no '.join(missing)}: ask triangulate_device for them"
+            )
+        own = self._queue if queue is None else queue
+        call = DeviceCall(queue_for(self.points, own, "points"), wait_for)
+        call.reads(self.triangles, *arrays.values())
+        return call, call.points(self.points, None, "points")
 
 
 def triangulate_device(
     points: pyopencl.array.Array,
     queue: Optional[pyopencl.CommandQueue] = None,
-    segments: Union[npt.ArrayLike, pyopencl.array.Array, None] = None,
+    segments: Segments = None,
     neighbors: bool = False,
     halfedges: bool = False,
     hull: bool = False,
@@ -257,11 +170,8 @@ def triangulate_device(
     cl.Array([[0, 2, 3],
            [0, 1, 2]], dtype=int32)
     """
-    cl = _import_pyopencl()
-    queue = _queue_for(points, queue)
-    device_points, arrays = _to_points(points, segments, queue)
-    events = [event for array in arrays for event in array.events] + _as_events(wait_for)
-    triangulator = _triangulators.of_queue(queue)
+    call = DeviceCall(queue_for(points, queue, "points"), wait_for)
+    device_points = call.points(points, segments, "points")
     wanted = names_of(
         triangles=True,
         neighbors=neighbors,
@@ -269,20 +179,22 @@ def triangulate_device(
         hull=hull,
         representatives=representatives,
     )
-    result, event_handle = _flaunay.triangulate_device(
-        triangulator, device_points, wanted, queue.int_ptr, [event.int_ptr for event in events]
+    enqueue = call.begin()
+    result = _flaunay.triangulate_device(
+        _triangulators.of_queue(call.queue), device_points, wanted, enqueue
     )
-    event = cl.Event.from_int_ptr(event_handle, retain=False)
-    for array in arrays:
-        array.add_event(event)
+    event = call.end(enqueue)
     views = {
-        name: None if place is None else _view(*place, queue, event)
+        name: None if place is None else view(*place, np.int32, call.queue, event)
         for name, place in result.arrays().items()
     }
     return DeviceTriangulation(
         **views,
+        points=points,
         triangle_offsets=result.triangle_offsets,
         hull_offsets=result.hull_offsets,
         statistics=result.statistics,
         event=event,
+        _mesh=result,
+        _queue=call.queue,
     )

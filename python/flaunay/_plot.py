@@ -139,7 +139,7 @@ def _clipped_to_box(
 
 
 def _bisectors(a: Doubles, b: Doubles) -> tuple[Doubles, Doubles]:
-    """Points and directions of the lines between a and b."""
+    """Points of the lines between a and b, and directions: to the right on the way from a to b."""
     across = b - a
     return (a + b) / 2, np.stack([across[:, 1], -across[:, 0]], axis=1)
 
@@ -156,9 +156,8 @@ def _ridges_in_box(vor: VoronoiPlots, box: tuple[Doubles, Doubles]) -> Doubles:
     ends = np.asarray(vor.ridge_vertices)
     endless = ends[:, 0] < 0
     a, b = (points[np.asarray(vor.ridge_points)[endless, k]] for k in range(2))
-    middle, outward = _bisectors(a, b)
-    inner = points[tri.hull].mean(axis=0)
-    outward *= np.sign(((middle - inner) * outward).sum(axis=1))[:, None]
+    # Ridge points are in the order of a counter-clockwise triangle, so that outside is to the right.
+    _, outward = _bisectors(a, b)
     start = vor.vertices[ends[:, 1]]
     step = vor.vertices[ends[:, 0]] - start
     step[endless] = outward

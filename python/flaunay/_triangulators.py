@@ -76,7 +76,9 @@ def of_device(device: Optional[str]) -> _flaunay.Triangulator:
         found = _by_name.get(name)
         if found is None:
             if name not in ("", _HOST):
-                _log.info("opening %s: kernels that it has not compiled before take seconds, once", name)
+                _log.info(
+                    "opening %s: kernels that it has not compiled before take seconds, once", name
+                )
             # The environment is left to the triangulator, which names it in its errors.
             found = _flaunay.Triangulator(_HOST if name == _HOST else device or "")
             # A device has more than one name; what it holds, it should hold once.

@@ -94,3 +94,15 @@ def test_circumradii_are_exact_to_45_bits(triples):
             elif radius > 1e-290:
                 # Of squares, the error is twice as large.
                 assert abs(Fraction(radius) ** 2 / expected - 1) < Fraction(2, 2**45)
+
+
+def test_circumradii_of_triangles_thinner_than_twice_the_precision():
+    """On a line but for rounding, at magnitudes so different that also differences are rounded."""
+    x = np.array([[6e9, 1.4e-4, 1.6e-11], [1.7e-6, 2.3e20, 0.7], [3e-12, 5e13, 1.1]])
+    a, b, c = (np.stack([x[:, k] / 7, x[:, k] * 3 / 7], axis=1) for k in range(3))
+    for radius, (p, q, r) in zip(circumradii_of(a, b, c).tolist(), rational(a, b, c)):
+        area = cross(p, q, r)
+        assert area != 0
+        squares = [dot(s, s, t) for s, t in ((p, q), (q, r), (r, p))]
+        expected = squares[0] * squares[1] * squares[2] / (4 * area * area)
+        assert abs(Fraction(radius) ** 2 / expected - 1) < Fraction(2, 2**45)

@@ -198,7 +198,7 @@ def test_points_or_their_triangulation(random):
     assert repr(one) == f"<flaunay.AlphaShape: 50 points, {len(one.simplices)} triangles>"
 
 
-@pytest.mark.parametrize("alpha", [-1, np.nan, -np.inf, "best"])
+@pytest.mark.parametrize("alpha", [-1, np.nan, -np.inf, "best", None, 1j, [1, 2]])
 def test_other_radii_are_refused(alpha):
     with pytest.raises(flaunay.UsageError, match="alpha must"):
         flaunay.alpha_shape(SQUARE, alpha)

@@ -113,3 +113,18 @@ def test_shapely_takes_them(points):
     cells = flaunay.Voronoi(points).clipped(BOX)
     assert shapely.area(polygons) == pytest.approx(cells.areas, abs=1e-14)
     assert len(flaunay.Voronoi(np.empty((0, 2))).clipped(BOX).to_shapely()) == 0
+
+
+def test_a_polygon_with_a_hole_is_refused(points):
+    shapely = pytest.importorskip("shapely", minversion="2.0")
+    outside, hole = shapely.box(*BOX), shapely.box(0.2, 0.2, 0.4, 0.4)
+    with pytest.raises(flaunay.UsageError, match="holes"):
+        flaunay.Voronoi(points).clipped(outside.difference(hole))
+
+
+@pytest.mark.parametrize("size", [2.0**-600, 1.0, 2.0**600])
+def test_polygons_of_any_size_go_either_way_around(size):
+    corners = size * np.array([[0.0, 0], [4, 0], [0, 4]])
+    points = size * np.array([[1.0, 1], [2, 1]])
+    one, other = (flaunay.Voronoi(points).clipped(c) for c in (corners, corners[::-1]))
+    assert len(one.vertices) and len(one.vertices) == len(other.vertices)

@@ -362,7 +362,8 @@ def test_what_cannot_be_used(points, options, kind, text, tmp_path, monkeypatch)
 
 
 @pytest.mark.parametrize(
-    "given", [np.zeros(4), np.zeros((3, 3)), [["a", "b"]], np.ma.masked_all((3, 2)), [[2**60 + 1, 0]]]
+    "given",
+    [np.zeros(4), np.zeros((3, 3)), [["a", "b"]], np.ma.masked_all((3, 2)), [[2**60 + 1, 0]]],
 )
 def test_bad_points(given):
     with pytest.raises(flaunay.UsageError):

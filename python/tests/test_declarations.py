@@ -134,6 +134,21 @@ def test_functions(name):
     [
         ("flaunay_part", "FLAUNAY_PART_", {k.upper(): v for k, v in _library.PARTS.items()}),
         (
+            "flaunay_voronoi_part",
+            "FLAUNAY_VORONOI_",
+            {k.upper(): v for k, v in _library.VORONOI_PARTS.items()},
+        ),
+        (
+            "flaunay_clipped_voronoi_part",
+            "FLAUNAY_CLIPPED_VORONOI_",
+            {k.upper(): v for k, v in _library.CLIPPED_VORONOI_PARTS.items()},
+        ),
+        (
+            "flaunay_interpolation",
+            "FLAUNAY_INTERPOLATION_",
+            {k.upper(): v for k, v in _library.INTERPOLATIONS.items()},
+        ),
+        (
             "flaunay_precision",
             "FLAUNAY_",
             {"FLOAT64": _library.FLOAT64, "FLOAT32": _library.FLOAT32},

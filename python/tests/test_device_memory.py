@@ -221,7 +221,7 @@ def test_queues_out_of_order_and_others_of_the_context(random, context, queue):
     points = random.random((3000, 2))
     expected = flaunay.triangulate(points, halfedges=True)
     array = cl_array.to_device(queue, points)
-    for properties in None, OUT_OF_ORDER:
+    for properties in 0, OUT_OF_ORDER:
         other = cl.CommandQueue(context, properties=properties)
         result = flaunay.triangulate_device(array, queue=other, **ALL)
         check_equal(result, expected)

@@ -181,6 +181,10 @@ def test_networkx_has_nodes_places_and_lengths(tri):
         ("meshio", lambda tri: tri.to_meshio()),
         ("pyvista", lambda tri: tri.to_pyvista()),
         ("shapely", lambda tri: flaunay.alpha_shape(tri, 1).to_shapely()),
+        (
+            "shapely",
+            lambda tri: flaunay.voronoi_polygons(tri.points, (0, 0, 1, 1), as_shapely=True),
+        ),
     ],
 )
 def test_a_missing_package_is_named(monkeypatch, package, call):

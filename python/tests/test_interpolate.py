@@ -181,3 +181,48 @@ def test_errors():
             interpolate(*queries)
     with pytest.warns(UserWarning, match="3 iterations"):
         flaunay.CloughTocherInterpolator(points, [1, 2, 3], maxiter=3)
+
+
+INTERPOLATORS = [
+    flaunay.LinearInterpolator,
+    flaunay.CloughTocherInterpolator,
+    flaunay.NaturalNeighborInterpolator,
+    flaunay.NearestInterpolator,
+]
+CORNERS = [[0, 0], [4, 0], [0, 4]]
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS)
+@pytest.mark.parametrize("dtype", [float, complex])
+def test_masked_values_are_refused(kind, dtype):
+    values = np.ma.masked_array([1, 2, 3], mask=[False, True, False], dtype=dtype)
+    with pytest.raises(flaunay.UsageError, match=r"values\[1\] is masked"):
+        kind(CORNERS, values)
+    values.mask = False
+    assert kind(CORNERS, values)([[4, 0]]) == [2]
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS)
+def test_points_of_one_dimension_are_refused(kind):
+    with pytest.raises(flaunay.UsageError, match=r"points must have the shape .*, not \(6,\)"):
+        kind([0, 0, 4, 0, 0, 4], [1, 2, 3])
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS[:3])
+@pytest.mark.parametrize("fill", [None, "none", [1, 2], np.ma.masked])
+def test_what_fills_is_a_number(kind, fill):
+    for values in ([1, 2, 3], [1j, 2, 3]):
+        with pytest.raises(flaunay.UsageError, match="fill_value must be a number"):
+            kind(CORNERS, values, fill_value=fill)
+    with pytest.raises(flaunay.UsageError, match="fill_value is complex"):
+        kind(CORNERS, [1, 2, 3], fill_value=np.complex64(1j))
+    assert kind(CORNERS, [1, 2, 3], fill_value=np.float32(2))([[9, 9]]) == [2]
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS)
+def test_points_that_cannot_be_rescaled_are_refused(kind):
+    with pytest.raises(flaunay.InputError, match="point 2 is not finite"):
+        kind([[0, 0], [4, 0], [0, np.nan]], [1, 2, 3], rescale=True)
+    # Their extent overflows, and all would get the same x.
+    with pytest.raises(flaunay.InputError, match="too large to be rescaled"):
+        kind([[-1e308, 0], [1e308, 0], [0, 1]], [1, 2, 3], rescale=True)

@@ -173,3 +173,11 @@ def test_many_triangles_are_drawn_fast(random, axes):
     assert not is_blank(axes)
     # Measured 0.8 s; one artist for each triangle would take a minute.
     assert time.process_time() - started < 20
+
+
+def test_endless_ridges_of_points_near_a_line_go_outwards(axes):
+    """The centre of the hull cannot tell where that is, since it is rounded."""
+    points = [[3, 1 + 3 * 2.0**-52], [7, 1], [8, 1 + 2 * 2.0**-52]]
+    lines = flaunay.Voronoi(points).plot(axes, bounds=(0, 0, 10, 2)).get_segments()
+    # Not between the first and the last, where a ridge begins far above.
+    assert sorted(line[0, 0].round(6) for line in lines) == [5, 7.5]

@@ -192,7 +192,9 @@ def test_results_are_short_in_print(random):
     sizes = f"100000 points, {triangles} triangles, {hull} hull vertices"
     assert repr(mesh) == f"<flaunay.Triangulation: {sizes}>"
     assert repr(flaunay.Delaunay(points)) == f"<flaunay.Delaunay: {sizes}>"
-    assert repr(flaunay.Voronoi(points)) == f"<flaunay.Voronoi: 100000 points, {triangles} vertices>"
+    assert (
+        repr(flaunay.Voronoi(points)) == f"<flaunay.Voronoi: 100000 points, {triangles} vertices>"
+    )
     two = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5]], segments=[0, 3, 4])
     assert repr(two) == "<flaunay.Triangulation: 4 points, 1 triangle, 4 hull vertices, 2 sets>"
 

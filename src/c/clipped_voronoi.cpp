@@ -1,5 +1,6 @@
 // The C interface to clipped Voronoi cells and to relaxation.
 #include <CL/cl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
@@ -18,6 +19,29 @@ using c::required;
 struct flaunay_clipped_voronoi {
   ClippedVoronoi cpp;
 };
+
+struct flaunay_device_clipped_voronoi {
+  DeviceClippedVoronoi cpp;
+};
+
+namespace {
+
+template <typename Handle>
+auto& buffer_of(Handle& cells, unsigned part) {
+  switch (part) {
+    case FLAUNAY_CLIPPED_VORONOI_VERTICES:
+      return cells.cpp.vertices;
+    case FLAUNAY_CLIPPED_VORONOI_OFFSETS:
+      return cells.cpp.offsets;
+    case FLAUNAY_CLIPPED_VORONOI_AREAS:
+      return cells.cpp.areas;
+    case FLAUNAY_CLIPPED_VORONOI_CENTROIDS:
+      return cells.cpp.centroids;
+  }
+  throw Error(ErrorKind::usage, fmt::format("{} is not one part of clipped Voronoi cells", part));
+}
+
+}  // namespace
 
 flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                     const flaunay_triangulation* triangulation, const double* corners,
@@ -54,6 +78,40 @@ const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells
 
 const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells) {
   return read(cells, [](const auto& handle) { return c::elements(handle.cpp.centroids); });
+}
+
+flaunay_status flaunay_device_clipped_voronoi_create(flaunay_device_clipped_voronoi** cells) {
+  return create(cells, [] { return std::make_unique<flaunay_device_clipped_voronoi>(); });
+}
+
+void flaunay_device_clipped_voronoi_destroy(flaunay_device_clipped_voronoi* cells) { delete cells; }
+
+flaunay_status flaunay_device_clipped_voronoi_set_buffer(flaunay_device_clipped_voronoi* cells, unsigned part,
+                                                         cl_mem memory) {
+  return guarded([&] { buffer_of(required(cells, "the clipped cells"), part) = c::to_buffer(memory); });
+}
+
+cl_mem flaunay_device_clipped_voronoi_buffer(const flaunay_device_clipped_voronoi* cells, unsigned part) {
+  return read(cells, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
+}
+
+size_t flaunay_device_clipped_voronoi_vertex_count(const flaunay_device_clipped_voronoi* cells) {
+  return read(cells, [](const auto& handle) { return handle.cpp.vertex_count; });
+}
+
+flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* triangulator,
+                                           const flaunay_device_points* points,
+                                           const flaunay_device_triangulation* triangulation,
+                                           const double* corners, size_t corner_count,
+                                           const flaunay_enqueue* enqueue,
+                                           flaunay_device_clipped_voronoi* result) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const DeviceTriangulation& primal = required(triangulation, "the triangulation").cpp;
+    cpp.clipped_voronoi(c::to_points(points), primal, corners, corner_count,
+                        required(result, "the result").cpp, queued);
+  });
 }
 
 flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* coordinates, size_t n,

@@ -150,6 +150,12 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
     case FLAUNAY_INTERPOLATION_CLOUGH_TOCHER:
       result.method = Interpolation::clough_tocher;
       break;
+    case FLAUNAY_INTERPOLATION_SIBSON:
+      result.method = Interpolation::sibson;
+      break;
+    case FLAUNAY_INTERPOLATION_LAPLACE:
+      result.method = Interpolation::laplace;
+      break;
     default:
       throw Error(ErrorKind::usage, fmt::format("{} is no flaunay_interpolation", options->method));
   }

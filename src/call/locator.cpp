@@ -11,6 +11,7 @@
 #include "call/handles.hpp"
 #include "geometry/magnitudes.hpp"
 #include "interpolate/interpolate.hpp"
+#include "interpolate/natural.hpp"
 
 namespace flaunay {
 
@@ -101,6 +102,13 @@ struct Locator::Implementation {
     return points * columns;
   }
 
+  static flaunay::interpolate::NaturalWeights natural_weights(Interpolation method) {
+    call::expect(method == Interpolation::sibson || method == Interpolation::laplace,
+                 "natural neighbours have the weights of Sibson or of Laplace");
+    return method == Interpolation::sibson ? flaunay::interpolate::NaturalWeights::sibson
+                                           : flaunay::interpolate::NaturalWeights::laplace;
+  }
+
   /// Estimated, unless there are some. given: the caller's, in host or device memory.
   static flaunay::interpolate::Gradients gradients_by(const GradientOptions& options, bool are_given,
                                                       Buffer<cl_double> given) {
@@ -121,6 +129,10 @@ struct Locator::Implementation {
         return flaunay::interpolate::nearest(runtime, locator, table, queries...);
       case Interpolation::clough_tocher:
         return flaunay::interpolate::clough_tocher(runtime, locator, table, gradients, queries...);
+      case Interpolation::sibson:
+      case Interpolation::laplace:
+        return flaunay::interpolate::natural(runtime, locator, natural_weights(options.method), table,
+                                             queries...);
     }
     throw Error(ErrorKind::usage, "no such method of interpolation");
   }

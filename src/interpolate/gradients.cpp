@@ -47,6 +47,7 @@ Edges find_edges(host::Runtime& runtime, const Locator& locator) {
   edges.inverses = arena.allocate<cl_double>(3 * n);
   runtime.copy(locator.first_vertices, locator.sets, edges.vertices, 0, 1);
   runtime.map(n, kernels::count_edges{.vertices = edges.vertices,
+                                      .points = locator.points,
                                       .faces = locator.faces,
                                       .first_triangle = locator.first_triangle,
                                       .counts = edges.firsts});

@@ -158,6 +158,7 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
   const blocks::Outcome outcome = blocks::run(runtime, persistent, sizes.offsets, exchange, phases);
   const auto samples_locator = std::make_shared<Locator>(
       make_walk_locator(runtime, own, exchange.result(sizes.offsets, outcome.sizes)));
+  measure_clearances(runtime, *samples_locator);
   const Locator& sampled = *samples_locator;
   const auto numbers = scratch.allocate<cl_int>(samples);
   runtime.fill(numbers, samples, cl_int{-1});

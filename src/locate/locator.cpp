@@ -141,10 +141,6 @@ void fill_faces(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoi
                                                             .firsts = counts,
                                                             .first_vertices = locator.first_vertices});
   runtime.map(triangles, kernels::renumber_faces{.numbers = numbers, .faces = locator.faces});
-  runtime.fill(locator.clearances, n, std::numeric_limits<cl_int>::max());
-  runtime.map(triangles,
-              kernels::measure_clearances{
-                  .faces = locator.faces, .points = locator.points, .clearances = locator.clearances});
 }
 
 void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoints& input,
@@ -202,7 +198,7 @@ void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<c
 }
 
 Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets) {
+             const std::vector<std::size_t>& query_offsets, const QueryLimits& limits = kOrientLimits) {
   check_offsets(query_offsets);
   if (query_offsets.size() != locator.sets + 1 || query_offsets.back() != m) {
     throw Error(
@@ -211,7 +207,7 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
                     query_offsets.size() - 1, query_offsets.back(), m, locator.sets));
   }
   Pass pass{};
-  QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets);
+  QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets, limits);
   pass.orient_bound = scaling.orient_bound;
   pass.nearness_bound = scaling.nearness_bound;
   pass.frames = runtime.upload(runtime.arena(), std::move(scaling.frames));
@@ -362,6 +358,14 @@ Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& 
   return make_locator(runtime, own, mesh, std::numeric_limits<std::size_t>::max());
 }
 
+void measure_clearances(host::Runtime& runtime, Locator& locator) {
+  runtime.fill(locator.clearances, locator.points.size(), std::numeric_limits<cl_int>::max());
+  runtime.map(locator.faces.size(),
+              kernels::measure_clearances{
+                  .faces = locator.faces, .points = locator.points, .clearances = locator.clearances});
+  locator.has_clearances = true;
+}
+
 void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
   Arena::Scope scope(runtime.arena());
@@ -376,6 +380,11 @@ void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& 
   const auto found = runtime.arena().allocate<cl_int>(m), unanswered = runtime.arena().allocate<cl_int>(1);
   const Tuning& tuning = tuning_of(runtime);
   const WalkLimits limits{tuning.levels_from, tuning.walk_most};
+  if (!locator.has_clearances) {
+    measure_clearances(runtime, locator);
+    // A later call may use another queue.
+    runtime.finish();
+  }
   find_triangles(runtime, locator, pass, false, limits, queries, m, found);
   runtime.fill(unanswered, 1, cl_int{0});
   nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
@@ -389,6 +398,15 @@ LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets) {
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  const auto found = runtime.arena().allocate<cl_int>(m);
+  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
+  return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};
+}
+
+LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
+                               const Buffer<cl_double>& queries, std::size_t m,
+                               const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
+  const Pass pass = prepare(runtime, locator, queries, m, query_offsets, limits);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
   return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};

@@ -27,6 +27,7 @@ struct Locator {
   Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
   Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
   std::size_t most_triangles = 0;      ///< of one set
+  bool has_clearances = false;         ///< measured only when queries for nearest points come
   /// For the search of nearest points. There are none until a query needs them.
   Levels levels{};
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
@@ -39,6 +40,9 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh)
 
 /// The same without trees.
 Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+
+/// Computes the clearances, which the search for nearest points needs. Does not wait.
+void measure_clearances(host::Runtime& runtime, Locator& locator);
 
 // Queries are m points, x0 y0 x1 y1 ..., with the alignment of doubles; set s has queries [query_offsets[s],
 // query_offsets[s + 1]). Each call waits 2 times, or 3 if sets need different scalings, to check that all
@@ -55,7 +59,8 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
 /// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
 /// of its representative; -1 if the set is empty. About O(log n) steps per query, except at a vertex with
 /// very many neighbours that are no fan and are all about as near. If a query is far to walk to, makes the
-/// locator's levels; until there are levels, waits once more.
+/// locator's levels; until there are levels, waits once more. The first call measures the clearances, and
+/// waits once more for that.
 void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
              const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
 
@@ -71,9 +76,10 @@ struct LocatedQueries {
 };
 
 /// Finds the triangle of each query, for kernels that continue from there. The result is allocated in the
-/// runtime's arena, in the caller's scope.
+/// runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
-                               const std::vector<std::size_t>& query_offsets);
+                               const std::vector<std::size_t>& query_offsets,
+                               const QueryLimits& limits = kOrientLimits);
 
 }  // namespace flaunay::locate

@@ -28,7 +28,8 @@ Magnitudes together(const Magnitudes& a, const Magnitudes& b) {
 // Throws an error that names the one of the queries [first, last) whose magnitude exceeds that of the points
 // by more.
 [[noreturn]] void throw_range(host::Runtime& runtime, const Buffer<cl_double>& queries, std::size_t first,
-                              std::size_t last, const Magnitudes& points, const Magnitudes& asked) {
+                              std::size_t last, const Magnitudes& points, const Magnitudes& asked,
+                              const QueryLimits& limits) {
   std::vector<double> all(2 * (last - first));
   runtime.read(queries, 2 * first, all.size(), all.data());
   const bool is_fine = points.lowest - asked.lowest > asked.largest - points.largest;
@@ -41,18 +42,16 @@ Magnitudes together(const Magnitudes& a, const Magnitudes& b) {
       fmt::format("query {} is too {} to be exact: it has {} = {:.17g}; the bits of points and queries "
                   "together span {} binary places, {} are supported",
                   first + i / 2, is_fine ? "fine" : "far", i % 2 ? "y" : "x", *found,
-                  bits_of(together(points, asked)), kernel::MOST_QUERY_BITS));
+                  bits_of(together(points, asked)), limits.most_bits()));
 }
 
 }  // namespace
 
-QueryScaling query_scaling(const Magnitudes& both, int point_shift) {
+QueryScaling query_scaling(const Magnitudes& both, int point_shift, const QueryLimits& limits) {
   int shift = point_shift;
   if (bits_of(both) > 0) {
-    if (both.largest + point_shift > kernel::LARGEST_QUERY_EXPONENT)
-      shift = kernel::LARGEST_QUERY_EXPONENT - both.largest;
-    if (both.lowest + point_shift < kernel::LOWEST_QUERY_EXPONENT)
-      shift = kernel::LOWEST_QUERY_EXPONENT - both.lowest;
+    if (both.largest + point_shift > limits.largest) shift = limits.largest - both.largest;
+    if (both.lowest + point_shift < limits.lowest) shift = limits.lowest - both.lowest;
   }
   QueryScaling scaling;
   scaling.frames.push_back({kernel::scale_of(shift), std::ldexp(1.0, shift - point_shift)});
@@ -64,14 +63,14 @@ QueryScaling query_scaling(const Magnitudes& both, int point_shift) {
 }
 
 QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, const Buffer<cl_double>& queries,
-                           const std::vector<std::size_t>& query_offsets) {
+                           const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
   const std::size_t sets = query_offsets.size() - 1, m = query_offsets.back();
   const Magnitudes asked = inspect(runtime, queries, m);
   if (asked.bad != kernel::NO_BAD) throw_not_finite(runtime, queries, static_cast<std::size_t>(asked.bad));
   Magnitudes both = asked;
   for (const Magnitudes& of_set : points.by_set) both = together(both, of_set);
-  if (points.shifts.size() == 1 && bits_of(both) <= kernel::MOST_QUERY_BITS) {
-    QueryScaling scaling = query_scaling(both, points.shifts[0]);
+  if (points.shifts.size() == 1 && bits_of(both) <= limits.most_bits()) {
+    QueryScaling scaling = query_scaling(both, points.shifts[0], limits);
     scaling.frames.resize(sets, scaling.frames[0]);
     return scaling;
   }
@@ -80,11 +79,11 @@ QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, con
   const std::vector<Magnitudes> asked_by_set = inspect_sets(runtime, queries, query_offsets);
   for (std::size_t s = 0; s < sets; ++s) {
     both = together(points.by_set[s], asked_by_set[s]);
-    if (bits_of(both) > kernel::MOST_QUERY_BITS) {
-      throw_range(runtime, queries, query_offsets[s], query_offsets[s + 1], points.by_set[s],
-                  asked_by_set[s]);
+    if (bits_of(both) > limits.most_bits()) {
+      throw_range(runtime, queries, query_offsets[s], query_offsets[s + 1], points.by_set[s], asked_by_set[s],
+                  limits);
     }
-    const QueryScaling of_set = query_scaling(both, points.shift(s));
+    const QueryScaling of_set = query_scaling(both, points.shift(s), limits);
     scaling.frames.push_back(of_set.frames[0]);
     scaling.orient_bound = std::max(scaling.orient_bound, of_set.orient_bound);
     scaling.nearness_bound = std::max(scaling.nearness_bound, of_set.nearness_bound);

@@ -7,6 +7,7 @@
 
 #include "geometry/magnitudes.hpp"
 #include "points/device_mesh.hpp"
+#include "shared/bounds.h"
 #include "shared/records.h"
 
 namespace flaunay::locate {
@@ -28,13 +29,26 @@ struct QueryScaling {
   double orient_bound = 0, nearness_bound = 0;
 };
 
+/// What predicates on points and queries need: coordinates are multiples of 2^lowest below 2^(largest + 1).
+struct QueryLimits {
+  int largest, lowest;
+
+  int most_bits() const { return largest - lowest + 1; }
+};
+/// Orientations and comparisons of distances.
+constexpr QueryLimits kOrientLimits{kernel::LARGEST_QUERY_EXPONENT, kernel::LOWEST_QUERY_EXPONENT};
+/// In-circle tests, too.
+constexpr QueryLimits kCircleLimits{kernel::LARGEST_EXPONENT, kernel::LOWEST_EXPONENT};
+
 /// Inspects queries and chooses their scaling: the same for all sets, or if magnitudes differ too much, one
 /// for each. Waits once, or twice. Throws Error(input), which names a query, if one is not finite, too fine
 /// or too far away.
 QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, const Buffer<cl_double>& queries,
-                           const std::vector<std::size_t>& query_offsets);
+                           const std::vector<std::size_t>& query_offsets,
+                           const QueryLimits& limits = kOrientLimits);
 
 /// Chooses the scaling of one set, whose points and queries together have accepted magnitudes.
-QueryScaling query_scaling(const Magnitudes& both, int point_shift);
+QueryScaling query_scaling(const Magnitudes& both, int point_shift,
+                           const QueryLimits& limits = kOrientLimits);
 
 }  // namespace flaunay::locate

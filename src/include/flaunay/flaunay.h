@@ -109,13 +109,28 @@ typedef enum flaunay_voronoi_part {
   FLAUNAY_VORONOI_UNBOUNDED = 8       ///< uchar, n
 } flaunay_voronoi_part;
 
+/// The arrays of clipped Voronoi cells in device memory, as bits, with their types and their sizes in bytes
+/// for n points and v vertices.
+typedef enum flaunay_clipped_voronoi_part {
+  FLAUNAY_CLIPPED_VORONOI_VERTICES = 1,  ///< double2, 16 v
+  FLAUNAY_CLIPPED_VORONOI_OFFSETS = 2,   ///< int32, 4 (n + 1)
+  FLAUNAY_CLIPPED_VORONOI_AREAS = 4,     ///< double, 8 n
+  FLAUNAY_CLIPPED_VORONOI_CENTROIDS = 8  ///< double2, 16 n
+} flaunay_clipped_voronoi_part;
+
 /// How values are computed between points.
 typedef enum flaunay_interpolation {
   FLAUNAY_INTERPOLATION_LINEAR = 0,   ///< linearly in each triangle; continuous
   FLAUNAY_INTERPOLATION_NEAREST = 1,  ///< the values of the nearest point
   /// By cubics, with a continuous gradient: the reduced element of Hsieh, Clough and Tocher, as SciPy's
   /// CloughTocher2DInterpolator.
-  FLAUNAY_INTERPOLATION_CLOUGH_TOCHER = 2
+  FLAUNAY_INTERPOLATION_CLOUGH_TOCHER = 2,
+  /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
+  /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
+  FLAUNAY_INTERPOLATION_SIBSON = 3,
+  /// By Laplace's natural-neighbour weights: the lengths of that cell's edges over the distances of the
+  /// points. Continuous, and exact for linear functions, up to rounding.
+  FLAUNAY_INTERPOLATION_LAPLACE = 4
 } flaunay_interpolation;
 
 /// Owns the programs and memory of a device. The context is the triangulator's own or the caller's.
@@ -130,6 +145,8 @@ typedef struct flaunay_voronoi flaunay_voronoi;
 typedef struct flaunay_device_voronoi flaunay_device_voronoi;
 /// The cells of the dual, clipped to a convex polygon, in host memory.
 typedef struct flaunay_clipped_voronoi flaunay_clipped_voronoi;
+/// The cells of the dual, clipped to a convex polygon, in device memory.
+typedef struct flaunay_device_clipped_voronoi flaunay_device_clipped_voronoi;
 /// Answers queries on a triangulation: containing triangle, nearest point, interpolated value.
 typedef struct flaunay_locator flaunay_locator;
 /// The OpenCL devices of the machine.
@@ -735,6 +752,30 @@ FLAUNAY_API const int32_t* flaunay_clipped_voronoi_offsets(const flaunay_clipped
 FLAUNAY_API const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells);
 /// 2 n values; NaN for points without vertices.
 FLAUNAY_API const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells);
+
+/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
+FLAUNAY_API flaunay_status flaunay_device_clipped_voronoi_create(flaunay_device_clipped_voronoi** cells);
+/// Releases its buffers; what is enqueued with them goes on.
+FLAUNAY_API void flaunay_device_clipped_voronoi_destroy(flaunay_device_clipped_voronoi* cells);
+/// Makes later calls write one part, one bit of flaunay_clipped_voronoi_part, to the caller's buffer. Its
+/// size must be that given there: there are about 6 vertices per point, as a rule. Otherwise see
+/// flaunay_device_triangulation_set_buffer.
+FLAUNAY_API flaunay_status flaunay_device_clipped_voronoi_set_buffer(flaunay_device_clipped_voronoi* cells,
+                                                                     unsigned part, cl_mem memory);
+/// The buffer of one part; see flaunay_device_triangulation_buffer.
+FLAUNAY_API cl_mem flaunay_device_clipped_voronoi_buffer(const flaunay_device_clipped_voronoi* cells,
+                                                         unsigned part);
+/// v, the number of vertices of all cells. It is known when the call returns.
+FLAUNAY_API size_t flaunay_device_clipped_voronoi_vertex_count(const flaunay_device_clipped_voronoi* cells);
+/// flaunay_voronoi_clip in device memory. The triangulation must have the parts triangles, neighbors, hull
+/// and representatives; of several sets, each has cells of its own. The work is enqueued like that of
+/// flaunay_triangulate_device, with the same errors. The host waits twice.
+FLAUNAY_API flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* triangulator,
+                                                       const flaunay_device_points* points,
+                                                       const flaunay_device_triangulation* triangulation,
+                                                       const double* corners, size_t corner_count,
+                                                       const flaunay_enqueue* enqueue,
+                                                       flaunay_device_clipped_voronoi* result);
 
 /// Relaxes n points by Lloyd's method: each moves to the centroid of its Voronoi cell clipped to the polygon,
 /// `iterations` times. A point without a cell stays where it is in that iteration. relaxed: room for 2 n

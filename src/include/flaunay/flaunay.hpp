@@ -337,6 +337,12 @@ enum class Interpolation {
   /// By cubics, with a continuous gradient: the reduced element of Hsieh, Clough and Tocher, as SciPy's
   /// CloughTocher2DInterpolator.
   clough_tocher,
+  /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
+  /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
+  sibson,
+  /// By Laplace's natural-neighbour weights: the lengths of that cell's edges over the distances of the
+  /// points. Continuous, and exact for linear functions, up to rounding.
+  laplace,
 };
 
 /// How gradients are estimated: so that the curvature along all edges is least (Nielson, 1983; Renka and

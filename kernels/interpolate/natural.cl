@@ -1,0 +1,673 @@
+// Natural-neighbour interpolation: Sibson's weights ("A brief description of natural neighbour interpolation", 1981),
+// and Laplace's (Belikov et al., 1997; Hiyoshi and Sugihara, 1999).
+//
+// If the query q were a point, its Voronoi cell would take a piece from the cell of each of its neighbours. Sibson's
+// weight of a neighbour is the area of that piece, Laplace's is the length of the edge between both cells over the
+// distance of both points; both by their sum.
+//
+// The triangles whose circles have q strictly inside are the cavity of q. It contains no vertex, so that its triangles
+// form a tree, and each of its boundary's vertices is a neighbour of q. A walk goes around the boundary. At each vertex
+// v it rotates through the cavity's triangles that have v as a corner. Their circumcentres are the corners of the piece
+// of v, except for the first one and the last one, which are those of q, v and a neighbour of v on the boundary. So the
+// walk needs no memory, whatever the number of neighbours. It takes three steps per triangle of the cavity.
+//
+// The piece of v is cut into triangles by diagonals from its first corner A, the centre of the circle through q, p and
+// v, where p comes before v on the boundary. For an edge from v to u, with a triangle on either side, the distance of
+// the circumcentres of both is |v u| / 2 times the sum of the cotangents of the angles opposite to the edge, and A is
+// (|A - u|^2 - |A - v|^2) / (2 |v u|) away from the line through them. The second numerator is the in-circle
+// determinant of q, p, v and u over twice the area of q, p and v. No square root is needed, and no term is negative.
+//
+// Each query is one work-item. Values take two passes:
+// 1. interpolate_natural decides and computes in floating point, with bounds of all errors. If a test is not decided,
+// or
+//    the weights are not certain to NATURAL_ERROR, it leaves the query to the second pass.
+// 2. interpolate_natural_exactly decides exactly. It multiplies and adds positive numbers with small relative errors
+//    alone, which shared/determinants.h computes, so that its weights have small relative errors, whatever the points.
+// docs/exactness.md has the bounds. Lists of neighbours with weights take count_neighbors and, after a scan of the
+// counts, list_neighbors. Each does both for its query, one after the other.
+
+#include "shared/coordinates.h"
+#include "shared/determinants.h"
+#include "shared/halfedges.h"
+#include "shared/natural.h"
+#include "shared/prefetch.h"
+#include "shared/records.h"
+#include "shared/search.h"
+
+// A triangulation, as locators have it, and how much more the queries of its set are scaled. source: the points that
+// vertices are.
+typedef struct {
+  global const double2* points;
+  global const int* source;
+  global const face* faces;
+  double unit;
+} natural_mesh;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What becomes of the weights
+
+typedef struct {
+  int count;                    // of the neighbours so far
+  int columns, is_by_vertex;    // TO_VALUES
+  global const double* values;  // a row per point, or per vertex
+  global double* row;
+  global int* neighbors;  // TO_LIST
+  global double* weights;
+} receiver;
+
+#define TO_NOTHING 0
+#define TO_VALUES 1
+#define TO_LIST 2
+
+static inline void give(receiver* to, int what, natural_mesh mesh, int vertex, double weight) {
+  if (what == TO_VALUES) {
+    global const double* row = to->values + (size_t)(to->is_by_vertex ? vertex : mesh.source[vertex]) * to->columns;
+    for (int c = 0; c < to->columns; ++c) to->row[c] += weight * row[c];
+  } else if (what == TO_LIST) {
+    to->neighbors[to->count] = mesh.source[vertex];
+    to->weights[to->count] = weight;
+  }
+  ++to->count;
+}
+
+static inline void clear_row(receiver* to, double value) {
+  for (int c = 0; c < to->columns; ++c) to->row[c] = value;
+}
+
+// What the receiver has got by the sum of the weights.
+static inline void divide_by(receiver* to, int what, double sum) {
+  if (what == TO_VALUES) {
+    for (int c = 0; c < to->columns; ++c) to->row[c] /= sum;
+  } else if (what == TO_LIST) {
+    for (int k = 0; k < to->count; ++k) to->weights[k] /= sum;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Weights that are known without a walk
+
+// How attempts end: ASTRAY, if the mesh is no Delaunay triangulation.
+#define WEIGHED 1
+#define ASTRAY -1
+
+static inline double2 place_of(natural_mesh mesh, int vertex) { return mesh.unit * mesh.points[vertex]; }
+
+// At a vertex, and on an edge of the hull, where both methods tend to the linear
+// interpolation between its ends. Returns 0 if q lies on neither, UNDECIDED, or WEIGHED.
+static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exactly, int what, receiver* to) {
+  const face f = mesh.faces[start];
+  for (int k = 0; k < 3; ++k) {
+    const double2 at = place_of(mesh, f.corner[k]);
+    if (at.x == q.x && at.y == q.y) {
+      give(to, what, mesh, f.corner[k], 1.0);
+      return WEIGHED;
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (f.neighbor[k] >= 0) continue;
+    const int from = f.corner[next_corner(k)], to_vertex = f.corner[corner_before(k)];
+    const double2 a = place_of(mesh, from), b = place_of(mesh, to_vertex);
+    const int side = exactly ? orient_sign(a, b, q, ORIENT_BOUND) : orient_filtered(a, b, q, ORIENT_BOUND);
+    if (side == UNDECIDED) return UNDECIDED;
+    if (side != 0) continue;
+    const int along_x = fabs(b.x - a.x) >= fabs(b.y - a.y);
+    const double behind = fabs(along_x ? q.x - a.x : q.y - a.y), ahead = fabs(along_x ? b.x - q.x : b.y - q.y);
+    give(to, what, mesh, from, ahead / (behind + ahead));
+    give(to, what, mesh, to_vertex, behind / (behind + ahead));
+    return WEIGHED;
+  }
+  return 0;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Weights in floating point
+
+// A vertex as the query sees it: the square of its distance, and |x| + |y|.
+typedef struct {
+  double2 at;
+  double lift, reach;
+  int vertex;
+} sight;
+
+static inline sight see(natural_mesh mesh, double2 q, int vertex) {
+  sight seen;
+  seen.vertex = vertex;
+  seen.at = place_of(mesh, vertex) - q;
+  seen.lift = squared_length(seen.at);
+  seen.reach = fabs(seen.at.x) + fabs(seen.at.y);
+  return seen;
+}
+
+// The in-circle determinant of q and a triangle, twice the triangle's area, and the sums of their terms' magnitudes.
+typedef struct {
+  double det, det_magnitude, area, area_magnitude;
+} seen_circle;
+
+static inline seen_circle circle_through(sight a, sight b, sight c) {
+  const double bc = b.at.x * c.at.y;
+  const double cb = c.at.x * b.at.y;
+  const double ca = c.at.x * a.at.y;
+  const double ac = a.at.x * c.at.y;
+  const double ab = a.at.x * b.at.y;
+  const double ba = b.at.x * a.at.y;
+  const double at_a = bc - cb, at_b = ca - ac, at_c = ab - ba;
+  const double most_a = fabs(bc) + fabs(cb), most_b = fabs(ca) + fabs(ac), most_c = fabs(ab) + fabs(ba);
+  const seen_circle seen = {a.lift * at_a + b.lift * at_b + c.lift * at_c,
+                            most_a * a.lift + most_b * b.lift + most_c * c.lift, at_a + at_b + at_c,
+                            most_a + most_b + most_c};
+  return seen;
+}
+
+// The centre of a circle, as seen from the query: |x| + |y|, and a bound of the sum of both errors, in units of
+// ROUNDOFF.
+typedef struct {
+  double2 at;
+  double reach, error;
+} centre;
+
+// Centres farther away, and triangles that are more slender, are left to the exact pass. Within these bounds nothing
+// overflows, underflows do not matter, and errors of the second order are small.
+#define LARGEST_REACH 0x1p300
+#define LEAST_WEIGHTS 0x1p-700
+#define MOST_SLENDER 0x1p30
+
+// A query's sums: of the weights, and of what bounds their errors. steps: how many terms there were. unit: a power of
+// two that brings weights, but not errors, to about 1, so that products with values do not underflow.
+typedef struct {
+  double weights, errors, unit;
+  int steps, is_sound;
+} estimate;
+
+// by: the centre times twice the area, in both coordinates; magnitude: the sum of all its terms' magnitudes.
+static inline centre centre_by(double2 by, double magnitude, double area, double area_magnitude, estimate* all) {
+  const double inverse = 0.5 / area;
+  const double slenderness = 2.0 * inverse * area_magnitude;
+  const double length = fabs(by.x) + fabs(by.y);
+  centre made;
+  made.at = inverse * by;
+  made.reach = inverse * length;
+  made.error = inverse * (10.0 * magnitude + (7.0 * slenderness + 10.0) * length);
+  all->is_sound &= (made.reach < LARGEST_REACH) & (slenderness < MOST_SLENDER) & (area > 0.0);
+  return made;
+}
+
+static inline centre centre_of_triangle(seen_circle seen, sight a, sight b, sight c, estimate* all) {
+  const double2 by =
+      VECTOR(double2, a.lift * (b.at.y - c.at.y) + b.lift * (c.at.y - a.at.y) + c.lift * (a.at.y - b.at.y),
+             a.lift * (c.at.x - b.at.x) + b.lift * (a.at.x - c.at.x) + c.lift * (b.at.x - a.at.x));
+  const double magnitude = a.lift * (b.reach + c.reach) + b.lift * (c.reach + a.reach) + c.lift * (a.reach + b.reach);
+  return centre_by(by, magnitude, seen.area, seen.area_magnitude, all);
+}
+
+// Of the query and an edge.
+static inline centre centre_of_edge(sight a, sight b, estimate* all) {
+  const double ab = a.at.x * b.at.y, ba = a.at.y * b.at.x;
+  const double2 by = VECTOR(double2, a.lift * b.at.y - b.lift * a.at.y, b.lift * a.at.x - a.lift * b.at.x);
+  return centre_by(by, a.lift * b.reach + b.lift * a.reach, ab - ba, fabs(ab) + fabs(ba), all);
+}
+
+// A piece of a cell, clockwise from corner to corner: twice its area so far, and its last corner.
+typedef struct {
+  double area;
+  centre last;
+} piece;
+
+static inline void go_to(piece* around, centre next, estimate* all) {
+  const centre last = around->last;
+  around->area += next.at.x * last.at.y - next.at.y * last.at.x;
+  around->last = next;
+  all->errors += next.error * last.reach + next.reach * last.error;
+  ++all->steps;
+}
+
+// Of v, from one corner of the query's cell to the next one.
+static inline double laplace_weight(sight v, centre from, centre to, estimate* all) {
+  const double2 along = to.at - from.at;
+  const double inverse = 1.0 / v.lift;
+  all->errors += (from.error + to.error) * v.reach * inverse;
+  ++all->steps;
+  return (v.at.x * along.y - v.at.y * along.x) * inverse;
+}
+
+static inline void give_estimate(receiver* to, int what, natural_mesh mesh, sight v, double weight, estimate* all) {
+  const double positive = max(weight, 0.0) * all->unit;
+  all->weights += positive;
+  give(to, what, mesh, v.vertex, positive);
+}
+
+// A triangle of the cavity that the walk has entered: its centre, and its last edge, which leads to a vertex and has
+// another triangle beyond. is_open: whether that edge still is to be crossed.
+typedef struct {
+  centre middle;
+  sight to;
+  int triangle, beyond, is_open;
+} entered;
+
+// Field by field: copies of whole structs wait for parts of them to be stored.
+static inline void enter(entered* top, centre middle, sight to, int triangle, int beyond) {
+  top->middle.at.x = middle.at.x;
+  top->middle.at.y = middle.at.y;
+  top->middle.reach = middle.reach;
+  top->middle.error = middle.error;
+  top->to.at.x = to.at.x;
+  top->to.at.y = to.at.y;
+  top->to.lift = to.lift;
+  top->to.reach = to.reach;
+  top->to.vertex = to.vertex;
+  top->triangle = triangle;
+  top->beyond = beyond;
+  top->is_open = 1;
+}
+
+// Cavities with longer paths are left to the exact pass.
+#define MOST_ENTERED 24
+
+// Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. Triangles that the
+// walk is in, from `start` on, are kept, so that each is tested once. A piece takes the centres of the triangles that
+// the walk is in while it is at a vertex. Gives weights, of which *all has the sum. Returns WEIGHED or UNDECIDED.
+static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int method, int what, estimate* all,
+                                   receiver* to) {
+  entered path[MOST_ENTERED];
+  const face f = mesh.faces[start];
+  // The edge from x to y, which has triangle t on its left and u beyond.
+  sight x = see(mesh, q, f.corner[0]), y = see(mesh, q, f.corner[1]);
+  const sight first = x, third = see(mesh, q, f.corner[2]);
+  const int is_sibson = method == SIBSON;
+  if (is_sibson) {
+    const double largest = max(x.lift, max(y.lift, third.lift));
+    all->unit = power_of_two(1023 - (int)(as_ulong(largest) >> 52));
+  }
+  int t = start, u = f.neighbor[2], depth = 1;
+  const centre middle = centre_of_triangle(circle_through(x, y, third), x, y, third, all);
+  enter(&path[0], middle, first, start, f.neighbor[1]);
+  enter(&path[1], middle, third, start, f.neighbor[0]);
+  // Of the first vertex the piece is in two parts, as the walk begins inside of it.
+  piece around = {0.0, middle};
+  centre before = around.last, first_after = before;
+  double first_area = 0.0;
+  int is_first = 1;
+  while (depth >= 0) {
+    if (u >= 0) {
+      const face g = mesh.faces[u];
+      const int j = corner_opposite(g, t);
+      const sight d = see(mesh, q, g.corner[j]);
+      const seen_circle seen = circle_through(y, x, d);
+      if (!(fabs(seen.det) > CIRCLE_BOUND * seen.det_magnitude)) return UNDECIDED;
+      if (seen.det > 0.0) {
+        if (++depth == MOST_ENTERED) return UNDECIDED;
+        centre inside = middle;
+        if (is_sibson) {
+          inside = centre_of_triangle(seen, y, x, d, all);
+          go_to(&around, inside, all);
+        }
+        enter(&path[depth], inside, y, u, g.neighbor[corner_before(j)]);
+        y = d;
+        t = u;
+        u = g.neighbor[next_corner(j)];
+        continue;
+      }
+    }
+    // On the boundary: x is done, but for the first time.
+    const centre after = centre_of_edge(x, y, all);
+    if (is_sibson) go_to(&around, after, all);
+    if (is_first) {
+      first_after = after;
+      first_area = around.area;
+      is_first = 0;
+    } else if (is_sibson) {
+      go_to(&around, before, all);
+      give_estimate(to, what, mesh, x, around.area, all);
+    } else {
+      give_estimate(to, what, mesh, x, laplace_weight(x, before, after, all), all);
+    }
+    before = after;
+    around.area = 0.0;
+    around.last = after;
+    x = y;
+    if (is_sibson) go_to(&around, path[depth].middle, all);
+    while (depth >= 0 && !path[depth].is_open) {
+      if (--depth >= 0 && is_sibson) go_to(&around, path[depth].middle, all);
+    }
+    if (depth >= 0) {
+      path[depth].is_open = 0;
+      y = path[depth].to;
+      u = path[depth].beyond;
+      t = path[depth].triangle;
+    }
+  }
+  if (is_sibson) {
+    around.last = first_after;
+    go_to(&around, before, all);
+    give_estimate(to, what, mesh, first, around.area + first_area, all);
+  } else {
+    give_estimate(to, what, mesh, first, laplace_weight(first, before, first_after, all), all);
+  }
+  return WEIGHED;
+}
+
+// Returns WEIGHED, or UNDECIDED if the weights are not certain.
+static inline int weigh_by_estimate(natural_mesh mesh, double2 q, int start, int method, int what, receiver* to) {
+  const int on_hull = weigh_on_hull(mesh, q, start, 0, what, to);
+  if (on_hull != 0) return on_hull;
+  estimate all = {0.0, 0.0, 1.0, 0, 1};
+  const int outcome = estimate_weights(mesh, q, start, method, what, &all, to);
+  const double errors = all.errors * (1.0 + 0.125 * all.steps) * all.unit;
+  if (outcome != WEIGHED || !all.is_sound || !(all.weights > LEAST_WEIGHTS * all.unit) ||
+      !(errors <= NATURAL_ERROR / (2.0 * ROUNDOFF) * all.weights)) {
+    return UNDECIDED;
+  }
+  divide_by(to, what, all.weights);
+  return WEIGHED;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Weights with small relative errors
+
+// A number that may be no double: mantissa * 2^exponent; 0 has the smallest exponent.
+typedef struct {
+  double mantissa;
+  int exponent;
+} wide;
+
+#define NO_EXPONENT -100000
+
+static inline wide widened_double(double x) {
+  const ulong bits = as_ulong(fabs(x));
+  wide number = {0.0, NO_EXPONENT};
+  if (bits != 0) {
+    number.exponent = (int)(bits >> 52) - 1023;
+    number.mantissa = as_double((bits & 0xfffffffffffffUL) | 0x3ff0000000000000UL);
+  }
+  return number;
+}
+
+static inline wide wide_product(wide a, wide b) {
+  const wide product = {a.mantissa * b.mantissa, a.exponent + b.exponent};
+  return product;
+}
+
+static inline wide wide_quotient(wide a, wide b) {
+  const wide quotient = {a.mantissa / b.mantissa, a.exponent - b.exponent};
+  return quotient;
+}
+
+// a / b as a double, 0 if it is tiny.
+static inline double narrow_quotient(wide a, wide b) {
+  const int exponent = a.exponent - b.exponent;
+  return exponent < -1000 ? 0.0 : a.mantissa / b.mantissa * power_of_two(min(exponent, 1000));
+}
+
+static inline wide wide_sum(wide a, wide b) {
+  const int is_larger = a.exponent >= b.exponent;
+  const int exponent = is_larger ? a.exponent : b.exponent;
+  const int below = is_larger ? b.exponent - exponent : a.exponent - exponent;
+  const double small = below < -1000 ? 0.0 : (is_larger ? b.mantissa : a.mantissa) * power_of_two(below);
+  const wide sum = {(is_larger ? a.mantissa : b.mantissa) + small, exponent};
+  return sum;
+}
+
+static inline wide wide_area(double2 a, double2 b, double2 c) { return widened_double(orient_value(a, b, c)); }
+static inline wide wide_circle(double2 a, double2 b, double2 c, double2 d) {
+  return widened_double(circle_value(a, b, c, d));
+}
+
+// The triangle of a piece between the centres on both sides of the edge from v to c: behind are a and an area, before
+// are d, which is q at the last edge, and an area. p comes before v on the boundary.
+static inline wide wide_term(double2 q, double2 p, double2 v, double2 c, double2 a, double2 d, wide behind,
+                             wide before) {
+  const wide across = wide_circle(v, c, a, d), height = wide_circle(p, v, c, q);
+  return wide_quotient(wide_product(across, height), wide_product(behind, before));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The walk that needs no memory
+
+// A vertex with its place.
+typedef struct {
+  int vertex;
+  double2 at;
+} corner_point;
+
+static inline corner_point point_at(natural_mesh mesh, int vertex) {
+  const corner_point point = {vertex, place_of(mesh, vertex)};
+  return point;
+}
+
+static inline int is_inside(corner_point a, corner_point b, corner_point c, double2 q) {
+  return circle_sign(a.at, b.at, c.at, q, CIRCLE_BOUND) > 0;
+}
+
+// Where the walk is: at corner k of triangle t, v; counter-clockwise the others are c and a.
+typedef struct {
+  int t, k;
+  face f;
+  corner_point v, c, a;
+} stand;
+
+// Goes backwards around v, to an edge of the cavity's boundary. Returns whether there is one.
+static inline int find_boundary(natural_mesh mesh, double2 q, stand* at, int* steps) {
+  for (;;) {
+    const int u = at->f.neighbor[next_corner(at->k)];
+    if (u < 0) return 1;
+    const face g = mesh.faces[u];
+    const int j = corner_opposite(g, at->t);
+    const corner_point d = point_at(mesh, g.corner[j]);
+    if (!is_inside(at->v, at->a, d, q)) return 1;
+    if (--*steps < 0) return 0;
+    at->c = at->a;
+    at->a = d;
+    at->f = g;
+    at->t = u;
+    at->k = next_corner(j);
+  }
+}
+
+// From the edge of the boundary that leads to v on to the one that leaves it, over the triangles between. Returns
+// whether there is one. part: gets the weight of v.
+static inline int weigh_exactly_at(natural_mesh mesh, double2 q, int method, stand* at, int* steps, wide* part) {
+  const double2 p = at->a.at, v = at->v.at;
+  wide behind = {0.0, NO_EXPONENT};
+  *part = behind;
+  if (method == SIBSON) behind = wide_area(v, at->c.at, at->a.at);
+  for (;;) {
+    if (--*steps < 0) return 0;
+    const int u = at->f.neighbor[corner_before(at->k)];
+    if (u < 0) break;
+    const face g = mesh.faces[u];
+    const int j = corner_opposite(g, at->t);
+    const corner_point d = point_at(mesh, g.corner[j]);
+    if (!is_inside(at->c, at->v, d, q)) break;
+    if (method == SIBSON) {
+      const wide before = wide_area(v, d.at, at->c.at);
+      *part = wide_sum(*part, wide_term(q, p, v, at->c.at, at->a.at, d.at, behind, before));
+      behind = before;
+    }
+    at->a = at->c;
+    at->c = d;
+    at->f = g;
+    at->t = u;
+    at->k = corner_before(j);
+  }
+  const double2 c = at->c.at;
+  if (method == SIBSON) {
+    *part = wide_sum(*part, wide_term(q, p, v, c, at->a.at, q, behind, wide_area(q, v, c)));
+    *part = wide_quotient(*part, wide_area(q, p, v));
+  } else if (method == LAPLACE) {
+    *part = wide_quotient(wide_circle(q, p, v, c), wide_product(wide_area(q, p, v), wide_area(q, v, c)));
+  }
+  return 1;
+}
+
+// Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. whole: the sum of
+// the weights if it is known, else 0, and then no weights are given; sum: that sum. Returns WEIGHED, or ASTRAY after so
+// many steps, which happens only if the mesh is no Delaunay triangulation.
+static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int steps, int method, int what, wide whole,
+                               wide* sum, receiver* to) {
+  stand at;
+  at.t = start;
+  at.k = 0;
+  at.f = mesh.faces[start];
+  at.v = point_at(mesh, at.f.corner[0]);
+  at.c = point_at(mesh, at.f.corner[1]);
+  at.a = point_at(mesh, at.f.corner[2]);
+  if (!find_boundary(mesh, q, &at, &steps)) return ASTRAY;
+  const int first = at.v.vertex, first_triangle = at.t;
+  do {
+    const int vertex = at.v.vertex;
+    wide part;
+    if (!weigh_exactly_at(mesh, q, method, &at, &steps, &part)) return ASTRAY;
+    *sum = wide_sum(*sum, part);
+    give(to, what, mesh, vertex, what == TO_NOTHING ? 0.0 : narrow_quotient(part, whole));
+    const corner_point apex = at.a;
+    at.a = at.v;
+    at.v = at.c;
+    at.c = apex;
+    at.k = next_corner(at.k);
+  } while (at.v.vertex != first || at.t != first_triangle);
+  return WEIGHED;
+}
+
+// The walk takes three steps per triangle, and once more those around the first vertex.
+static inline int most_steps(int triangles) { return (int)min((long)INT_MAX, 4L * triangles); }
+
+// One walk for the sum of the weights, and one for the weights. triangles: of the query's set. Returns WEIGHED or
+// ASTRAY.
+static inline int weigh_exactly(natural_mesh mesh, double2 q, int start, int triangles, int method, int what,
+                                receiver* to) {
+  to->count = 0;
+  if (weigh_on_hull(mesh, q, start, 1, what, to) == WEIGHED) return WEIGHED;
+  const int steps = most_steps(triangles);
+  const wide none = {0.0, NO_EXPONENT};
+  wide whole = none, again = none;
+  if (walk_exactly(mesh, q, start, steps, method, TO_NOTHING, none, &whole, to) != WEIGHED) return ASTRAY;
+  to->count = 0;
+  return walk_exactly(mesh, q, start, steps, method, what, whole, &again, to);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Values
+
+static inline int set_of_query(int place, int sets, global const int* query_offsets) {
+  return sets > 1 ? segment_of(place, sets, query_offsets) : 0;
+}
+
+// How many queries ahead of its use a triangle is fetched; what it leads to is fetched half as far ahead.
+#define QUERIES_AHEAD 16
+
+static inline void fetch_query(int i, int n, global const int* found, global const face* faces,
+                               global const double2* points) {
+#if FETCH_AHEAD
+  fetch(&faces[max(0, found[min(i + QUERIES_AHEAD, n - 1)])]);
+  const face f = faces[max(0, found[min(i + QUERIES_AHEAD / 2, n - 1)])];
+  for (int k = 0; k < 3; ++k) {
+    fetch(&points[f.corner[k]]);
+    fetch(&faces[max(0, f.neighbor[k])]);
+  }
+#endif
+}
+
+// Brings the rows of values, by point, into the order of vertices, so that those of neighbours are near each other.
+kernel void place_values(int n, int sets, int columns, global const int* restrict first_vertices,
+                         global const int* restrict source, global const double* restrict values,
+                         global double* restrict placed) {
+  const int v = get_global_id(0);
+  if (v < n && v < first_vertices[sets]) {
+    for (int c = 0; c < columns; ++c) placed[(size_t)v * columns + c] = values[(size_t)source[v] * columns + c];
+  }
+}
+
+// n queries in order of places; found: their triangles, less than 0 outside of the hull. Values and results are rows of
+// so many columns, by point, or by vertex, and by query. left: whether a query, by place, is left to
+// interpolate_natural_exactly.
+kernel void interpolate_natural(int n, int sets, int columns, int is_by_vertex, int method, double outside,
+                                global const int* restrict query_offsets, global const query_frame* restrict frames,
+                                global const int* restrict order, global const double2* restrict placed,
+                                global const double2* restrict points, global const int* restrict source,
+                                global const face* restrict faces, global const int* restrict found,
+                                global const double* restrict values, global double* restrict results,
+                                global uchar* restrict left) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    fetch_query(i, n, found, faces, points);
+    const int s = set_of_query(i, sets, query_offsets);
+    const natural_mesh mesh = {points, source, faces, frames[s].unit};
+    receiver to = {0, columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0};
+    int outcome = WEIGHED;
+    if (found[i] >= 0) {
+      clear_row(&to, 0.0);
+      outcome = weigh_by_estimate(mesh, placed[i], found[i], method, TO_VALUES, &to);
+    } else {
+      clear_row(&to, outside);
+    }
+    left[i] = outcome != WEIGHED;
+  }
+}
+
+kernel void interpolate_natural_exactly(int n, int sets, int columns, int is_by_vertex, int method, double outside,
+                                        global const int* restrict query_offsets,
+                                        global const mesh_set* restrict records,
+                                        global const query_frame* restrict frames, global const int* restrict order,
+                                        global const double2* restrict placed, global const double2* restrict points,
+                                        global const int* restrict source, global const face* restrict faces,
+                                        global const int* restrict found, global const double* restrict values,
+                                        global const uchar* restrict left, global double* restrict results) {
+  const int i = get_global_id(0);
+  if (i < n && left[i]) {
+    const int s = set_of_query(i, sets, query_offsets);
+    const natural_mesh mesh = {points, source, faces, frames[s].unit};
+    receiver to = {0, columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0};
+    clear_row(&to, 0.0);
+    if (weigh_exactly(mesh, placed[i], found[i], records[s].triangles, method, TO_VALUES, &to) != WEIGHED) {
+      clear_row(&to, outside);
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Lists of neighbours
+
+// counts, by query: the neighbours; none outside of the hull.
+kernel void count_neighbors(int n, int sets, global const int* restrict query_offsets,
+                            global const mesh_set* restrict records, global const query_frame* restrict frames,
+                            global const int* restrict order, global const double2* restrict placed,
+                            global const double2* restrict points, global const int* restrict source,
+                            global const face* restrict faces, global const int* restrict found,
+                            global uint* restrict counts) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int s = set_of_query(i, sets, query_offsets);
+    const natural_mesh mesh = {points, source, faces, frames[s].unit};
+    receiver to = {0, 0, 0, 0, 0, 0, 0};
+    if (found[i] >= 0 && weigh_on_hull(mesh, placed[i], found[i], 1, TO_NOTHING, &to) != WEIGHED) {
+      const int steps = most_steps(records[s].triangles);
+      wide sum = {0.0, NO_EXPONENT};
+      if (walk_exactly(mesh, placed[i], found[i], steps, NO_WEIGHTS, TO_NOTHING, sum, &sum, &to) != WEIGHED) {
+        to.count = 0;
+      }
+    }
+    counts[order[i]] = (uint)to.count;
+  }
+}
+
+// offsets, by query: where its neighbours begin.
+kernel void list_neighbors(int n, int sets, int method, global const int* restrict query_offsets,
+                           global const mesh_set* restrict records, global const query_frame* restrict frames,
+                           global const int* restrict order, global const double2* restrict placed,
+                           global const double2* restrict points, global const int* restrict source,
+                           global const face* restrict faces, global const int* restrict found,
+                           global const uint* restrict offsets, global int* restrict neighbors,
+                           global double* restrict weights) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const uint first = offsets[order[i]];
+    if (offsets[order[i] + 1] != first) {
+      const int s = set_of_query(i, sets, query_offsets);
+      const natural_mesh mesh = {points, source, faces, frames[s].unit};
+      receiver to = {0, 0, 0, 0, 0, neighbors + first, weights + first};
+      const int triangles = records[s].triangles;
+      if (weigh_by_estimate(mesh, placed[i], found[i], method, TO_LIST, &to) != WEIGHED) {
+        weigh_exactly(mesh, placed[i], found[i], triangles, method, TO_LIST, &to);
+      }
+    }
+  }
+}

@@ -1,0 +1,264 @@
+"""Voronoi diagrams, their clipped cells, and relaxation in device memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _flaunay, _triangulators
+from flaunay._arrays import summary
+from flaunay._cells import ClippedVoronoi, as_iterations, corners_of
+from flaunay._device_arrays import DeviceCall, queue_for, view
+
+if TYPE_CHECKING:
+    import pyopencl
+    import pyopencl.array
+
+    from flaunay._on_device import DeviceTriangulation
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceVoronoi:
+    """The Voronoi diagram of points in device memory. `DeviceTriangulation.voronoi` makes it.
+
+    It has a vertex for each triangle. All sets are in the same arrays, with indices over all sets.
+
+    Attributes
+    ----------
+    vertices : pyopencl.array.Array of float64, shape (triangles, 2)
+        The circumcentres of the triangles, as `Voronoi.vertices`.
+    cells : pyopencl.array.Array of int32, shape (3 triangles,)
+        Point i has the vertices ``cells[cell_offsets[i]:cell_offsets[i + 1]]``, as `Voronoi.cells`.
+    cell_offsets : pyopencl.array.Array of int32, shape (npoints + 1,)
+    unbounded : pyopencl.array.Array of uint8, shape (npoints,)
+        1 for points that have unbounded cells: those of the hull.
+    event : pyopencl.Event
+        Complete when the results are there. The arrays know it: what pyopencl does with them waits.
+    """
+
+    vertices: pyopencl.array.Array
+    cells: pyopencl.array.Array
+    cell_offsets: pyopencl.array.Array
+    unbounded: pyopencl.array.Array
+    event: pyopencl.Event
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.unbounded.size, vertices=int(self.vertices.shape[0]))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceClippedVoronoi:
+    """Clipped Voronoi cells in device memory. `DeviceTriangulation.clipped_voronoi` makes them.
+
+    Attributes
+    ----------
+    vertices, offsets, areas, centroids : pyopencl.array.Array
+        As those of `ClippedVoronoi`, with its shapes and types.
+    bounds : ndarray of float64, shape (m, 2)
+        The corners of the box or polygon, counter-clockwise, in host memory.
+    event : pyopencl.Event
+        Complete when the results are there. The arrays know it: what pyopencl does with them waits.
+    """
+
+    vertices: pyopencl.array.Array
+    offsets: pyopencl.array.Array
+    areas: pyopencl.array.Array
+    centroids: pyopencl.array.Array
+    bounds: npt.NDArray[np.float64]
+    event: pyopencl.Event
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.areas.size, vertices=int(self.vertices.shape[0]))
+
+    def get(self) -> ClippedVoronoi:
+        """Copies all to host memory, when it is there."""
+        return ClippedVoronoi(
+            self.vertices.get(),
+            self.offsets.get(),
+            self.areas.get(),
+            self.centroids.get(),
+            self.bounds,
+        )
+
+
+def voronoi(
+    triangulation: DeviceTriangulation,
+    queue: Optional[pyopencl.CommandQueue] = None,
+    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+) -> DeviceVoronoi:
+    """The dual of the triangulation, in device memory.
+
+    Parameters
+    ----------
+    queue, wait_for : optional
+        As of `locator`.
+
+    Returns
+    -------
+    DeviceVoronoi
+
+    Raises
+    ------
+    UsageError
+        As of `locator`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> import numpy as np
+    >>> import pyopencl as cl
+    >>> import pyopencl.array
+    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    >>> points = cl.array.to_device(queue, np.array([[0, 0], [2, 0], [0, 2.0]]))
+    >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+    >>> tri.voronoi().vertices
+    cl.Array([[1., 1.]])
+    """
+    call, points = triangulation._begin("a Voronoi diagram", queue, wait_for)
+    enqueue = call.begin()
+    result = _flaunay.voronoi_device(
+        _triangulators.of_queue(call.queue), points, triangulation._mesh, enqueue
+    )
+    event = call.end(enqueue)
+    n, triangles = _sizes(triangulation)
+    made = _Views(result.buffers(), call.queue, event)
+    return DeviceVoronoi(
+        vertices=made.view("circumcentres", (triangles, 2), np.float64),
+        cells=made.view("cells", (3 * triangles,), np.int32),
+        cell_offsets=made.view("cell_offsets", (n + 1,), np.int32),
+        unbounded=made.view("unbounded", (n,), np.uint8),
+        event=event,
+    )
+
+
+def clipped_voronoi(
+    triangulation: DeviceTriangulation,
+    bounds: Any,
+    queue: Optional[pyopencl.CommandQueue] = None,
+    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+) -> DeviceClippedVoronoi:
+    """The Voronoi cells, clipped to a box or a convex polygon, with their areas and centroids.
+
+    Of several sets, each has cells of its own, that cover the polygon.
+
+    Parameters
+    ----------
+    bounds : array_like or shapely.Polygon
+        As of `Voronoi.clipped`, in host memory.
+    queue, wait_for : optional
+        As of `locator`.
+
+    Returns
+    -------
+    DeviceClippedVoronoi
+
+    Raises
+    ------
+    UsageError
+        As of `locator`, and if the bounds are neither.
+    InputError
+        If the polygon is not convex, or not finite; the message names a corner.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> import numpy as np
+    >>> import pyopencl as cl
+    >>> import pyopencl.array
+    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    >>> points = cl.array.to_device(queue, np.array([[1, 1], [3, 1], [2, 4.0]]))
+    >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+    >>> cells = tri.clipped_voronoi((0, 0, 4, 4))
+    >>> float(cl.array.sum(cells.areas).get())
+    16.0
+    """
+    corners = corners_of(bounds)
+    call, points = triangulation._begin("a Voronoi diagram", queue, wait_for)
+    enqueue = call.begin()
+    result = _flaunay.clipped_voronoi_device(
+        _triangulators.of_queue(call.queue), points, triangulation._mesh, corners, enqueue
+    )
+    event = call.end(enqueue)
+    n, _ = _sizes(triangulation)
+    made = _Views(result.buffers(), call.queue, event)
+    return DeviceClippedVoronoi(
+        vertices=made.view("vertices", (result.vertex_count, 2), np.float64),
+        offsets=made.view("offsets", (n + 1,), np.int32),
+        areas=made.view("areas", (n,), np.float64),
+        centroids=made.view("centroids", (n, 2), np.float64),
+        bounds=corners,
+        event=event,
+    )
+
+
+def _sizes(triangulation: DeviceTriangulation) -> tuple[int, int]:
+    """The numbers of points and triangles."""
+    return int(triangulation.points.shape[0]), int(triangulation.triangle_offsets[-1])
+
+
+@dataclass
+class _Views:
+    """The arrays over the buffers of one result."""
+
+    buffers: dict[str, int]
+    queue: pyopencl.CommandQueue
+    event: pyopencl.Event
+
+    def view(self, name: str, shape: tuple[int, ...], dtype: Any) -> pyopencl.array.Array:
+        return view(self.buffers[name], shape, dtype, self.queue, self.event)
+
+
+def relax_device(
+    points: pyopencl.array.Array,
+    bounds: Any,
+    iterations: int = 1,
+    queue: Optional[pyopencl.CommandQueue] = None,
+    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+) -> pyopencl.array.Array:
+    """Points in device memory, spread evenly by Lloyd's method. They stay there in all iterations.
+
+    Parameters
+    ----------
+    points : pyopencl.array.Array, shape (n, 2)
+        As of `triangulate_device`; they are not changed.
+    bounds : array_like or shapely.Polygon
+        As of `Voronoi.clipped`, in host memory.
+    iterations : int, default 1
+        How often the points move.
+    queue, wait_for : optional
+        As of `triangulate_device`.
+
+    Returns
+    -------
+    pyopencl.array.Array of float64, shape (n, 2)
+        As of `relax`. What pyopencl does with it waits for it.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError, ImportError
+        As of `triangulate_device` and `DeviceTriangulation.clipped_voronoi`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> import numpy as np
+    >>> import pyopencl as cl
+    >>> import pyopencl.array
+    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    >>> points = cl.array.to_device(queue, np.array([[0, 0], [0.5, 0.5]]))
+    >>> flaunay.relax_device(points, (0, 0, 4, 4), iterations=50).get().round(2)
+    array([[1.33, 1.33],
+           [2.67, 2.67]])
+    """
+    times, corners = as_iterations(iterations), corners_of(bounds)
+    call = DeviceCall(queue_for(points, queue, "points"), wait_for)
+    given = call.points(points, None, "points")
+    enqueue = call.begin()
+    buffer = _flaunay.relax_device(
+        _triangulators.of_queue(call.queue), given, corners, times, enqueue
+    )
+    return view(buffer, points.shape, np.float64, call.queue, call.end(enqueue), retain=False)

@@ -1,0 +1,719 @@
+"""Queries, interpolation, Voronoi diagrams and relaxation from pyopencl arrays to pyopencl arrays."""
+
+import functools
+import gc
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import flaunay
+
+cl = pytest.importorskip("pyopencl")
+cl_array = pytest.importorskip("pyopencl.array")
+
+PARTS = {"neighbors": True, "hull": True, "representatives": True}
+OUT_OF_ORDER = cl.command_queue_properties.OUT_OF_ORDER_EXEC_MODE_ENABLE
+METHODS = {
+    "linear": flaunay.LinearInterpolator,
+    "nearest": flaunay.NearestInterpolator,
+    "clough-tocher": flaunay.CloughTocherInterpolator,
+    "sibson": flaunay.NaturalNeighborInterpolator,
+    "laplace": functools.partial(flaunay.NaturalNeighborInterpolator, method="laplace"),
+}
+BOX = (0.1, 0.2, 0.8, 1.3)
+TRIANGLE = [[0, 0], [2, 0.5], [0.5, 1]]
+
+
+@pytest.fixture(scope="module")
+def context():
+    return cl.create_some_context(interactive=False)
+
+
+@pytest.fixture
+def queue(context):
+    return cl.CommandQueue(context)
+
+
+def same(array, expected):
+    """Byte for byte, with type and shape."""
+    mine = array.get() if isinstance(array, cl_array.Array) else array
+    assert mine.dtype == expected.dtype and mine.shape == expected.shape
+    # All NaN are equal: which one is written is not stated.
+    return np.array_equal(mine, expected, equal_nan=mine.dtype.kind == "f")
+
+
+def triangulated(queue, points, **given):
+    return flaunay.triangulate_device(cl_array.to_device(queue, points), **PARTS, **given)
+
+
+def queries_for(random, points, m=700):
+    """Some at points and on edges, some outside of the hull."""
+    middles = (points[: m // 4] + points[1 : m // 4 + 1]) / 2
+    return np.concatenate([random.random((m, 2)) * 1.4 - 0.2, points[: m // 4], middles])
+
+
+class Case:
+    """Points that are partly on a grid and partly equal, with a locator on the device."""
+
+    def __init__(self, random, queue, dtype=np.float64):
+        self.points = random.random((800, 2)).astype(dtype)
+        self.points[:100] = random.integers(0, 8, (100, 2)) / 8
+        self.queries = queries_for(random, self.points).astype(dtype)
+        self.values = random.random(len(self.points))
+        self.tri = triangulated(queue, self.points)
+        self.locator = self.tri.locator()
+        self.device_queries = cl_array.to_device(queue, self.queries)
+        self.device_values = cl_array.to_device(queue, self.values)
+        self.host = flaunay.Delaunay(self.points)
+
+
+@pytest.fixture
+def case(random, queue):
+    return Case(random, queue)
+
+
+# ---- Locating
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_located_as_on_the_host(random, queue, dtype):
+    case = Case(random, queue, dtype)
+    found = case.locator.locate(case.device_queries)
+    expected = case.host.find_simplex(case.queries).astype(np.int32)
+    assert same(found, expected) and (expected < 0).any() and (expected > 0).any()
+    near = case.locator.nearest(case.device_queries)
+    assert same(near, case.host.nearest(case.queries).astype(np.int32))
+    assert found.queue is queue and case.locator.npoints == 800
+    assert repr(case.locator) == "<flaunay.DeviceLocator: 800 points>"
+
+
+def test_queries_in_views(case):
+    expected = case.host.find_simplex(case.queries[11:200])
+    assert np.array_equal(case.locator.locate(case.device_queries[11:200]).get(), expected)
+
+
+def test_no_queries_and_no_points(queue):
+    none = cl_array.zeros(queue, (0, 2), np.float64)
+    locator = triangulated(queue, np.array([[0, 0], [4, 0], [0, 4.0]])).locator()
+    values = cl_array.zeros(queue, 3, np.float64)
+    assert same(locator.locate(none), np.empty(0, np.int32))
+    assert same(locator.nearest(none), np.empty(0, np.int32))
+    assert same(locator.interpolate(values, none), np.empty(0))
+    pairs = cl_array.zeros(queue, (3, 2), np.float64)
+    assert same(locator.interpolate(pairs, none), np.empty((0, 2)))
+
+    tri = triangulated(queue, np.empty((0, 2)))
+    locator, queries = tri.locator(), cl_array.zeros(queue, (5, 2), np.float64)
+    nothing = cl_array.zeros(queue, 0, np.float64)
+    assert same(locator.locate(queries), np.full(5, -1, np.int32))
+    assert same(locator.nearest(queries), np.full(5, -1, np.int32))
+    for method in METHODS:
+        assert same(locator.interpolate(nothing, queries, method, 7), np.full(5, 7.0))
+    assert same(locator.gradients(nothing), np.empty((0, 2)))
+
+
+def test_points_on_one_line(queue):
+    points = np.array([[0, 0], [1, 1], [2, 2], [1, 1.0]])
+    locator = triangulated(queue, points).locator()
+    queries = cl_array.to_device(queue, points)
+    values = cl_array.to_device(queue, np.arange(4.0))
+    assert locator.locate(queries).get().tolist() == [-1] * 4
+    assert locator.nearest(queries).get().tolist() == [0, 1, 2, 1]
+    assert np.isnan(locator.interpolate(values, queries).get()).all()
+    assert locator.interpolate(values, queries, "nearest").get().tolist() == [0, 1, 2, 1]
+    assert np.isnan(locator.gradients(values).get()).all()
+
+
+# ---- Interpolation
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("columns", [None, 1, 3])
+def test_interpolated_as_on_the_host(random, case, queue, method, columns):
+    shape = (800,) if columns is None else (800, columns)
+    values = random.random(shape)
+    given = cl_array.to_device(queue, values)
+    host = METHODS[method](case.host, values)
+    expected = host(case.queries)
+    assert same(case.locator.interpolate(given, case.device_queries, method), expected)
+    if method != "nearest":
+        assert np.isnan(expected).any()
+        filled = case.locator.interpolate(given, case.device_queries, method, fill_value=-3)
+        assert same(filled, np.where(np.isnan(expected), -3, expected))
+
+
+def test_linear_is_the_default(case):
+    expected = flaunay.LinearInterpolator(case.host, case.values)(case.queries)
+    assert same(case.locator.interpolate(case.device_values, case.device_queries), expected)
+
+
+@pytest.mark.parametrize("columns", [None, 2])
+def test_gradients_as_on_the_host(random, case, queue, columns):
+    values = random.random((800,) if columns is None else (800, columns))
+    given = cl_array.to_device(queue, values)
+    host = flaunay.CloughTocherInterpolator(case.host, values)
+    slopes = case.locator.gradients(given)
+    assert same(slopes, host.grad) and np.isnan(host.grad).any()
+    result = case.locator.interpolate(given, case.device_queries, "clough-tocher", gradients=slopes)
+    assert same(result, host(case.queries))
+    # Those that are given count, not those that would be estimated.
+    flat = cl_array.zeros(queue, slopes.shape, np.float64)
+    expected = flaunay.CloughTocherInterpolator(case.host, values, gradients=flat.get())
+    result = case.locator.interpolate(given, case.device_queries, "clough-tocher", gradients=flat)
+    assert same(result, expected(case.queries))
+    assert not same(result, host(case.queries))
+
+
+def test_tolerances_of_gradients(case):
+    host = flaunay.CloughTocherInterpolator(case.host, case.values, tol=0.1, maxiter=3)
+    coarse = case.locator.gradients(case.device_values, tol=0.1, maxiter=3)
+    assert same(coarse, host.grad)
+    assert not same(coarse, case.locator.gradients(case.device_values).get())
+    with pytest.raises(flaunay.UsageError, match="tol must be greater than 0"):
+        case.locator.gradients(case.device_values, tol=np.nan)
+    with pytest.raises(flaunay.UsageError, match="maxiter must be 1 or more"):
+        case.locator.gradients(case.device_values, maxiter=0)
+
+
+def test_all_in_one_buffer(random, queue):
+    """Values, gradients and queries are views of one array, as a simulation may have them."""
+    points, values, slopes = random.random((50, 2)), random.random(50), random.random((50, 2))
+    together = cl_array.to_device(queue, np.concatenate([points.ravel(), values, slopes.ravel()]))
+    queries, given = together[:100].reshape(50, 2), together[100:150]
+    locator = triangulated(queue, points).locator()
+    result = locator.interpolate(
+        given, queries, "clough-tocher", gradients=together[150:].reshape(50, 2)
+    )
+    assert same(result, values)
+    assert same(locator.interpolate(together[:50], queries), points.ravel()[:50])
+    expected = flaunay.CloughTocherInterpolator(points, values).grad
+    assert same(locator.gradients(given), expected)
+
+
+def test_views_of_values_wait_for_what_the_call_waits_for(random, context, queue):
+    points, values = random.random((300, 2)), random.random(300)
+    locator = triangulated(queue, points).locator()
+    queries = cl_array.to_device(queue, points)
+    given = cl_array.zeros(queue, 310, np.float64)
+    queue.finish()
+    gate = cl.UserEvent(context)
+    other = cl.CommandQueue(context)
+    written = cl.enqueue_copy(
+        other, given.base_data, np.append(np.zeros(10), values), is_blocking=False, wait_for=[gate]
+    )
+    opener = threading.Timer(0.3, lambda: gate.set_status(cl.command_execution_status.COMPLETE))
+    opener.start()
+    result = locator.interpolate(given[10:], queries, wait_for=[written])
+    opener.join()
+    assert same(result, values)
+
+
+# ---- Several sets
+
+SIZES = [3, 0, 1, 50, 2, 0, 7, 200]
+SEGMENTS = np.concatenate([[0], np.cumsum(SIZES)]).astype(np.int32)
+QUERY_SIZES = [4, 2, 0, 30, 5, 1, 9, 100]
+QUERY_SEGMENTS = np.concatenate([[0], np.cumsum(QUERY_SIZES)]).astype(np.int32)
+
+
+@pytest.mark.parametrize("on_device", [False, True])
+def test_sets_of_queries_are_for_sets_of_points(random, queue, on_device):
+    points, queries = random.random((SEGMENTS[-1], 2)), random.random((QUERY_SEGMENTS[-1], 2))
+    values = random.random(len(points))
+    tri = triangulated(queue, points, segments=SEGMENTS)
+    locator = tri.locator()
+    given, segments = cl_array.to_device(queue, queries), QUERY_SEGMENTS
+    if on_device:
+        segments = cl_array.to_device(queue, QUERY_SEGMENTS)
+    numbers = cl_array.to_device(queue, values)
+    triangles = locator.locate(given, segments).get()
+    near = locator.nearest(given, segments=segments).get()
+    between = {
+        method: locator.interpolate(numbers, given, method, segments=segments).get()
+        for method in METHODS
+    }
+    slopes = locator.gradients(numbers).get()
+    for s in range(len(SIZES)):
+        mine, theirs = slice(*SEGMENTS[s : s + 2]), slice(*QUERY_SEGMENTS[s : s + 2])
+        host = flaunay.Delaunay(points[mine])
+        where = host.find_simplex(queries[theirs])
+        first = tri.triangle_offsets[s]
+        assert np.array_equal(triangles[theirs], np.where(where < 0, -1, where + first)), s
+        closest = host.nearest(queries[theirs])
+        assert np.array_equal(near[theirs], np.where(closest < 0, -1, closest + SEGMENTS[s])), s
+        linear = flaunay.LinearInterpolator(host, values[mine])(queries[theirs])
+        assert same(between["linear"][theirs], linear), s
+        for method in "sibson", "laplace":
+            natural = METHODS[method](host, values[mine])(queries[theirs])
+            assert same(between[method][theirs], natural), (s, method)
+        if SIZES[s] > 0:
+            assert np.array_equal(between["nearest"][theirs], values[mine][closest]), s
+            # The tolerance is of all gradients together.
+            exact = flaunay.CloughTocherInterpolator(host, values[mine], tol=1e-12)
+            np.testing.assert_allclose(slopes[mine], exact.grad, rtol=0, atol=1e-4)
+            np.testing.assert_allclose(
+                between["clough-tocher"][theirs], exact(queries[theirs]), rtol=0, atol=1e-5
+            )
+
+
+def test_another_number_of_sets(random, queue):
+    locator = triangulated(queue, random.random((20, 2)), segments=[0, 5, 20]).locator()
+    queries = cl_array.to_device(queue, random.random((6, 2)))
+    for segments in None, [0, 6], [0, 1, 2, 6]:
+        with pytest.raises(flaunay.UsageError, match="sets"):
+            locator.locate(queries, segments)
+    with pytest.raises(flaunay.UsageError, match="end with 5, but there are 6"):
+        locator.nearest(queries, [0, 3, 5])
+    for segments in np.int64([0, 3, 6]), np.int32([[0, 3, 6]]):
+        with pytest.raises(flaunay.UsageError, match="int32 in one dimension"):
+            locator.nearest(queries, cl_array.to_device(queue, segments))
+
+
+# ---- Errors
+
+
+@pytest.mark.parametrize("missing", PARTS)
+def test_parts_that_were_not_asked_for(random, queue, missing):
+    points = cl_array.to_device(queue, random.random((10, 2)))
+    tri = flaunay.triangulate_device(points, **{**PARTS, missing: False})
+    for call in tri.locator, tri.voronoi, lambda: tri.clipped_voronoi(BOX):
+        with pytest.raises(
+            flaunay.UsageError, match=f"has no {missing}: ask triangulate_device for them"
+        ):
+            call()
+
+
+def test_queries_of_a_wrong_type_or_shape(case, queue):
+    for ask in (
+        case.locator.locate,
+        case.locator.nearest,
+        lambda queries, **given: case.locator.interpolate(case.device_values, queries, **given),
+    ):
+        for queries in np.zeros((4, 3)), np.zeros(4):
+            with pytest.raises(flaunay.UsageError, match="queries must have the shape"):
+                ask(cl_array.to_device(queue, queries))
+        with pytest.raises(flaunay.UsageError, match="queries.*float64 or float32"):
+            ask(cl_array.to_device(queue, np.zeros((4, 2), np.int32)))
+        with pytest.raises(flaunay.UsageError, match="queries must be C-contiguous"):
+            ask(case.device_queries[::2])
+        for queries in case.queries, None, [[0, 1]]:
+            with pytest.raises(TypeError, match="queries must be a pyopencl.array.Array"):
+                ask(queries)
+        with pytest.raises(TypeError, match="queue must be a pyopencl.CommandQueue"):
+            ask(case.device_queries, queue=queue.context)
+        with pytest.raises(TypeError, match="wait_for must be a sequence"):
+            ask(case.device_queries, wait_for=3)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_queries_that_are_not_finite(case, queue, bad):
+    case.queries[345, 1] = bad
+    queries = cl_array.to_device(queue, case.queries)
+    for ask in case.locator.locate, case.locator.nearest:
+        with pytest.raises(flaunay.InputError, match="query 345 is not finite"):
+            ask(queries)
+    assert case.locator.locate(case.device_queries).size == len(case.queries)
+
+
+def test_values_of_a_wrong_type_or_shape(case, queue):
+    asks = [
+        lambda values: case.locator.interpolate(values, case.device_queries),
+        case.locator.gradients,
+    ]
+    for ask in asks:
+        for shape in (799,), (800, 2, 2), (2, 800), (800, 0), ():
+            with pytest.raises(
+                flaunay.UsageError, match=r"values must have the shape \(800,\) or \(800, k\), not"
+            ):
+                ask(cl_array.zeros(queue, shape, np.float64))
+        for dtype in np.float32, np.int32, np.complex128:
+            with pytest.raises(flaunay.UsageError, match="values.*must be float64"):
+                ask(cl_array.zeros(queue, 800, dtype))
+        with pytest.raises(flaunay.UsageError, match="values must be C-contiguous"):
+            ask(cl_array.zeros(queue, 1600, np.float64)[::2])
+        for values in case.values, None, 3.0:
+            with pytest.raises((TypeError, flaunay.UsageError), match="values must be a pyopencl"):
+                ask(values)
+
+
+def test_gradients_of_a_wrong_type_or_shape(case, queue):
+    def ask(gradients, method="clough-tocher"):
+        case.locator.interpolate(
+            case.device_values, case.device_queries, method, gradients=gradients
+        )
+
+    for shape in (800,), (800, 1, 2), (799, 2):
+        with pytest.raises(flaunay.UsageError, match=r"gradients must have the shape \(800, 2\)"):
+            ask(cl_array.zeros(queue, shape, np.float64))
+    with pytest.raises(flaunay.UsageError, match="gradients.*must be float64"):
+        ask(cl_array.zeros(queue, (800, 2), np.float32))
+    with pytest.raises(TypeError, match="gradients must be a pyopencl"):
+        ask(np.zeros((800, 2)))
+    with pytest.raises(flaunay.UsageError, match="gradients are for the method 'clough-tocher'"):
+        ask(cl_array.zeros(queue, (800, 2), np.float64), "linear")
+
+
+def test_methods_that_are_none(case):
+    for method in "cubic", "", None:
+        with pytest.raises(flaunay.UsageError, match="there is no method.*clough-tocher"):
+            case.locator.interpolate(case.device_values, case.device_queries, method)
+
+
+def test_another_context(random, case, queue):
+    other = cl.CommandQueue(cl.Context(queue.context.devices))
+    for call in (
+        lambda: case.locator.locate(case.device_queries, queue=other),
+        lambda: case.locator.locate(cl_array.to_device(other, case.queries)),
+        lambda: case.locator.nearest(cl_array.to_device(other, case.queries), queue=queue),
+        lambda: case.locator.interpolate(
+            cl_array.to_device(other, case.values), case.device_queries
+        ),
+        lambda: case.locator.gradients(cl_array.to_device(other, case.values), queue=queue),
+        lambda: case.tri.locator(queue=other),
+        lambda: case.tri.voronoi(queue=other),
+        lambda: case.tri.clipped_voronoi(BOX, queue=other),
+        lambda: flaunay.relax_device(case.tri.points, BOX, queue=other),
+    ):
+        with pytest.raises(flaunay.UsageError, match="another context"):
+            call()
+    # None of these harmed it.
+    assert same(
+        case.locator.locate(case.device_queries),
+        case.host.find_simplex(case.queries).astype(np.int32),
+    )
+
+
+def test_arrays_without_a_queue(case, queue):
+    queue.finish()
+    lonely = case.device_queries.with_queue(None)
+    with pytest.raises(flaunay.UsageError, match="queries have no queue of their own"):
+        case.locator.locate(lonely)
+    assert case.locator.locate(lonely, queue=queue).size == len(case.queries)
+    with pytest.raises(flaunay.UsageError, match="values have no queue of their own"):
+        case.locator.gradients(case.device_values.with_queue(None))
+
+
+def test_a_closed_locator(case):
+    answers = case.locator.locate(case.device_queries)
+    case.locator.close()
+    case.locator.close()
+    for call in (
+        lambda: case.locator.locate(case.device_queries),
+        lambda: case.locator.nearest(case.device_queries),
+        lambda: case.locator.interpolate(case.device_values, case.device_queries),
+        lambda: case.locator.gradients(case.device_values),
+    ):
+        with pytest.raises(flaunay.UsageError, match="the locator is closed"):
+            call()
+    assert np.array_equal(answers.get(), case.host.find_simplex(case.queries))
+    assert case.tri.locator().locate(case.device_queries).size == len(case.queries)
+
+
+@pytest.mark.parametrize("cls", METHODS.values())
+def test_interpolators_of_host_memory_name_the_call(case, cls):
+    hint = r"memory of an OpenCL device: call triangulate_device\(...\).locator\(\).interpolate"
+    interpolator = cls(case.points, case.values)
+    with pytest.raises(flaunay.UsageError, match=f"xi are in the {hint}, or take xi.get"):
+        interpolator(case.device_queries)
+    with pytest.raises(flaunay.UsageError, match=f"xi are in the {hint}"):
+        interpolator(case.device_values, case.device_values)
+    with pytest.raises(flaunay.UsageError, match=f"values are in the {hint}"):
+        cls(case.points, case.device_values)
+    with pytest.raises(flaunay.UsageError, match="points are in.*call triangulate_device"):
+        cls(case.tri.points, case.values)
+    with pytest.raises(flaunay.UsageError, match=f"values are in the {hint}"):
+        flaunay.griddata(case.points, case.device_values, case.queries)
+    if cls is flaunay.CloughTocherInterpolator:
+        with pytest.raises(flaunay.UsageError, match=f"gradients are in the {hint}"):
+            cls(case.points, case.values, gradients=case.locator.gradients(case.device_values))
+
+
+# ---- Queues, events and lifetimes
+
+
+@pytest.mark.parametrize("properties", [0, OUT_OF_ORDER])
+def test_other_queues_of_the_context(case, context, queue, properties):
+    others = [cl.CommandQueue(context, properties=properties) for _ in range(3)]
+    tri = flaunay.triangulate_device(case.tri.points, queue=others[0], **PARTS)
+    locator = tri.locator(queue=others[1])
+    slopes = locator.gradients(case.device_values, queue=others[2])
+    result = locator.interpolate(
+        case.device_values, case.device_queries, "clough-tocher", gradients=slopes, queue=others[0]
+    )
+    assert result.queue is others[0] and slopes.queue is others[2]
+    host = flaunay.CloughTocherInterpolator(case.host, case.values)
+    assert same(result, host(case.queries)) and same(slopes, host.grad)
+    dual = tri.voronoi(queue=others[2])
+    assert dual.vertices.queue is others[2]
+    assert same(dual.vertices, flaunay.Voronoi(case.points).vertices)
+
+
+def test_it_waits_for_what_it_is_told_to(case, context, queue):
+    queries = cl_array.zeros(queue, case.queries.shape, np.float64)
+    queue.finish()
+    gate = cl.UserEvent(context)
+    other = cl.CommandQueue(context)
+    expected = case.host.nearest(case.queries).astype(np.int32)
+    # Queries are checked on the host, so the call does not return before.
+    for k in range(2):
+        gate = cl.UserEvent(context)
+        copied = cl.enqueue_copy(
+            other, queries.data, case.queries, is_blocking=False, wait_for=[gate]
+        )
+        opener = threading.Timer(0.2, lambda: gate.set_status(cl.command_execution_status.COMPLETE))
+        opener.start()
+        if k == 0:
+            result = case.locator.nearest(queries, wait_for=[copied])
+        else:
+            queries.add_event(copied)
+            result = case.locator.nearest(queries)
+        opener.join()
+        assert same(result, expected)
+        queries.fill(0).finish()
+
+
+def test_arrays_know_the_event(case, queue):
+    queue.finish()
+    result = case.locator.interpolate(case.device_values, case.device_queries)
+    (event,) = result.events
+    assert event in case.device_values.events and event in case.device_queries.events
+    assert case.locator.event in case.tri.points.events
+    dual = case.tri.voronoi()
+    for array in dual.vertices, dual.cells, dual.cell_offsets, dual.unbounded, case.tri.triangles:
+        assert dual.event in array.events
+    queue.finish()
+    assert event.get_info(cl.event_info.REFERENCE_COUNT) == 1
+    assert dual.event.get_info(cl.event_info.REFERENCE_COUNT) == 1
+
+
+def test_answers_outlive_all_else_in_any_order(random, queue):
+    points, values = random.random((500, 2)), random.random(500)
+    queries = random.random((400, 2))
+    host = flaunay.Delaunay(points)
+    tri = triangulated(queue, points)
+    locator = tri.locator()
+    dual, cells = tri.voronoi(), tri.clipped_voronoi(BOX)
+    del tri
+    gc.collect()
+    result = locator.interpolate(
+        cl_array.to_device(queue, values), cl_array.to_device(queue, queries)
+    )
+    near = locator.nearest(cl_array.to_device(queue, queries))
+    del locator
+    vertices, areas = dual.vertices, cells.areas
+    del dual, cells
+    gc.collect()
+    # What would take the place of freed memory.
+    for _ in range(3):
+        triangulated(queue, random.random((500, 2))).locator()
+    assert same(result, flaunay.LinearInterpolator(host, values)(queries))
+    assert same(near, host.nearest(queries).astype(np.int32))
+    voronoi = flaunay.Voronoi(points)
+    assert same(vertices, voronoi.vertices) and same(areas, voronoi.clipped(BOX).areas)
+    for array in result, near, vertices, areas:
+        references = array.base_data.get_info(cl.mem_info.REFERENCE_COUNT)
+        assert references == 1, "the array alone holds the buffer"
+
+
+def test_points_may_change_after_the_event_of_the_locator(random, case, queue):
+    case.locator.event.wait()
+    case.tri.points.fill(0)
+    case.tri.triangles.fill(0).finish()
+    expected = case.host.find_simplex(case.queries).astype(np.int32)
+    assert same(case.locator.locate(case.device_queries), expected)
+
+
+def test_a_locator_outlives_its_context_in_the_cache(random):
+    queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    points = random.random((60, 2))
+    locator = triangulated(queue, points).locator()
+    for _ in range(9):
+        triangulated(cl.CommandQueue(cl.create_some_context(interactive=False)), points)
+    found = locator.nearest(cl_array.to_device(queue, points)).get()
+    assert np.array_equal(found, np.arange(60))
+
+
+def test_threads_share_a_locator(case, context):
+    def work(k):
+        queue = cl.CommandQueue(context)
+        queries = cl_array.to_device(queue, case.queries[k:])
+        return case.locator.locate(queries).get()
+
+    expected = case.host.find_simplex(case.queries)
+    with ThreadPoolExecutor(3) as pool:
+        for k, result in enumerate(pool.map(work, range(12))):
+            assert np.array_equal(result, expected[k:])
+
+
+PROGRAM = """if True:
+    import gc
+    import os
+
+    import numpy as np
+    import pyopencl as cl
+    import pyopencl.array
+
+    import flaunay
+
+    queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    points = cl.array.to_device(queue, np.random.default_rng(1).random((3000, 2)))
+    tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+    locator = tri.locator()
+    near = locator.nearest(points)
+"""
+
+
+def run(program):
+    subprocess.run([sys.executable, "-c", PROGRAM + program], check=True, timeout=120)
+
+
+def test_a_process_ends_with_all_alive_and_work_in_flight():
+    run("""
+    locator.cycle = [tri, locator]
+    """)
+    run("""
+    for _ in range(5):
+        near = locator.nearest(points)
+    del points, tri, queue, locator
+    """)
+
+
+def test_a_forked_child_is_told():
+    run("""
+    queue.finish()
+    child = os.fork()
+    if child == 0:
+        told = 0
+        for call in (
+            lambda: locator.nearest(points),
+            lambda: locator.gradients(points),
+            tri.locator,
+            tri.voronoi,
+            lambda: tri.clipped_voronoi((0, 0, 1, 1)),
+            lambda: flaunay.relax_device(points, (0, 0, 1, 1)),
+        ):
+            try:
+                call()
+            except flaunay.DeviceError as error:
+                told += "forked" in str(error)
+        locator.close()
+        gc.collect()
+        os._exit(0 if told == 6 else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    assert locator.nearest(points).get().tolist() == list(range(3000))
+    """)
+
+
+# ---- Voronoi diagrams
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 800])
+def test_the_dual_is_that_of_the_host(random, queue, dtype, n):
+    points = random.random((n, 2)).astype(dtype)
+    points[n // 2 :: 7] = points[: len(points[n // 2 :: 7])]
+    dual, host = triangulated(queue, points).voronoi(), flaunay.Voronoi(points)
+    assert same(dual.vertices, host.vertices)
+    assert same(dual.cells, host.cells)
+    assert same(dual.cell_offsets, host.cell_offsets)
+    assert same(dual.unbounded, host.unbounded.view(np.uint8))
+    assert repr(dual).startswith("<flaunay.DeviceVoronoi: ")
+
+
+def check_cells(cells, host):
+    for name in "vertices", "offsets", "areas", "centroids", "bounds":
+        assert same(getattr(cells, name), getattr(host, name)), name
+
+
+@pytest.mark.parametrize("bounds", [BOX, TRIANGLE, TRIANGLE[::-1]])
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 800])
+def test_clipped_cells_are_those_of_the_host(random, queue, bounds, n):
+    points = random.random((n, 2))
+    points[n // 2 :: 7] = points[: len(points[n // 2 :: 7])]
+    cells = triangulated(queue, points).clipped_voronoi(bounds)
+    host = flaunay.Voronoi(points).clipped(bounds)
+    check_cells(cells, host)
+    check_cells(cells.get(), host)
+    assert repr(cells) == repr(host).replace("Clipped", "DeviceClipped")
+    assert all(np.array_equal(a, b) for a, b in zip(cells.get().polygons(), host.polygons()))
+
+
+def test_clipped_cells_of_sets(random, queue):
+    points = random.random((SEGMENTS[-1], 2))
+    cells = triangulated(queue, points, segments=SEGMENTS).clipped_voronoi(BOX).get()
+    for s in range(len(SIZES)):
+        mine = slice(*SEGMENTS[s : s + 2])
+        host = flaunay.Voronoi(points[mine]).clipped(BOX)
+        for i, polygon in enumerate(host.polygons()):
+            assert np.array_equal(cells.polygon(SEGMENTS[s] + i), polygon)
+        assert same(cells.areas[mine], host.areas) and same(cells.centroids[mine], host.centroids)
+
+
+def test_duals_of_sets(random, queue):
+    points = random.random((SEGMENTS[-1], 2))
+    tri = triangulated(queue, points, segments=SEGMENTS)
+    dual = tri.voronoi()
+    vertices, cells, offsets = dual.vertices.get(), dual.cells.get(), dual.cell_offsets.get()
+    for s in range(len(SIZES)):
+        host = flaunay.Voronoi(points[slice(*SEGMENTS[s : s + 2])])
+        first, last = tri.triangle_offsets[s : s + 2]
+        assert same(vertices[first:last], host.vertices)
+        assert np.array_equal(cells[3 * first : 3 * last] - first, host.cells)
+        mine = offsets[SEGMENTS[s] : SEGMENTS[s + 1] + 1]
+        assert np.array_equal(mine - 3 * first, host.cell_offsets)
+
+
+def test_bounds_that_are_none(random, queue):
+    tri = triangulated(queue, random.random((10, 2)))
+    for call in tri.clipped_voronoi, lambda bounds: flaunay.relax_device(tri.points, bounds):
+        with pytest.raises(flaunay.UsageError, match="bounds must be xmin < xmax"):
+            call((1, 0, 0, 1))
+        with pytest.raises(
+            flaunay.UsageError, match="bounds are in the memory of an OpenCL device"
+        ):
+            call(tri.points)
+        with pytest.raises(flaunay.InputError, match="corner"):
+            call([[0, 0], [3, 3], [3, 0], [0, 3]])
+
+
+# ---- Relaxation
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("iterations", [0, 1, 4])
+def test_relaxed_as_on_the_host(random, queue, dtype, iterations):
+    points = random.random((300, 2)).astype(dtype)
+    given = cl_array.to_device(queue, points)
+    relaxed = flaunay.relax_device(given, BOX, iterations)
+    assert same(relaxed, flaunay.relax(points, BOX, iterations))
+    assert same(given, points) and relaxed.queue is queue
+    assert relaxed.events[0] in given.events
+    # And on from there.
+    again = flaunay.relax_device(relaxed, BOX, 2)
+    assert same(again, flaunay.relax(points, BOX, iterations + 2))
+
+
+def test_relaxation_of_nothing_and_of_what_is_none(queue):
+    none = cl_array.zeros(queue, (0, 2), np.float64)
+    assert same(flaunay.relax_device(none, BOX, 3), np.empty((0, 2)))
+    points = cl_array.zeros(queue, (4, 2), np.float64)
+    with pytest.raises(flaunay.UsageError, match="iterations must not be negative"):
+        flaunay.relax_device(points, BOX, -1)
+    with pytest.raises(TypeError):
+        flaunay.relax_device(points, BOX, 1.5)
+    with pytest.raises(TypeError, match="points must be a pyopencl.array.Array"):
+        flaunay.relax_device(np.zeros((4, 2)), BOX)
+    with pytest.raises(flaunay.UsageError, match="shape"):
+        flaunay.relax_device(cl_array.zeros(queue, 8, np.float64), BOX)
+
+
+def test_relaxation_on_another_queue(random, context, queue):
+    points = random.random((300, 2))
+    given = cl_array.to_device(queue, points)
+    other = cl.CommandQueue(context, properties=OUT_OF_ORDER)
+    relaxed = flaunay.relax_device(given, BOX, 2, queue=other, wait_for=given.events)
+    assert relaxed.queue is other and same(relaxed, flaunay.relax(points, BOX, 2))
