@@ -161,6 +161,10 @@ struct DeviceVoronoi;
 struct Enqueue;
 struct Parts;
 class DeviceBuffer;
+// Types for triangulations with constraints. Include flaunay/constrained.hpp to use them.
+struct ConstrainedOptions;
+struct ConstrainedTriangulation;
+struct Constraints;
 /// Returns Enqueue{}: the triangulator's own queue, without waiting for events. O(1).
 FLAUNAY_API const Enqueue& own_queue() noexcept;
 /// Returns Parts{}: the triangles alone. O(1).
@@ -260,6 +264,26 @@ class FLAUNAY_API Triangulator {
   template <typename Coordinate, typename Size>
   Triangulation triangulate(const Coordinate* coordinates, const Size& size,
                             const research::Options& options) = delete;
+
+  /// Triangulates one set of n points with segments as edges: the canonical constrained Delaunay
+  /// triangulation, a function of the sets of points and of segments. Throws what triangulate throws;
+  /// Error(usage) for an index that is no point; Error(input) for segments that cross where no point is,
+  /// unless they are to be split, for a hole that is in no triangle or on a constraint, and for segments that
+  /// are no closed curves if the fill rule needs such. Expected O(n log n + s log^2 s) work for s segments,
+  /// besides the number of triangles that they cross.
+  ConstrainedTriangulation constrained(const double* coordinates, std::size_t n,
+                                       const Constraints& constraints);
+  /// Triangulates one set of n points with segments as edges.
+  ConstrainedTriangulation constrained(const double* coordinates, std::size_t n,
+                                       const Constraints& constraints, const ConstrainedOptions& options);
+  /// Triangulates many sets with segments at once. Set s has points [offsets[s], offsets[s + 1]). Throws
+  /// Error(usage) if the ends of a segment are in different sets, and otherwise what the call for one set
+  /// throws.
+  ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                       const Constraints& constraints);
+  /// Triangulates many sets with segments at once.
+  ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                       const Constraints& constraints, const ConstrainedOptions& options);
 
   /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
   /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them, on
