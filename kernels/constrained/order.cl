@@ -2,8 +2,8 @@
 //
 // The host packs the numbers of changed rows. row_keys, over these: a key of the first two corners of each, by which
 // the host sorts them. take_rows, over the sorted rows: copies each, from its smallest corner on, and notes where it
-// goes and where its neighbours refer to it. put_rows: writes the copies to their places. write_row_halfedges, over all
-// rows.
+// goes and where its neighbours refer to it. put_rows: writes the copies to their places. write_row_halfedges and
+// write_constrained, over all rows.
 
 #include "shared/halfedges.h"
 #include "shared/language.h"
@@ -88,5 +88,13 @@ kernel void write_row_halfedges(int n, global const int* restrict neighbors, glo
       halfedges[3 * t + next_corner(k)] =
           beyond < 0 ? -1 : next_halfedge(corner_with(beyond, t, neighbors));
     }
+  }
+}
+
+// n triangles. constrained: a byte per corner, whether the edge opposite is a constraint.
+kernel void write_constrained(int n, global const uchar* restrict flags, global uchar* restrict constrained) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    for (int k = 0; k < 3; ++k) constrained[3 * t + k] = flags[t] >> k & 1;
   }
 }

@@ -26,8 +26,8 @@ static inline int corner_with(int row, int value, GLOBAL const int* values) {
   return at + (is_0 ? 0 : is_1 ? 1 : 2);
 }
 
-// The bit in a row's byte of constraint flags of the edge opposite to a corner: bit k belongs to half-edge k.
-static inline uint edge_flag(int corner) { return 1u << next_corner(corner % 3); }
+// The bit in a row's byte of constraint flags of the edge opposite to a corner.
+static inline uint edge_flag(int corner) { return 1u << corner % 3; }
 
 // How the segment from one vertex to another leaves the first.
 typedef struct {

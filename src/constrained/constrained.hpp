@@ -14,14 +14,14 @@ struct Result {
   /// As in Triangulation. Rows of `delaunay` that no segment crosses are unchanged, at their places; the
   /// other places have the new triangles in ascending order.
   std::vector<std::int32_t> triangles, neighbors;
+  /// As in ConstrainedTriangulation.
+  std::vector<std::uint8_t> constrained;
   /// The edges that segments are made of, each once: 2 vertices per edge, the lexicographically smaller one
   /// first.
   std::vector<std::int32_t> constraint_edges;
   /// 2 per segment: its edges are [first, second) in constraint_edges, from its lexicographically smaller end
   /// to the other one. 0, 0 if its ends have the same coordinates.
   std::vector<std::int32_t> segment_edges;
-  /// Per triangle: bit k says that its halfedge k, from vertex k to the next one, is a constraint.
-  std::vector<std::uint8_t> flags;
   /// As in Triangulation; empty unless asked for.
   std::vector<std::int32_t> halfedges;
 
