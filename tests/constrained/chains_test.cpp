@@ -12,7 +12,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "constrained/mesh.hpp"
@@ -140,6 +142,111 @@ Case walks(const Coordinates& coordinates, std::size_t segments, std::size_t kep
     }
   }
   return input;
+}
+
+/// The whole of a chain whose first and last vertices are given before and behind those between.
+Chain in_order(std::size_t vertices) {
+  Chain chain(vertices);
+  std::iota(chain.begin(), chain.end(), 0);
+  return chain;
+}
+
+/// Points at random heights above a long base, by x: visible from it along verticals.
+Coordinates random_heights(std::size_t vertices, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates points{0, 0};
+  const auto width = static_cast<double>(vertices);
+  for (std::size_t k = 1; k + 1 < vertices; ++k) {
+    points.push_back(static_cast<double>(k) + 0.5 * random.unit());
+    points.push_back(1 + 10 * random.unit());
+  }
+  points.insert(points.end(), {width, 0});
+  return points;
+}
+
+/// On a parabola that opens downwards, so that the chain is convex.
+Coordinates convex_arc(std::size_t vertices, std::uint64_t) {
+  Coordinates points;
+  const auto width = static_cast<double>(vertices - 1);
+  for (std::size_t k = 0; k < vertices; ++k) {
+    const auto x = static_cast<double>(k);
+    points.insert(points.end(), {x, x * (width - x)});
+  }
+  return points;
+}
+
+/// Around one point in the middle, or at the base's end, all at about the same distance.
+Coordinates fan(std::size_t vertices, bool at_end, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates points;
+  const auto count = static_cast<double>(vertices);
+  for (std::size_t k = 0; k < vertices; ++k) {
+    const double angle = M_PI * (at_end ? 0.5 : 1) * (1 - static_cast<double>(k) / (count - 1));
+    const double radius = 1 + 1e-3 * random.unit() / count;
+    points.insert(points.end(), {radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  points[1] = points[points.size() - 1] = 0;
+  if (at_end) {
+    points[0] = points[1] = 0;
+  } else {
+    points[vertices / 2 * 2] = 0;
+    points[vertices / 2 * 2 + 1] = 0.5 / count;
+  }
+  return points;
+}
+
+/// The upper half of the points of a circle, in the opposite order of x.
+Coordinates cocircular(std::size_t vertices, std::uint64_t seed) {
+  Coordinates all = io::generate("integer-circle", 2 * vertices, seed).coordinates;
+  std::vector<std::pair<double, double>> upper;
+  for (std::size_t i = 0; i < all.size(); i += 2) {
+    if (all[i + 1] >= 0) upper.emplace_back(all[i], all[i + 1]);
+  }
+  std::sort(upper.begin(), upper.end());
+  upper.erase(std::unique(upper.begin(), upper.end()), upper.end());
+  // On the circle alone, if there are several.
+  Coordinates points;
+  for (const auto& [x, y] : upper) points.insert(points.end(), {x, y});
+  return points;
+}
+
+Case one_chain(const Coordinates& points) {
+  Case input(points);
+  input.chains.push_back(in_order(points.size() / 2));
+  return input;
+}
+
+std::vector<std::pair<std::string, Coordinates>> hard_chains(std::size_t vertices) {
+  return {{"random heights", random_heights(vertices, 3)},
+          {"convex arc", convex_arc(vertices, 4)},
+          {"fan in the middle", fan(vertices, false, 5)},
+          {"fan at an end", fan(vertices, true, 6)},
+          {"cocircular", cocircular(vertices, 7)}};
+}
+
+TEST(SmallChains, NoneAndTiny) {
+  Case input(Coordinates{0, 0, 4, 0, 1, 1, 3, 1, 2, 3});
+  expect_right(input, {"own"});
+  input.chains = {{0, 1}};
+  expect_right(input, {"own"});
+  input.chains = {{0, 2, 1}, {0, 1}, {0, 1}, {0, 2, 4, 3, 1}, {0, 3, 1}};
+  expect_right(input, {"own"});
+}
+
+TEST(SmallChains, HardOnes) {
+  for (const auto& [name, points] : hard_chains(40)) {
+    SCOPED_TRACE(name);
+    expect_right(one_chain(points), {"own"});
+  }
+}
+
+TEST(Chains, HardOnes) {
+  for (const std::size_t vertices : {7, 26, 130, 1500}) {
+    for (const auto& [name, points] : hard_chains(vertices)) {
+      SCOPED_TRACE(name + ", " + std::to_string(vertices));
+      expect_right(one_chain(points), tunings());
+    }
+  }
 }
 
 TEST(SmallChains, CavitiesOfSegments) {
