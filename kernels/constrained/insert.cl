@@ -414,10 +414,7 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
   }
 }
 
-// Entries whose points are fetched.
-#define ENTRIES_AHEAD 64
-
-kernel void fill_cavities(int n, uint mark, double bound, int entry_count, global const int* restrict list,
+kernel void fill_cavities(int n, uint mark, double bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
                           global const double* restrict points, global int* restrict triangles,
