@@ -211,8 +211,8 @@ kernel void write_pieces(int n, double bound, global const double* restrict poin
     } else {
       int first = (int)first_place, second = (int)second_place, from_first = 0, from_second = 0;
       const int in_order = comes_before(vload2(triangles[first], points), vload2(triangles[second], points));
+      constraint_walk walk = {-1, -1, -1, 0, 0};
       while (from_first + from_second < end - begin) {
-        constraint_walk walk;
         const int at = next_piece(&mesh, &first, &second, rank_of(s), claims, &walk);
         const int place = at == LEAVES_FIRST ? from_first++ : end - begin - 1 - from_second++;
         const int i = in_order ? begin + place : end - 1 - place;
