@@ -124,20 +124,38 @@ static inline void flag_edge(int corner, const walked_mesh* mesh, global volatil
   }
 }
 
-// Segments whose first rows, and then points, are fetched.
-#define ROWS_AHEAD 16
+static inline void fetch_row(int corner, const walked_mesh* mesh) {
+  fetch(&mesh->triangles[corner]);
+  fetch(&mesh->neighbors[corner]);
+}
+static inline void fetch_points(int row, const walked_mesh* mesh) {
+  for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[3 * row + k]]);
+}
+
+// How many segments ahead what a walk needs is fetched: the rows at both ends; then their neighbours, and the points
+// of the row; then the points of the neighbours.
+#define ROWS_AHEAD 24
+#define NEIGHBORS_AHEAD 16
 #define POINTS_AHEAD 8
-static inline void fetch_ends(ulong key, int with_points, const walked_mesh* mesh) {
+static inline void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
-  for (int end = 0; end < 2; ++end) {
-    const uint place = (uint)(key >> 32 * end);
-    if (place >= PLACE_ON_LINE) return;
-    if (!with_points) {
-      fetch(&mesh->triangles[place]);
-      fetch(&mesh->neighbors[place]);
-    } else {
-      for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[place / 3 * 3 + k]]);
-    }
+  const ulong far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
+              near = keys[min(n - 1, s + POINTS_AHEAD)];
+  // Those of points on a line do not come before others.
+  if ((uint)far >= PLACE_ON_LINE) return;
+  fetch_row((int)(far >> 32), mesh);
+  fetch(&mesh->triangles[(uint)far]);
+  const int row = (int)(middle >> 32) / 3;
+  fetch(&mesh->points[2 * mesh->triangles[(uint)middle]]);
+  fetch_points(row, mesh);
+  for (int k = 0; k < 3; ++k) {
+    const int beyond = mesh->neighbors[3 * row + k];
+    if (beyond >= 0) fetch_row(3 * beyond, mesh);
+  }
+  const int near_row = (int)(near >> 32) / 3;
+  for (int k = 0; k < 3; ++k) {
+    const int beyond = mesh->neighbors[3 * near_row + k];
+    if (beyond >= 0) fetch_points(beyond, mesh);
   }
 #endif
 }
@@ -154,8 +172,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
   const int s = get_global_id(0);
   if (s < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
-    fetch_ends(keys[min(n - 1, s + ROWS_AHEAD)], 0, &mesh);
-    fetch_ends(keys[min(n - 1, s + POINTS_AHEAD)], 1, &mesh);
+    fetch_segments(s, n, keys, &mesh);
     const uint first_place = (uint)(keys[s] >> 32), second_place = (uint)keys[s];
     uint count = 0;
     sizes[s] = VECTOR(uint2, 0u, 0u);
@@ -319,6 +336,11 @@ kernel void choose_constraints(int n, double bound, global const int* restrict l
   const int i = get_global_id(0);
   if (i < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+#if FETCH_AHEAD
+    const int ahead = walks[list[min(n - 1, i + POINTS_AHEAD)]].corner;
+    fetch_row(ahead, &mesh);
+    fetch(&claims[ahead / 3]);
+#endif
     const uint rank = rank_of(list[i]);
     const constraint_walk walk = walks[list[i]];
     const int is_long = walk.rows > SHORT_WALK;
@@ -419,6 +441,9 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
   }
 }
 
+// Constraints whose entries' points are fetched. Entries follow each other in memory, so they need not be.
+#define CAVITIES_AHEAD 4
+
 kernel void fill_cavities(int n, uint mark, double bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
@@ -427,6 +452,13 @@ kernel void fill_cavities(int n, uint mark, double bound, global const int* rest
                           global uchar* restrict changed, global int* restrict new_corners,
                           global chain_entry* restrict entries) {
   const int i = get_global_id(0);
+#if FETCH_AHEAD
+  if (i + CAVITIES_AHEAD < n && outcomes[i + CAVITIES_AHEAD] == CONSTRAINT_FITS) {
+    global const chain_entry* const ahead = entries + offsets[i + CAVITIES_AHEAD];
+    const int count = walks[list[i + CAVITIES_AHEAD]].rows + 3;
+    for (int p = 0; p < count && count > 3; ++p) fetch(&points[2 * ahead[p].vertex]);
+  }
+#endif
   if (i < n && outcomes[i] == CONSTRAINT_FITS) {
     const constraint_walk walk = walks[list[i]];
     if (walk.rows == 0) {

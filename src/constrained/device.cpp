@@ -213,12 +213,12 @@ class Insertion {
                                     .status = status_});
   }
   void place_vertices() {
-    runtime_.map(rows_, kernels::start_rows{.triangles = result_.triangles,
-                                            .marks = marks_,
-                                            .places = places_,
-                                            .claims = claims_,
-                                            .flags = flags_,
-                                            .changed = changed_});
+    runtime_.chunks(rows_, runtime_.sizes().chunk(rows_), kernels::start_rows{.triangles = result_.triangles,
+                                                                             .marks = marks_,
+                                                                             .places = places_,
+                                                                             .claims = claims_,
+                                                                             .flags = flags_,
+                                                                             .changed = changed_});
     const auto& triangle_offsets = delaunay_.triangle_offsets;
     if (std::adjacent_find(triangle_offsets.begin(), triangle_offsets.end()) == triangle_offsets.end()) return;
     runtime_.map(delaunay_.hull_offsets.back(),
