@@ -124,11 +124,11 @@ static inline void flag_edge(int corner, const walked_mesh* mesh, global volatil
   }
 }
 
-static inline void fetch_row(int corner, const walked_mesh* mesh) {
+FETCHING void fetch_row(int corner, const walked_mesh* mesh) {
   fetch(&mesh->triangles[corner]);
   fetch(&mesh->neighbors[corner]);
 }
-static inline void fetch_points(int row, const walked_mesh* mesh) {
+FETCHING void fetch_points(int row, const walked_mesh* mesh) {
   for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[3 * row + k]]);
 }
 
@@ -137,7 +137,7 @@ static inline void fetch_points(int row, const walked_mesh* mesh) {
 #define ROWS_AHEAD 24
 #define NEIGHBORS_AHEAD 16
 #define POINTS_AHEAD 8
-static inline void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
+FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
   const ulong far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
               near = keys[min(n - 1, s + POINTS_AHEAD)];
