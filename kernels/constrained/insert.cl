@@ -16,7 +16,8 @@
 //   work-item per triangle, and join_long one per entry.
 //
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
-// rows are marked by the round, which anyone may claim again.
+// rows are marked by the round, which anyone may claim again. A constraint that found a row held by another one of
+// smaller rank is blocked: as long as that holds the row, it cannot win, and does not walk.
 
 // Exact predicates are rare, and compiling each where it may be called takes long.
 #ifndef __cplusplus
@@ -80,6 +81,9 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
     corner = side > 0 ? next_halfedge(facing) : previous_halfedge(facing);
   }
 }
+
+// Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
+#define BLOCKED -1
 
 // What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
 static inline uint2 size_of_walk(int rows) {
@@ -273,12 +277,13 @@ static inline void write_side(int corner, const walked_mesh* mesh, global const 
 
 // Walks along a constraint as long as it holds the rows, and writes entries if there are any: the row in each, in the
 // order of the walk; what is on the left of the constraint, from its origin to its goal, and what is on its right, from
-// the goal to the origin. Returns the number of entries of the former, or 0 if the constraint does not hold all rows.
+// the goal to the origin. Returns the number of entries of the former; or, if the constraint does not hold all rows, the
+// first of those that it does not hold, complemented.
 static inline int gather_cavity(const constraint_walk* walk, uint rank, const walked_mesh* mesh,
                                 global const uint* claims, global const uchar* flags, global chain_entry* entries,
                                 int* crosses) {
   int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
-  if (claims[row] != rank) return 0;
+  if (claims[row] != rank) return ~row;
   const int is_long = walk->rows > SHORT_WALK;
   const double2 from = vload2(walk->origin, mesh->points), to = vload2(walk->goal, mesh->points);
   const int next = next_halfedge(corner), previous = previous_halfedge(corner);
@@ -296,7 +301,7 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   for (int j = 1;; ++j) {
     const int beyond = mesh->neighbors[corner];
     *crosses |= flags[row] & edge_flag(corner);
-    if (claims[beyond] != rank) return 0;
+    if (claims[beyond] != rank) return ~beyond;
     const int facing = corner_with(beyond, row, mesh->neighbors), v = mesh->triangles[facing];
     row = beyond;
     const int side = v == walk->goal                                     ? 0
@@ -321,16 +326,17 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   return left + 1;
 }
 
-// Whether a constraint that is an edge holds the rows beside it.
-static inline int holds_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
-  return claims[corner / 3] == rank && (neighbors[corner] < 0 || claims[neighbors[corner]] == rank);
+// Of a constraint that is an edge: 0 if it holds the rows beside it, or one that it does not hold, complemented.
+static inline int hold_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
+  const int beyond = neighbors[corner];
+  return claims[corner / 3] != rank ? ~(corner / 3) : beyond >= 0 && claims[beyond] != rank ? ~beyond : 0;
 }
 
 // offsets: of the entries. lefts: how many of these are on the left.
 kernel void choose_constraints(int n, double bound, global const int* restrict list, global const uint* restrict offsets,
-                               global const constraint_walk* restrict walks, global const double* restrict points,
-                               global const int* restrict triangles, global const int* restrict neighbors,
-                               global const uint* restrict claims, global const uchar* restrict flags,
+                               global const double* restrict points, global const int* restrict triangles,
+                               global const int* restrict neighbors, global const uint* restrict claims,
+                               global const uchar* restrict flags, global constraint_walk* restrict walks,
                                global uchar* restrict outcomes, global int* restrict lefts,
                                global chain_entry* restrict entries, global volatile uint* restrict status) {
   const int i = get_global_id(0);
@@ -345,18 +351,22 @@ kernel void choose_constraints(int n, double bound, global const int* restrict l
     const constraint_walk walk = walks[list[i]];
     const int is_long = walk.rows > SHORT_WALK;
     int outcome = CONSTRAINT_WAITS;
-    if (walk.rows == 0) {
-      if (holds_edge(walk.corner, rank, neighbors, claims)) outcome = CONSTRAINT_FITS;
-    } else {
+    if (walk.rows != BLOCKED) {
       int crosses = 0;
-      lefts[i] = gather_cavity(&walk, rank, &mesh, claims, flags, is_long ? 0 : entries + offsets[i], &crosses);
-      if (lefts[i] > 0) outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+      const int left = walk.rows == 0 ? hold_edge(walk.corner, rank, neighbors, claims)
+                                      : gather_cavity(&walk, rank, &mesh, claims, flags,
+                                                      is_long ? 0 : entries + offsets[i], &crosses);
       if (crosses) {
-        outcome = CONSTRAINT_WAITS;
         atomic_or(&status[INSERTION_CROSSED], 1u);
+      } else if (left >= 0) {
+        outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+        lefts[i] = left;
+      } else {
+        walks[list[i]].rows = BLOCKED;
+        walks[list[i]].turns = (ulong)~left;
       }
     }
-    outcomes[i] = outcome;
+    outcomes[i] = (uchar)outcome;
   }
 }
 
@@ -536,12 +546,16 @@ kernel void walk_constraints(int n, double bound, global const int* restrict lis
       const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
       const uint rank = rank_of(list[i]);
       constraint_walk walk = walks[list[i]];
+      if (walk.rows == BLOCKED && claims[walk.turns] < rank) {
+        sizes[i] = size_of_walk(BLOCKED);
+        return;
+      }
       const int origin = walk.origin, goal = walk.goal;
       int first = walk.corner, second;
       departure found;
       // As a rule it leaves through the same row.
       int is_found = 0;
-      if (walk.rows > 0 && triangles[first] == origin) {
+      if (triangles[first] == origin) {
         const star_search star = star_search_at(&mesh, first, goal);
         is_found = star.next_side < 0 && star.previous_side > 0;
         found.corner = first;
