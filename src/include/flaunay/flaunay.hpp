@@ -161,9 +161,13 @@ struct DeviceVoronoi;
 struct Enqueue;
 struct Parts;
 class DeviceBuffer;
+struct DeviceConstrainedTriangulation;
+struct DeviceSegments;
 // Types for triangulations with constraints. Include flaunay/constrained.hpp to use them.
 struct ConstrainedOptions;
 struct ConstrainedTriangulation;
+struct Polygons;
+struct PolygonOptions;
 struct Constraints;
 /// Returns Enqueue{}: the triangulator's own queue, without waiting for events. O(1).
 FLAUNAY_API const Enqueue& own_queue() noexcept;
@@ -284,6 +288,12 @@ class FLAUNAY_API Triangulator {
   /// Triangulates many sets with segments at once.
   ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
                                        const Constraints& constraints, const ConstrainedOptions& options);
+  /// Triangulates the insides of polygons, all at once. Each polygon is a set of its own, or all are one
+  /// (PolygonOptions::map). Throws Error(usage) if the offsets do not fit each other, and otherwise what the
+  /// call for sets with segments throws; if segments cross, the message names the polygon, too.
+  ConstrainedTriangulation polygons(const Polygons& polygons);
+  /// Triangulates the insides of polygons, all at once.
+  ConstrainedTriangulation polygons(const Polygons& polygons, const PolygonOptions& options);
 
   /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
   /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them, on
@@ -298,6 +308,14 @@ class FLAUNAY_API Triangulator {
   /// undefined. O(n log n) work.
   void triangulate(const DevicePoints& points, DeviceTriangulation& result,
                    const Parts& parts = triangles_alone(), const Enqueue& enqueue = own_queue());
+
+  /// Triangulates points in device memory with segments as edges, into device memory. Segments that cross
+  /// where no point is are Error(input); no triangles are left out. The host waits about 8 times more than
+  /// triangulate does, once per round of segments; the work of rounds is done when the call returns.
+  /// Otherwise the work is enqueued like that of triangulate for device memory, with the same errors and
+  /// those of constrained for host memory.
+  void constrained(const DevicePoints& points, const DeviceSegments& segments,
+                   DeviceConstrainedTriangulation& result, const Enqueue& enqueue = own_queue());
 
   /// An upper bound of the device memory, in bytes, that a call on n points in `sets` sets needs besides
   /// points and results. Throws Error(input) or Error(device) if n is above the capacity.
