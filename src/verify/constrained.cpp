@@ -1,0 +1,358 @@
+// Why the checks together are complete. `Sweep` cuts the segments and the convex hull at all points on them,
+// and finds the faces between these pieces, from points and segments alone. Each face is to be covered, or
+// not.
+//
+// 1. Every triangle is counter-clockwise, and every directed edge occurs at most once. Each side of each
+// piece has
+//    a triangle if and only if the face there is to be covered. Every edge with one triangle is a piece. So
+//    the sum of the triangles' oriented boundaries is that of the covered faces: every point in general
+//    position there is in one triangle, and no other one is in any.
+// 2. Every place in a covered face or on its border is a corner. A triangle around it, or on an edge of which
+// it
+//    is, would cover what the triangles at that corner cover. So the triangles are a triangulation of the
+//    covered faces with all points there, and the segments there are chains of its edges.
+// 3. Every edge that is no constraint is locally Delaunay, which is the definition.
+// 4. Of two triangles on one circle whose edge is no constraint, that edge begins at the lexicographically
+//    smallest of the four corners: the rule of `circle_canonical`, for which docs/constrained.md proves that
+//    every cell is then a fan from its smallest vertex.
+#include "verify/constrained.hpp"
+
+#include <algorithm>
+
+#include "verify/checker.hpp"
+#include "verify/sweep.hpp"
+
+namespace flaunay {
+namespace {
+
+using verification::Checker;
+using verification::kHull;
+using verification::kNone;
+using verification::Piece;
+using verification::Place;
+using verification::Span;
+using verification::Sweep;
+
+constexpr std::int32_t kNoPiece = -1;
+
+class ConstrainedChecker : public Checker {
+ public:
+  ConstrainedChecker(const double* coordinates, std::size_t n, const std::vector<std::int32_t>& triangles,
+                     const std::vector<std::int32_t>* neighbors, const VerifyConstraints& constraints)
+      : Checker(coordinates, n, triangles, neighbors),
+        constraints_(constraints),
+        segments_(*constraints.segments),
+        sweep_(places_, predicates_) {}
+
+  VerifyReport run() {
+    report_.ok = check_form() && check_coordinates() && check_indices() && check_segments();
+    if (report_.ok) {
+      sort_points();
+      report_.ok = check_orientations() && check_representatives() && match_half_edges() && cut_segments() &&
+                   check_triangulation() && check_circles() && check_edges() && check_segment_edges() &&
+                   check_neighbors_if_given();
+    }
+    report_.exact_evaluations = predicates_.exact_evaluations();
+    return report_;
+  }
+
+ private:
+  std::size_t point_of(std::int32_t place) const { return static_cast<std::size_t>(point_of_place_[place]); }
+  bool is_constraint(const Piece& piece) const { return piece.segment != kHull; }
+
+  std::string describe_segment(std::size_t s) const {
+    return fmt::format("segment {} from {} to {}", s, describe_point(segments_[2 * s]),
+                       describe_point(segments_[2 * s + 1]));
+  }
+  std::string describe_piece(const Piece& piece) const {
+    return fmt::format("the edge from {} to {}", describe_point(point_of(piece.from)),
+                       describe_point(point_of(piece.to)));
+  }
+
+  bool check_segments() {
+    if (segments_.size() % 2 != 0) {
+      return fail("the segments are {} indices, which is not a multiple of 2", segments_.size());
+    }
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      if (segments_[i] < 0 || static_cast<std::size_t>(segments_[i]) >= n_) {
+        return fail("segment {} has an end {}, which is not the index of one of the {} points", i / 2,
+                    segments_[i], n_);
+      }
+    }
+    return true;
+  }
+
+  /// Numbers the distinct points in their order. Each stands for the one that triangles use.
+  void number_places() {
+    place_of_point_.resize(n_);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const auto index = static_cast<std::int32_t>(sorted_[i].index);
+      if (starts_group(i)) {
+        places_.push_back({{sorted_[i].x, sorted_[i].y}});
+        point_of_place_.push_back(index);
+      }
+      place_of_point_[index] = static_cast<std::int32_t>(places_.size()) - 1;
+      if (used_[index] != 0) point_of_place_.back() = index;
+    }
+  }
+
+  bool cut_segments() {
+    number_places();
+    std::vector<Span> spans;
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
+      if (a != b) spans.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(s)});
+    }
+    add_hull(spans, 1);
+    add_hull(spans, -1);
+    const Sweep::Crossing crossing = sweep_.run(spans);
+    if (crossing.first >= 0) {
+      return fail("{} and {} cross at a place that is no point", describe_segment(crossing.first),
+                  describe_segment(crossing.second));
+    }
+    for (const Piece& piece : sweep_.pieces()) report_.constraint_edges += is_constraint(piece);
+    return true;
+  }
+
+  /// Andrew's chain (1979) below all places, or with turn = -1 above them.
+  void add_hull(std::vector<Span>& spans, int turn) {
+    std::vector<std::int32_t> chain;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(places_.size()); ++v) {
+      const auto turns = [&] {
+        const double *a = places_[chain[chain.size() - 2]].at, *b = places_[chain.back()].at;
+        return predicates_.orient2d(a, b, places_[v].at) == turn;
+      };
+      while (chain.size() > 1 && !turns()) chain.pop_back();
+      chain.push_back(v);
+    }
+    for (std::size_t i = 1; i < chain.size(); ++i) spans.push_back({chain[i - 1], chain[i], kHull});
+  }
+
+  bool check_triangulation() {
+    match_pieces();
+    choose_faces();
+    return check_constraints() && check_border() && check_sides() && check_places() && check_count();
+  }
+
+  /// Finds the piece that each half-edge is, and the triangles beside each piece.
+  void match_pieces() {
+    const std::vector<Piece>& pieces = sweep_.pieces();
+    std::vector<std::int32_t> first(places_.size() + 1, 0);
+    for (const Piece& piece : pieces) ++first[piece.from + 1];
+    for (std::size_t i = 0; i < places_.size(); ++i) first[i + 1] += first[i];
+    piece_of_.assign(corners_.size(), kNoPiece);
+    above_.assign(pieces.size(), kNone);
+    below_.assign(pieces.size(), kNone);
+    for (std::size_t h = 0; h < corners_.size(); ++h) {
+      const std::int32_t a = place_of_point_[origin(h)], b = place_of_point_[target(h)];
+      const std::int32_t from = std::min(a, b), to = std::max(a, b);
+      const auto end = pieces.begin() + first[from + 1];
+      const auto found = std::lower_bound(pieces.begin() + first[from], end, to,
+                                          [](const Piece& piece, std::int32_t v) { return piece.to < v; });
+      if (found == end || found->to != to) continue;
+      piece_of_[h] = static_cast<std::int32_t>(found - pieces.begin());
+      (a == from ? above_ : below_)[piece_of_[h]] = static_cast<std::int64_t>(h / 3);
+    }
+  }
+
+  /// Decides which faces are to be covered. With holes, that is any that has a triangle at its border.
+  void choose_faces() {
+    const bool is_free = constraints_.outside == VerifyOutside::holes;
+    covered_.assign(sweep_.face_count(), is_free ? 0 : 1);
+    covered_[0] = 0;
+    for (std::size_t i = 0; is_free && i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (below_[i] != kNone) covered_[piece.below] = 1;
+      if (above_[i] != kNone) covered_[piece.above] = 1;
+    }
+    if (constraints_.outside == VerifyOutside::keep) return;
+    // What is no constraint is on the hull: the face beside it is connected with the outside.
+    for (const Piece& piece : sweep_.pieces()) {
+      if (!is_constraint(piece)) covered_[piece.below] = covered_[piece.above] = 0;
+    }
+  }
+
+  /// Every part of a segment that borders on a covered face must be an edge.
+  bool check_constraints() {
+    const Piece* missing = nullptr;
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (!is_constraint(piece) || below_[i] != kNone || above_[i] != kNone) continue;
+      if (covered_[piece.below] == 0 && covered_[piece.above] == 0) continue;
+      if (missing == nullptr || piece.segment < missing->segment) missing = &piece;
+    }
+    if (missing == nullptr) return true;
+    return fail("{} is no chain of edges: {} is missing", describe_segment(missing->segment),
+                describe_piece(*missing));
+  }
+
+  bool check_border() {
+    for (std::size_t h = 0; h < twins_.size(); ++h) {
+      if (twins_[h] != kNone) continue;
+      ++report_.hull_vertices;
+      if (piece_of_[h] != kNoPiece) continue;
+      return fail(
+          "{} has no triangle beyond the edge from point {} to point {}, which is neither on the hull nor a "
+          "constraint",
+          describe_triangle(h / 3), origin(h), target(h));
+    }
+    if (twins_.empty() && covered_.size() == 1) report_.hull_vertices = report_.distinct_points;
+    return true;
+  }
+
+  bool check_sides() {
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (!check_side(piece, "right", piece.below, below_[i])) return false;
+      if (!check_side(piece, "left", piece.above, above_[i])) return false;
+    }
+    return true;
+  }
+  bool check_side(const Piece& piece, const char* side, std::int32_t face, std::int64_t triangle) {
+    if ((triangle != kNone) == (covered_[face] != 0)) return true;
+    if (triangle == kNone) {
+      return fail("there is no triangle on the {} of {}, which is inside", side, describe_piece(piece));
+    }
+    return fail("{} is outside, on the {} of {}", describe_triangle(static_cast<std::size_t>(triangle)), side,
+                describe_piece(piece));
+  }
+
+  /// Places on the border of a covered face are ends of edges, which were found.
+  bool check_places() {
+    for (std::size_t place = 0; place < places_.size(); ++place) {
+      const std::int32_t face = sweep_.face_of_place()[place];
+      const auto i = static_cast<std::size_t>(point_of_place_[place]);
+      if (face == Sweep::kNoFace || covered_[face] == 0 || used_[i] != 0) continue;
+      return fail("{} is in no triangle", describe_point(i));
+    }
+    return true;
+  }
+
+  /// Euler's formula. Follows from the checks before; a safeguard against an error in them.
+  bool check_count() {
+    if (constraints_.outside != VerifyOutside::keep || covered_.size() == 1) return true;
+    const std::size_t expected = 2 * report_.distinct_points - 2 - report_.hull_vertices;
+    if (report_.triangles == expected) return true;
+    return fail("there are {} triangles, but {} distinct points with {} on the boundary must have {}",
+                report_.triangles, report_.distinct_points, report_.hull_vertices, expected);
+  }
+
+  bool check_circles() {
+    for (std::size_t h = 0; h < twins_.size(); ++h) {
+      // On the border, or checked from the other side.
+      if (twins_[h] < static_cast<std::int64_t>(h)) continue;
+      if (piece_of_[h] != kNoPiece && is_constraint(sweep_.pieces()[piece_of_[h]])) continue;
+      bool is_tie = false;
+      if (!check_circle(h, is_tie)) return false;
+      if (is_tie && !check_fan(h)) return false;
+    }
+    return true;
+  }
+
+  bool check_fan(std::size_t h) {
+    const auto place = [this](std::int32_t v) { return place_of_point_[v]; };
+    const std::int32_t a = origin(h), b = target(h), c = corners_[h], d = corners_[twins_[h]];
+    const std::int32_t first = place(c) < place(d) ? c : d;
+    if (std::min(place(a), place(b)) < place(first)) return true;
+    return fail(
+        "{} and triangle {} are on one circle, but their edge from point {} to point {} does not begin at "
+        "{}, the lexicographically smallest of their corners",
+        describe_triangle(h / 3), twins_[h] / 3, a, b, describe_point(first));
+  }
+
+  /// The given edges must be the parts of the segments, each once, its smaller end first.
+  bool check_edges() {
+    if (constraints_.edges == nullptr) return true;
+    const std::vector<std::int32_t>& edges = *constraints_.edges;
+    if (edges.size() != 2 * report_.constraint_edges) {
+      return fail("there are {} indices in the constraint edges, but the segments are made of {} edges",
+                  edges.size(), report_.constraint_edges);
+    }
+    std::vector<char> listed(sweep_.pieces().size(), 0);
+    for (std::size_t e = 0; e < edges.size() / 2; ++e) {
+      const std::int32_t piece = piece_between(edges[2 * e], edges[2 * e + 1]);
+      if (piece == kNoPiece) {
+        return fail(
+            "constraint edge {} from point {} to point {} is no part of a segment, or is the wrong way round",
+            e, edges[2 * e], edges[2 * e + 1]);
+      }
+      if (listed[piece] != 0) {
+        return fail("constraint edge {} from point {} to point {} is listed twice", e, edges[2 * e],
+                    edges[2 * e + 1]);
+      }
+      listed[piece] = 1;
+    }
+    return true;
+  }
+
+  /// The constraint from one point to a later one; kNoPiece if there is none, or if another point stands for
+  /// one of them.
+  std::int32_t piece_between(std::int32_t a, std::int32_t b) const {
+    if (!is_representative(a) || !is_representative(b)) return kNoPiece;
+    const Piece sought{place_of_point_[a], place_of_point_[b], 0, 0, 0};
+    const std::vector<Piece>& pieces = sweep_.pieces();
+    const auto found = std::lower_bound(
+        pieces.begin(), pieces.end(), sought,
+        [](const Piece& p, const Piece& q) { return p.from != q.from ? p.from < q.from : p.to < q.to; });
+    if (found == pieces.end() || found->from != sought.from || found->to != sought.to ||
+        !is_constraint(*found)) {
+      return kNoPiece;
+    }
+    return static_cast<std::int32_t>(found - pieces.begin());
+  }
+  bool is_representative(std::int32_t v) const {
+    return v >= 0 && static_cast<std::size_t>(v) < n_ && point_of_place_[place_of_point_[v]] == v;
+  }
+
+  /// Each segment's edges must lead straight from its smaller end to the other one.
+  bool check_segment_edges() {
+    if (constraints_.segment_edges == nullptr || constraints_.edges == nullptr) return true;
+    const std::vector<std::int32_t>& ranges = *constraints_.segment_edges;
+    const std::vector<std::int32_t>& edges = *constraints_.edges;
+    if (ranges.size() != segments_.size()) {
+      return fail("there are {} indices of segments' edges, but there should be {}", ranges.size(),
+                  segments_.size());
+    }
+    // By edge: how many up to it do not go on straight with the next one.
+    const auto count = static_cast<std::int32_t>(edges.size() / 2);
+    std::vector<std::int32_t> bends(edges.size() / 2 + 1, 0);
+    for (std::int32_t e = 0; e + 1 < count; ++e) {
+      const std::int32_t a = edges[2 * e], b = edges[2 * e + 1], c = edges[2 * e + 3];
+      const bool goes_on = edges[2 * e + 2] == b && predicates_.orient2d(point(a), point(b), point(c)) == 0;
+      bends[e + 1] = bends[e] + (goes_on ? 0 : 1);
+    }
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
+      const std::int32_t first = ranges[2 * s], last = ranges[2 * s + 1];
+      const bool is_right = a == b ? first == 0 && last == 0
+                                   : first >= 0 && first < last && last <= count &&
+                                         place_of_point_[edges[2 * first]] == std::min(a, b) &&
+                                         place_of_point_[edges[2 * last - 1]] == std::max(a, b) &&
+                                         bends[last - 1] == bends[first];
+      if (!is_right) return fail("the edges [{}, {}) are not those of {}", first, last, describe_segment(s));
+    }
+    return true;
+  }
+
+  bool check_neighbors_if_given() { return neighbors_ == nullptr || check_neighbors(); }
+
+  const VerifyConstraints& constraints_;
+  const std::vector<std::int32_t>& segments_;
+  std::vector<Place> places_;
+  std::vector<std::int32_t> place_of_point_, point_of_place_;
+  Sweep sweep_;
+  std::vector<std::int32_t> piece_of_;       // by half-edge
+  std::vector<std::int64_t> below_, above_;  // by piece: the triangles on its right and on its left, or kNone
+  std::vector<char> covered_;                // by face
+};
+
+}  // namespace
+
+VerifyReport verify_constrained(const double* coordinates, std::size_t n,
+                                const std::vector<std::int32_t>& triangles,
+                                const std::vector<std::int32_t>* neighbors,
+                                const VerifyConstraints& constraints) {
+  return ConstrainedChecker(coordinates, n, triangles, neighbors, constraints).run();
+}
+
+}  // namespace flaunay
