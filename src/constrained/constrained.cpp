@@ -296,7 +296,7 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   }
 
   Result result;
-  inserter.mesh().write(result.triangles, result.neighbors);
+  inserter.mesh().write(result.triangles, result.neighbors, result.constrained);
   Constraints& constraints = inserter.constraints();
   constraints.sort(offsets);
   result.constraint_edges = constraints.sorted_edges();

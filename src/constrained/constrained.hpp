@@ -14,6 +14,8 @@ struct Result {
   /// As in Triangulation. Rows of `delaunay` that no segment crosses are unchanged, at their places; the
   /// other places have the new triangles in ascending order.
   std::vector<std::int32_t> triangles, neighbors;
+  /// As in ConstrainedTriangulation.
+  std::vector<std::uint8_t> constrained;
   /// The edges that segments are made of, each once: 2 vertices per edge, the lexicographically smaller one
   /// first.
   std::vector<std::int32_t> constraint_edges;

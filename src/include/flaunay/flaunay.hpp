@@ -161,6 +161,10 @@ struct DeviceVoronoi;
 struct Enqueue;
 struct Parts;
 class DeviceBuffer;
+// Types for triangulations with constraints. Include flaunay/constrained.hpp to use them.
+struct ConstrainedOptions;
+struct ConstrainedTriangulation;
+struct Constraints;
 /// Returns Enqueue{}: the triangulator's own queue, without waiting for events. O(1).
 FLAUNAY_API const Enqueue& own_queue() noexcept;
 /// Returns Parts{}: the triangles alone. O(1).
@@ -261,6 +265,26 @@ class FLAUNAY_API Triangulator {
   Triangulation triangulate(const Coordinate* coordinates, const Size& size,
                             const research::Options& options) = delete;
 
+  /// Triangulates one set of n points with segments as edges: the canonical constrained Delaunay
+  /// triangulation, a function of the sets of points and of segments. Throws what triangulate throws;
+  /// Error(usage) for an index that is no point; Error(input) for segments that cross where no point is,
+  /// unless they are to be split, for a hole that is in no triangle or on a constraint, and for segments that
+  /// are no closed curves if the fill rule needs such. Expected O(n log n + s log^2 s) work for s segments,
+  /// besides the number of triangles that they cross.
+  ConstrainedTriangulation constrained(const double* coordinates, std::size_t n,
+                                       const Constraints& constraints);
+  /// Triangulates one set of n points with segments as edges.
+  ConstrainedTriangulation constrained(const double* coordinates, std::size_t n,
+                                       const Constraints& constraints, const ConstrainedOptions& options);
+  /// Triangulates many sets with segments at once. Set s has points [offsets[s], offsets[s + 1]). Throws
+  /// Error(usage) if the ends of a segment are in different sets, and otherwise what the call for one set
+  /// throws.
+  ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                       const Constraints& constraints);
+  /// Triangulates many sets with segments at once.
+  ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                       const Constraints& constraints, const ConstrainedOptions& options);
+
   /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
   /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them, on
   /// devices with many lanes once or twice per round (Statistics::host_waits). The call returns when
@@ -288,6 +312,9 @@ class FLAUNAY_API Triangulator {
   /// triangulation without neighbours or of another number of points. O(n) work; one work-item per point
   /// takes as many steps as the point has triangles.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
+  /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
+  Voronoi voronoi(const double* coordinates, std::size_t n,
+                  const ConstrainedTriangulation& triangulation) = delete;
   /// Computes the dual in device memory. The triangulation must have the parts triangles, neighbors, hull and
   /// representatives. The work is enqueued like that of triangulate for device memory, with the same errors.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
@@ -302,6 +329,10 @@ class FLAUNAY_API Triangulator {
   /// magnitudes. O(n log m) work for m corners, and O(m) for each Voronoi edge across the polygon's border.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation,
                                  const double* corners, std::size_t corner_count);
+  /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
+  ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n,
+                                 const ConstrainedTriangulation& triangulation, const double* corners,
+                                 std::size_t corner_count) = delete;
   /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors,
   /// hull and representatives; the corners are in host memory. The host waits twice; otherwise the work is
   /// enqueued like that of triangulate for device memory, with the same errors.
@@ -383,6 +414,12 @@ class FLAUNAY_API Locator {
   /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
+  /// These do not compile: in a constrained triangulation, walks to a query need not end, and the nearest
+  /// point need not be near.
+  Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
+          const ConstrainedTriangulation& triangulation) = delete;
+  Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
+          const ConstrainedTriangulation& triangulation) = delete;
   /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
   /// neighbors, hull and representatives. The work is enqueued like that of Triangulator::triangulate for
   /// device memory, with the same errors.

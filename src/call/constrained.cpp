@@ -1,0 +1,108 @@
+// The public calls for triangulations with constraints.
+#include "flaunay/constrained.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "call/errors.hpp"
+#include "call/handles.hpp"
+#include "call/host_call.hpp"
+#include "call/implementation.hpp"
+#include "constrained/constrained.hpp"
+#include "geometry/halfedges.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/clock.hpp"
+
+namespace flaunay {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+Ids checked_segments(const Constraints& constraints) {
+  call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
+  call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
+  return {constraints.segments, constraints.segments + 2 * constraints.segment_count};
+}
+
+// Per edge the smallest index of a segment that has it. Segments come in ascending order and skip edges that
+// earlier ones have, by shortcuts to the next edge without a segment.
+Ids segments_of_edges(std::size_t edges, const Ids& piece_offsets, const Ids& piece_edges) {
+  Ids owner(edges, -1), next(edges + 1);
+  std::iota(next.begin(), next.end(), 0);
+  const auto next_free = [&next](std::int32_t e) {
+    while (next[e] != e) e = next[e] = next[next[e]];
+    return e;
+  };
+  for (std::size_t s = 0; s + 1 < piece_offsets.size(); ++s) {
+    for (std::int32_t p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
+      const std::int32_t end = piece_edges[2 * p + 1];
+      for (std::int32_t e = next_free(piece_edges[2 * p]); e < end; e = next_free(e)) {
+        owner[e] = static_cast<std::int32_t>(s);
+        next[e] = e + 1;
+      }
+    }
+  }
+  return owner;
+}
+
+ConstrainedTriangulation compute(call::Implementation& self, const double* coordinates,
+                                 const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                                 const ConstrainedOptions& options) {
+  geometry::check_offsets(offsets);
+  geometry::check_coordinates(coordinates, offsets.back());
+  const Ids segments = checked_segments(constraints);
+  Options plain = options;
+  plain.neighbors = true;
+  plain.halfedges = false;
+  ConstrainedTriangulation result;
+  static_cast<Triangulation&>(result) = call::triangulate(self, {coordinates, nullptr}, offsets, plain);
+
+  const double begin = host::now();
+  constrained::Result edges = constrained::constrain(coordinates, offsets, result, segments);
+  result.triangles = std::move(edges.triangles);
+  result.neighbors = std::move(edges.neighbors);
+  result.constrained = std::move(edges.constrained);
+  result.constraint_edges = std::move(edges.constraint_edges);
+  result.piece_edges = std::move(edges.segment_edges);
+  result.piece_offsets.resize(segments.size() / 2 + 1);
+  std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
+  result.edge_segments =
+      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
+  result.added_offsets.assign(offsets.size(), 0);
+  if (options.halfedges) geometry::write_halfedges(options, result);
+  const double seconds = host::now() - begin;
+  result.statistics.seconds += seconds;
+  result.statistics.phases.push_back({"constrain", seconds});
+  return result;
+}
+
+}  // namespace
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options) {
+  return call::take_turn(*implementation_, [&] {
+    return compute(*implementation_, coordinates, offsets, constraints, options);
+  });
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints) {
+  return constrained(coordinates, offsets, constraints, {});
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates, std::size_t n,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options) {
+  return constrained(coordinates, std::vector<std::size_t>{0, n}, constraints, options);
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates, std::size_t n,
+                                                   const Constraints& constraints) {
+  return constrained(coordinates, n, constraints, {});
+}
+
+}  // namespace flaunay
