@@ -2,6 +2,7 @@
 // and finds the faces between these pieces, from points and segments alone. Each face is to be covered, or
 // not.
 //
+// 0. Depths of faces follow from what lies between them, by the definitions of `FillRule`.
 // 1. Every triangle is counter-clockwise, and every directed edge occurs at most once. Each side of each
 // piece has
 //    a triangle if and only if the face there is to be covered. Every edge with one triangle is a piece. So
@@ -18,6 +19,7 @@
 #include "verify/constrained.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "verify/checker.hpp"
 #include "verify/sweep.hpp"
@@ -33,7 +35,7 @@ using verification::Place;
 using verification::Span;
 using verification::Sweep;
 
-constexpr std::int32_t kNoPiece = -1;
+constexpr std::int32_t kNoPiece = -1, kNoPoint = -1;
 
 class ConstrainedChecker : public Checker {
  public:
@@ -45,7 +47,7 @@ class ConstrainedChecker : public Checker {
         sweep_(places_, predicates_) {}
 
   VerifyReport run() {
-    report_.ok = check_form() && check_coordinates() && check_indices() && check_segments();
+    report_.ok = check_form() && check_coordinates() && check_indices() && check_segments() && check_holes();
     if (report_.ok) {
       sort_points();
       report_.ok = check_orientations() && check_representatives() && match_half_edges() && cut_segments() &&
@@ -57,7 +59,7 @@ class ConstrainedChecker : public Checker {
   }
 
  private:
-  std::size_t point_of(std::int32_t place) const { return static_cast<std::size_t>(point_of_place_[place]); }
+  std::size_t point_of(std::size_t place) const { return static_cast<std::size_t>(point_of_place_[place]); }
   bool is_constraint(const Piece& piece) const { return piece.segment != kHull; }
 
   std::string describe_segment(std::size_t s) const {
@@ -65,8 +67,9 @@ class ConstrainedChecker : public Checker {
                        describe_point(segments_[2 * s + 1]));
   }
   std::string describe_piece(const Piece& piece) const {
-    return fmt::format("the edge from {} to {}", describe_point(point_of(piece.from)),
-                       describe_point(point_of(piece.to)));
+    return fmt::format("the edge from {} to {}",
+                       describe_point(point_of(static_cast<std::size_t>(piece.from))),
+                       describe_point(point_of(static_cast<std::size_t>(piece.to))));
   }
 
   bool check_segments() {
@@ -82,18 +85,52 @@ class ConstrainedChecker : public Checker {
     return true;
   }
 
-  /// Numbers the distinct points in their order. Each stands for the one that triangles use.
+  bool check_holes() {
+    for (std::size_t i = 0; constraints_.holes != nullptr && i < constraints_.holes->size(); ++i) {
+      if (!std::isfinite((*constraints_.holes)[i])) return fail("hole {} is not finite", i / 2);
+    }
+    return true;
+  }
+
+  /// Numbers the distinct points in their order, and the places of holes among them. Each stands for the one
+  /// that triangles use.
   void number_places() {
     place_of_point_.resize(n_);
+    const std::vector<SortedPoint> holes = sorted_holes();
+    place_of_hole_.resize(holes.size());
+    auto hole = holes.begin();
     for (std::size_t i = 0; i < n_; ++i) {
-      const auto index = static_cast<std::int32_t>(sorted_[i].index);
       if (starts_group(i)) {
-        places_.push_back({{sorted_[i].x, sorted_[i].y}});
-        point_of_place_.push_back(index);
+        for (; hole != holes.end() && is_before(*hole, sorted_[i]); ++hole) add_hole(*hole);
+        add_place(sorted_[i], true);
+        for (; hole != holes.end() && !is_before(sorted_[i], *hole); ++hole)
+          place_of_hole_[hole->index] = last_place();
       }
-      place_of_point_[index] = static_cast<std::int32_t>(places_.size()) - 1;
-      if (used_[index] != 0) point_of_place_.back() = index;
+      const auto index = static_cast<std::int32_t>(sorted_[i].index);
+      if (point_of_place_.back() == kNoPoint || used_[index] != 0) point_of_place_.back() = index;
+      place_of_point_[index] = last_place();
     }
+    for (; hole != holes.end(); ++hole) add_hole(*hole);
+  }
+  static bool is_before(const SortedPoint& a, const SortedPoint& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  }
+  std::int32_t last_place() const { return static_cast<std::int32_t>(places_.size()) - 1; }
+  void add_place(const SortedPoint& at, bool is_point) {
+    places_.push_back({{at.x, at.y}, is_point});
+    point_of_place_.push_back(kNoPoint);
+  }
+  void add_hole(const SortedPoint& hole) {
+    add_place(hole, false);
+    place_of_hole_[hole.index] = last_place();
+  }
+  std::vector<SortedPoint> sorted_holes() const {
+    std::vector<SortedPoint> holes;
+    for (std::size_t k = 0; constraints_.holes != nullptr && k < constraints_.holes->size() / 2; ++k) {
+      holes.push_back({(*constraints_.holes)[2 * k], (*constraints_.holes)[2 * k + 1], k});
+    }
+    std::sort(holes.begin(), holes.end());
+    return holes;
   }
 
   bool cut_segments() {
@@ -118,6 +155,7 @@ class ConstrainedChecker : public Checker {
   void add_hull(std::vector<Span>& spans, int turn) {
     std::vector<std::int32_t> chain;
     for (std::int32_t v = 0; v < static_cast<std::int32_t>(places_.size()); ++v) {
+      if (!places_[v].is_point) continue;
       const auto turns = [&] {
         const double *a = places_[chain[chain.size() - 2]].at, *b = places_[chain.back()].at;
         return predicates_.orient2d(a, b, places_[v].at) == turn;
@@ -130,8 +168,8 @@ class ConstrainedChecker : public Checker {
 
   bool check_triangulation() {
     match_pieces();
-    choose_faces();
-    return check_constraints() && check_border() && check_sides() && check_places() && check_count();
+    return choose_faces() && check_constraints() && check_border() && check_sides() && check_places() &&
+           check_count();
   }
 
   /// Finds the piece that each half-edge is, and the triangles beside each piece.
@@ -155,21 +193,139 @@ class ConstrainedChecker : public Checker {
     }
   }
 
-  /// Decides which faces are to be covered. With holes, that is any that has a triangle at its border.
-  void choose_faces() {
-    const bool is_free = constraints_.outside == VerifyOutside::holes;
-    covered_.assign(sweep_.face_count(), is_free ? 0 : 1);
+  /// Decides which faces are to be covered.
+  bool choose_faces() {
+    covered_.assign(sweep_.face_count(), 1);
     covered_[0] = 0;
-    for (std::size_t i = 0; is_free && i < sweep_.pieces().size(); ++i) {
+    if (constraints_.outside != Outside::keep) {
+      if (!check_closed()) return false;
+      const bool by_nesting = constraints_.fill_rule == FillRule::nesting;
+      const std::vector<std::int64_t> depths = by_nesting ? nesting_depths() : winding_depths();
+      const bool drops_holes = by_nesting && constraints_.outside == Outside::holes;
+      for (std::size_t f = 0; f < covered_.size(); ++f) {
+        if (depths[f] == 0 || (drops_holes && depths[f] % 2 == 0)) covered_[f] = 0;
+      }
+    }
+    return drop_seeded();
+  }
+
+  /// Rules other than nesting need closed curves.
+  bool check_closed() {
+    if (constraints_.fill_rule == FillRule::nesting) return true;
+    std::vector<std::int32_t> excess(places_.size(), 0);
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        std::int32_t& of_place = excess[place_of_point_[segments_[2 * s + k]]];
+        of_place += is_even_odd() || k == 1 ? 1 : -1;
+      }
+    }
+    for (std::size_t place = 0; place < places_.size(); ++place) {
+      if (is_even_odd() ? excess[place] % 2 == 0 : excess[place] == 0) continue;
+      return fail("the segments are no closed curves: at {}, {}", describe_point(point_of(place)),
+                  is_even_odd() ? "an odd number of them ends" : "not as many begin as end");
+    }
+    return true;
+  }
+  bool is_even_odd() const { return constraints_.fill_rule == FillRule::even_odd; }
+
+  /// The faces beyond each piece of a face.
+  struct Beyond {
+    std::int32_t face, piece;
+  };
+  std::vector<std::vector<Beyond>> faces_beyond() const {
+    std::vector<std::vector<Beyond>> beyond(covered_.size());
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
       const Piece& piece = sweep_.pieces()[i];
-      if (below_[i] != kNone) covered_[piece.below] = 1;
-      if (above_[i] != kNone) covered_[piece.above] = 1;
+      if (piece.below == piece.above) continue;
+      beyond[piece.below].push_back({piece.above, static_cast<std::int32_t>(i)});
+      beyond[piece.above].push_back({piece.below, static_cast<std::int32_t>(i)});
     }
-    if (constraints_.outside == VerifyOutside::keep) return;
-    // What is no constraint is on the hull: the face beside it is connected with the outside.
-    for (const Piece& piece : sweep_.pieces()) {
-      if (!is_constraint(piece)) covered_[piece.below] = covered_[piece.above] = 0;
+    return beyond;
+  }
+
+  /// By face: the least number of constraints that a path from the outside crosses.
+  std::vector<std::int64_t> nesting_depths() const {
+    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
+    std::vector<std::int64_t> depths(covered_.size(), -1);
+    std::vector<std::int32_t> level = {0}, next;
+    for (std::int64_t depth = 0; !level.empty(); ++depth) {
+      for (std::size_t i = 0; i < level.size(); ++i) {
+        if (depths[level[i]] >= 0) continue;
+        depths[level[i]] = depth;
+        for (const Beyond& other : beyond[level[i]]) {
+          (is_constraint(sweep_.pieces()[other.piece]) ? next : level).push_back(other.face);
+        }
+      }
+      level.swap(next);
+      next.clear();
     }
+    return depths;
+  }
+
+  /// By face: its winding number, or the parity of the number of segments to the outside.
+  std::vector<std::int64_t> winding_depths() const {
+    const std::vector<std::int64_t> steps = steps_across();
+    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
+    std::vector<std::int64_t> depths(covered_.size(), 0);
+    std::vector<char> reached(covered_.size(), 0);
+    std::vector<std::int32_t> open = {0};
+    reached[0] = 1;
+    while (!open.empty()) {
+      const std::int32_t face = open.back();
+      open.pop_back();
+      for (const Beyond& other : beyond[face]) {
+        if (reached[other.face] != 0) continue;
+        reached[other.face] = 1;
+        const bool is_upward = sweep_.pieces()[other.piece].below == face;
+        depths[other.face] = depths[face] + (is_upward ? steps[other.piece] : -steps[other.piece]);
+        if (is_even_odd()) depths[other.face] &= 1;
+        open.push_back(other.face);
+      }
+    }
+    return depths;
+  }
+
+  /// By piece: how many segments a step from its right to its left crosses; with winding numbers, less those
+  /// that run the other way.
+  std::vector<std::int64_t> steps_across() const {
+    const std::vector<Piece>& pieces = sweep_.pieces();
+    // Pieces by line. They remain in their order on it.
+    std::vector<std::int32_t> first(sweep_.line_count() + 1, 0), order(pieces.size());
+    for (const Piece& piece : pieces) ++first[piece.line + 1];
+    for (std::size_t l = 0; l < sweep_.line_count(); ++l) first[l + 1] += first[l];
+    std::vector<std::int32_t> next(first.begin(), first.end() - 1);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      order[next[pieces[i].line]++] = static_cast<std::int32_t>(i);
+    // A segment counts from its first piece on, up to the one that begins where it ends.
+    std::vector<std::int64_t> changes(pieces.size() + 1, 0), steps(pieces.size());
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
+      if (a == b) continue;
+      const std::int32_t line = sweep_.line_of_segment()[s];
+      const auto at = [&](std::int32_t place) {
+        return std::lower_bound(order.begin() + first[line], order.begin() + first[line + 1], place,
+                                [&](std::int32_t piece, std::int32_t v) { return pieces[piece].from < v; }) -
+               order.begin();
+      };
+      const std::int64_t step = is_even_odd() || a < b ? 1 : -1;
+      changes[at(std::min(a, b))] += step;
+      changes[at(std::max(a, b))] -= step;
+    }
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) steps[order[i]] = sum += changes[i];
+    return steps;
+  }
+
+  /// Leaves out the faces of holes.
+  bool drop_seeded() {
+    for (std::size_t k = 0; k < place_of_hole_.size(); ++k) {
+      const double* at = places_[place_of_hole_[k]].at;
+      const std::int32_t face = sweep_.face_of_place()[place_of_hole_[k]];
+      if (face == Sweep::kNoFace) return fail("hole {} at ({}, {}) is on a segment", k, at[0], at[1]);
+      if (face == 0) return fail("hole {} at ({}, {}) is outside of the convex hull", k, at[0], at[1]);
+      covered_[face] = 0;
+    }
+    return true;
   }
 
   /// Every part of a segment that borders on a covered face must be an edge.
@@ -220,6 +376,7 @@ class ConstrainedChecker : public Checker {
   /// Places on the border of a covered face are ends of edges, which were found.
   bool check_places() {
     for (std::size_t place = 0; place < places_.size(); ++place) {
+      if (!places_[place].is_point) continue;
       const std::int32_t face = sweep_.face_of_place()[place];
       const auto i = static_cast<std::size_t>(point_of_place_[place]);
       if (face == Sweep::kNoFace || covered_[face] == 0 || used_[i] != 0) continue;
@@ -230,7 +387,8 @@ class ConstrainedChecker : public Checker {
 
   /// Euler's formula. Follows from the checks before; a safeguard against an error in them.
   bool check_count() {
-    if (constraints_.outside != VerifyOutside::keep || covered_.size() == 1) return true;
+    if (constraints_.outside != Outside::keep || constraints_.holes != nullptr || covered_.size() == 1)
+      return true;
     const std::size_t expected = 2 * report_.distinct_points - 2 - report_.hull_vertices;
     if (report_.triangles == expected) return true;
     return fail("there are {} triangles, but {} distinct points with {} on the boundary must have {}",
@@ -289,7 +447,7 @@ class ConstrainedChecker : public Checker {
   /// one of them.
   std::int32_t piece_between(std::int32_t a, std::int32_t b) const {
     if (!is_representative(a) || !is_representative(b)) return kNoPiece;
-    const Piece sought{place_of_point_[a], place_of_point_[b], 0, 0, 0};
+    const Piece sought{place_of_point_[a], place_of_point_[b], 0, 0, 0, 0};
     const std::vector<Piece>& pieces = sweep_.pieces();
     const auto found = std::lower_bound(
         pieces.begin(), pieces.end(), sought,
@@ -339,7 +497,7 @@ class ConstrainedChecker : public Checker {
   const VerifyConstraints& constraints_;
   const std::vector<std::int32_t>& segments_;
   std::vector<Place> places_;
-  std::vector<std::int32_t> place_of_point_, point_of_place_;
+  std::vector<std::int32_t> place_of_point_, point_of_place_, place_of_hole_;
   Sweep sweep_;
   std::vector<std::int32_t> piece_of_;       // by half-edge
   std::vector<std::int64_t> below_, above_;  // by piece: the triangles on its right and on its left, or kNone

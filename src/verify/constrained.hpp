@@ -6,22 +6,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "flaunay/constrained.hpp"
 #include "verify/verify.hpp"
 
 namespace flaunay {
-
-/// Which triangles a result has.
-enum class VerifyOutside {
-  keep,   ///< all, up to the convex hull
-  hull,   ///< without those that are connected with the outside over edges that are no constraints
-  holes,  ///< also without those in any other faces between the constraints
-};
 
 /// What a constrained triangulation is checked against.
 struct VerifyConstraints {
   /// 2 indices of points per segment. Required.
   const std::vector<std::int32_t>* segments = nullptr;
-  VerifyOutside outside = VerifyOutside::keep;
+  Outside outside = Outside::keep;
+  FillRule fill_rule = FillRule::nesting;
+  /// If given: x and y of each place whose face is left out, too.
+  const std::vector<double>* holes = nullptr;
   /// If given: the edges that segments are made of, 2 points per edge, and per segment the first of its edges
   /// and the one after its last.
   const std::vector<std::int32_t>* edges = nullptr;
@@ -31,9 +28,10 @@ struct VerifyConstraints {
 /// Checks, exactly and for any finite input: what `verify` checks of triangles, edges and points; that every
 /// segment is an edge, or a chain of edges if points are on it; that every other edge is locally Delaunay;
 /// that triangles with a common circle that no constraint divides are a fan from their lexicographically
-/// smallest vertex; and that the triangles tile the convex hull or, with triangles left out, whole faces
-/// between the constraints: every edge with one triangle is on the hull or a constraint. neighbors: null, or
-/// 3 per triangle. Segments that cross where no point is are an error, too. O((n + s) log (n + s)) for n
+/// smallest vertex; and that the triangles tile the convex hull without the faces between constraints that
+/// are to be left out, so every edge with one triangle is on the hull or a constraint. neighbors: null, or 3
+/// per triangle. Segments that cross where no point is are an error, as are open curves if the fill rule
+/// needs closed ones, and holes that are on a constraint or outside of the hull. O((n + s) log (n + s)) for n
 /// points and s segments, whatever overlaps and whatever meets at a point.
 VerifyReport verify_constrained(const double* coordinates, std::size_t n,
                                 const std::vector<std::int32_t>& triangles,

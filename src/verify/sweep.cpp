@@ -21,7 +21,12 @@ Sweep::Crossing Sweep::run(const std::vector<Span>& spans) {
 void Sweep::begin(const std::vector<Span>& spans) {
   face_of_place_.assign(places_.size(), kNoFace);
   first_span_.assign(places_.size() + 1, 0);
-  for (const Span& span : spans) ++first_span_[span.from + 1];
+  std::int32_t segments = 0;
+  for (const Span& span : spans) {
+    ++first_span_[span.from + 1];
+    segments = std::max(segments, span.segment + 1);
+  }
+  line_of_segment_.assign(static_cast<std::size_t>(segments), kNoLine);
   for (std::size_t i = 0; i < places_.size(); ++i) first_span_[i + 1] += first_span_[i];
   sorted_.resize(spans.size());
   std::vector<std::int32_t> next(first_span_.begin(), first_span_.end() - 1);
@@ -41,14 +46,24 @@ void Sweep::pass(std::int32_t place) {
   const bool is_lowest = first == active_.begin();
   const std::int32_t bottom = is_lowest ? 0 : std::prev(first)->above;
   top_ = bottom;
+  meets_segment_ = false;
   leaving_.clear();
+  if (!places_[place].is_point) {
+    if (first == active_.end() || side(*first, place) != 0) {
+      face_of_place_[place] = bottom;
+    } else if (first->segment_to == 0) {
+      on_hull_.push_back({place, first->below, first->above});
+    }
+    return;
+  }
   const auto next = end_pieces(place, first);
   const bool ends_any = !pieces_.empty() && pieces_.back().to == place;
   for (std::int32_t i = first_span_[place]; i < first_span_[place + 1]; ++i) {
     const bool is_hull = sorted_[i].segment == kHull;
-    leaving_.push_back(
-        {place, sorted_[i].segment, is_hull ? 0 : sorted_[i].to, is_hull ? sorted_[i].to : 0, 0, 0});
+    meets_segment_ = meets_segment_ || !is_hull;
+    leaving_.push_back({place, sorted_[i].segment, is_hull ? 0 : sorted_[i].to, is_hull ? sorted_[i].to : 0});
   }
+  if (ends_any && !meets_segment_) on_hull_.push_back({place, pieces_.back().below, pieces_.back().above});
   if (leaving_.empty()) {
     unite(bottom, top_);
     if (!ends_any) face_of_place_[place] = bottom;
@@ -63,6 +78,7 @@ void Sweep::pass(std::int32_t place) {
     const auto inserted = active_.insert(next, leaving_[i]);
     if (i == 0 && !is_lowest) check_crossing(*std::prev(inserted), *inserted);
   }
+  if (!ends_any && !meets_segment_) on_hull_.push_back({place, leaving_[0].below, leaving_[0].above});
   if (next != active_.end()) check_crossing(leaving_.back(), *next);
 }
 
@@ -70,8 +86,10 @@ void Sweep::pass(std::int32_t place) {
 Sweep::Status::iterator Sweep::end_pieces(std::int32_t place, Status::iterator first) {
   while (first != active_.end() && side(*first, place) == 0) {
     Active rest = *first;
-    pieces_.push_back({rest.from, place, rest.segment_to > 0 ? rest.segment : kHull, rest.below, rest.above});
+    pieces_.push_back(
+        {rest.from, place, rest.segment_to > 0 ? rest.segment : kHull, rest.below, rest.above, rest.line});
     top_ = rest.above;
+    meets_segment_ = meets_segment_ || rest.segment_to > 0;
     if (rest.to() > place) {
       rest.from = place;
       if (rest.segment_to <= place) rest.segment_to = 0;
@@ -87,21 +105,33 @@ Sweep::Status::iterator Sweep::end_pieces(std::int32_t place, Status::iterator f
 void Sweep::merge_leaving(std::int32_t place) {
   std::sort(leaving_.begin(), leaving_.end(),
             [this, place](const Active& a, const Active& b) { return orient(place, a.to(), b.to()) > 0; });
-  std::size_t last = 0;
-  for (std::size_t i = 1; i < leaving_.size(); ++i) {
-    Active& merged = leaving_[last];
-    const Active& other = leaving_[i];
-    if (orient(place, merged.to(), other.to()) != 0) {
-      leaving_[++last] = other;
-      continue;
-    }
-    if (other.segment_to > merged.segment_to) {
-      merged.segment_to = other.segment_to;
-      merged.segment = other.segment;
-    }
-    merged.hull_to = std::max(merged.hull_to, other.hull_to);
+  std::size_t count = 0;
+  for (std::size_t first = 0, last = 0; first < leaving_.size(); first = last) {
+    while (last < leaving_.size() && orient(place, leaving_[first].to(), leaving_[last].to()) == 0) ++last;
+    leaving_[count++] = merged(first, last);
   }
-  leaving_.resize(last + 1);
+  leaving_.resize(count);
+}
+
+/// Of those with one direction: up to their furthest ends, on the line of what ended at the place, or a new
+/// one.
+Sweep::Active Sweep::merged(std::size_t first, std::size_t last) {
+  Active all = leaving_[first];
+  for (std::size_t i = first; i < last; ++i) {
+    const Active& other = leaving_[i];
+    if (other.segment_to > all.segment_to) {
+      all.segment_to = other.segment_to;
+      all.segment = other.segment;
+    }
+    all.hull_to = std::max(all.hull_to, other.hull_to);
+    all.line = std::max(all.line, other.line);
+  }
+  if (all.line == kNoLine) all.line = static_cast<std::int32_t>(line_count_++);
+  for (std::size_t i = first; i < last; ++i) {
+    const Active& other = leaving_[i];
+    if (other.line == kNoLine && other.segment != kHull) line_of_segment_[other.segment] = all.line;
+  }
+  return all;
 }
 
 /// Of neighbours, of which one begins or has become the other's neighbour.
@@ -153,6 +183,8 @@ void Sweep::number_faces() {
   for (std::int32_t& face : face_of_place_) {
     if (face != kNoFace) face = number[face];
   }
+  // Beyond the hull is face 0.
+  for (const OnHull& at : on_hull_) face_of_place_[at.place] = std::max(number[at.below], number[at.above]);
   face_count_ = static_cast<std::size_t>(count);
 }
 

@@ -10,9 +10,10 @@
 
 namespace flaunay::verification {
 
-/// Distinct points in lexicographic order.
+/// Distinct places in lexicographic order.
 struct Place {
   double at[2];
+  bool is_point = true;  ///< whether it cuts spans; otherwise only its face is asked for
 };
 
 /// What is to be cut: from a place to a later one.
@@ -27,6 +28,7 @@ struct Piece {
   std::int32_t from, to;
   std::int32_t segment;       ///< one that it is a part of, or kHull if it is none's
   std::int32_t below, above;  ///< the faces on its right and on its left
+  std::int32_t line;          ///< pieces of one span are on one line
 };
 
 /// A plane sweep over all places (Shamos and Hoey 1976), in lexicographic order. Spans that overlap on a line
@@ -46,7 +48,12 @@ class Sweep {
 
   /// By `from`, then by `to`.
   const std::vector<Piece>& pieces() const { return pieces_; }
-  /// By place: the face that it is inside of; kNoFace if it is on a piece.
+  /// By segment: the line of its pieces; kNoLine if there was no such span.
+  const std::vector<std::int32_t>& line_of_segment() const { return line_of_segment_; }
+  static constexpr std::int32_t kNoLine = -1;
+  std::size_t line_count() const { return line_count_; }
+  /// By place: the face that it is inside of, or on whose border it is on the hull; kNoFace if it is on a
+  /// segment.
   const std::vector<std::int32_t>& face_of_place() const { return face_of_place_; }
   static constexpr std::int32_t kNoFace = -1;
   /// Faces are numbered from 0, which is outside of everything.
@@ -58,7 +65,8 @@ class Sweep {
   struct Active {
     std::int32_t from;
     std::int32_t segment, segment_to, hull_to;
-    std::int32_t below, above;
+    std::int32_t below = 0, above = 0;
+    std::int32_t line = kNoLine;
     std::int32_t to() const { return segment_to > hull_to ? segment_to : hull_to; }
   };
   // From below to above, at the place of the sweep.
@@ -84,6 +92,7 @@ class Sweep {
   void pass(std::int32_t place);
   Status::iterator end_pieces(std::int32_t place, Status::iterator first);
   void merge_leaving(std::int32_t place);
+  Active merged(std::size_t first, std::size_t last);
   void check_crossing(const Active& lower, const Active& upper);
   bool crosses_at_place(const Active& a, const Active& b) const;
   std::int32_t new_face();
@@ -99,10 +108,17 @@ class Sweep {
   Status active_;
   std::vector<Active> leaving_;  // those that leave the place of the sweep
   std::int32_t top_ = 0;         // the face above the pieces that end there
+  bool meets_segment_ = false;   // whether a segment goes through it
   Crossing crossing_;
+  std::vector<std::int32_t> line_of_segment_;
+  std::size_t line_count_ = 0;
   std::vector<Piece> pieces_;
   std::vector<std::int32_t> faces_;  // union and find
   std::vector<std::int32_t> face_of_place_;
+  struct OnHull {
+    std::int32_t place, below, above;
+  };
+  std::vector<OnHull> on_hull_;  // places on no segment, and the faces beside what they are on
   std::size_t face_count_ = 1;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <utility>
@@ -31,7 +32,9 @@ struct Case {
   Coordinates points;
   Segments segments;
   Ids triangles, neighbors, edges, segment_edges;
-  VerifyOutside outside = VerifyOutside::keep;
+  Outside outside = Outside::keep;
+  FillRule fill_rule = FillRule::nesting;
+  std::vector<double> holes;
 
   Case() = default;
   Case(Coordinates coordinates, Segments ends) : points(std::move(coordinates)), segments(std::move(ends)) {
@@ -45,19 +48,33 @@ struct Case {
   }
 
   VerifyReport verify() const {
-    VerifyConstraints constraints;
-    constraints.segments = &segments;
-    constraints.outside = outside;
+    VerifyConstraints constraints = to_verify();
     constraints.edges = &edges;
     constraints.segment_edges = &segment_edges;
     return verify_constrained(points.data(), points.size() / 2, triangles, &neighbors, constraints);
   }
   // Of triangles that were changed.
   VerifyReport verify_triangles() const {
+    return verify_constrained(points.data(), points.size() / 2, triangles, nullptr, to_verify());
+  }
+  VerifyConstraints to_verify() const {
     VerifyConstraints constraints;
     constraints.segments = &segments;
     constraints.outside = outside;
-    return verify_constrained(points.data(), points.size() / 2, triangles, nullptr, constraints);
+    constraints.fill_rule = fill_rule;
+    if (!holes.empty()) constraints.holes = &holes;
+    return constraints;
+  }
+  // Leaves out rows.
+  void keep_if(const std::function<bool(const Ids& row)>& is_kept) {
+    Ids kept;
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+      const auto first = triangles.begin() + static_cast<std::ptrdiff_t>(t);
+      const Ids row(first, first + 3);
+      if (is_kept(row)) kept.insert(kept.end(), row.begin(), row.end());
+    }
+    triangles = kept;
+    neighbors = reference_neighbors(kept);
   }
   std::string problem() const { return verify_triangles().problem; }
 };
@@ -102,7 +119,7 @@ Case without_outside(Case input) {
   }
   input.triangles = kept;
   input.neighbors = reference_neighbors(kept);
-  input.outside = VerifyOutside::hull;
+  input.outside = Outside::hull;
   return input;
 }
 
@@ -187,49 +204,150 @@ TEST(SmallVerifyConstrained, Domains) {
   EXPECT_LT(inside.triangles.size(), all.triangles.size());
   EXPECT_EQ(inside.verify().problem, "");
   Case changed = inside;
-  changed.outside = VerifyOutside::keep;
+  changed.outside = Outside::keep;
   EXPECT_NE(changed.problem(), "");
   changed = all;
-  changed.outside = VerifyOutside::hull;
+  changed.outside = Outside::hull;
   EXPECT_NE(changed.problem().find(" is outside, on the "), std::string::npos) << changed.problem();
-  changed.outside = VerifyOutside::holes;
+  changed.outside = Outside::holes;
   EXPECT_NE(changed.problem().find(" is outside, on the "), std::string::npos) << changed.problem();
 
   // The inner square is a hole; its middle is in no triangle then.
   Case ring = inside;
-  Ids kept;
-  for (std::size_t t = 0; t < ring.triangles.size(); t += 3) {
-    const auto row = ring.triangles.begin() + static_cast<std::ptrdiff_t>(t);
-    if (std::find(row, row + 3, 8) == row + 3) kept.insert(kept.end(), row, row + 3);
-  }
-  ring.triangles = kept;
-  ring.neighbors = reference_neighbors(kept);
-  EXPECT_EQ(kept.size() + 12, inside.triangles.size());
+  ring.keep_if([](const Ids& row) { return std::find(row.begin(), row.end(), 8) == row.end(); });
+  EXPECT_EQ(ring.triangles.size() + 12, inside.triangles.size());
   EXPECT_NE(ring.problem(), "");
-  ring.outside = VerifyOutside::holes;
+  ring.outside = Outside::holes;
   EXPECT_EQ(ring.verify().problem, "");
-  // A part of a hole, and a part of what is around it.
-  changed = inside;
-  changed.outside = VerifyOutside::holes;
-  for (std::size_t t = 0; t < inside.triangles.size(); t += 3) {
-    changed.triangles = inside.triangles;
-    const auto row = changed.triangles.begin() + static_cast<std::ptrdiff_t>(t);
-    changed.triangles.erase(row, row + 3);
-    EXPECT_NE(changed.problem(), "");
-  }
+  ring.fill_rule = FillRule::even_odd;
+  EXPECT_EQ(ring.verify().problem, "");
+  // Both squares run the same way round, so the inner one is no hole.
+  ring.fill_rule = FillRule::winding;
+  EXPECT_NE(ring.problem(), "");
+  for (const std::size_t k : {8, 10, 12, 14}) std::swap(ring.segments[k], ring.segments[k + 1]);
+  EXPECT_EQ(ring.problem(), "");
   // A segment in a hole need not be an edge, but must not cross another one.
-  changed = ring;
-  changed.segments.insert(changed.segments.end(), {4, 8});
-  EXPECT_EQ(changed.problem(), "");
-  changed.segments.insert(changed.segments.end(), {8, 12});
-  EXPECT_NE(changed.problem().find(" cross at a place that is no point"), std::string::npos)
-      << changed.problem();
+  Case changed_ring = ring;
+  changed_ring.fill_rule = FillRule::nesting;
+  changed_ring.segments.insert(changed_ring.segments.end(), {4, 8});
+  EXPECT_EQ(changed_ring.problem(), "");
+  changed_ring.fill_rule = FillRule::even_odd;
+  EXPECT_EQ(changed_ring.problem(),
+            "the segments are no closed curves: at point 4 at (2, 2), an odd number of them ends");
+  changed_ring.fill_rule = FillRule::winding;
+  EXPECT_EQ(changed_ring.problem(),
+            "the segments are no closed curves: at point 4 at (2, 2), not as many begin as end");
+  changed_ring.segments.insert(changed_ring.segments.end(), {8, 12});
+  EXPECT_NE(changed_ring.problem().find(" cross at a place that is no point"), std::string::npos)
+      << changed_ring.problem();
   // Nothing is inside.
   Case open = all;
   open.segments = {0, 1, 1, 2, 2, 3};
   open.triangles.clear();
-  open.outside = VerifyOutside::hull;
+  open.outside = Outside::hull;
   EXPECT_EQ(open.problem(), "");
+}
+
+TEST(SmallVerifyConstrained, Holes) {
+  const Case all = nested_squares();
+  Case ring = all;
+  ring.keep_if([](const Ids& row) { return std::find(row.begin(), row.end(), 8) == row.end(); });
+  EXPECT_NE(ring.problem(), "");
+  // At a point and elsewhere, in any face.
+  for (const std::vector<double>& holes : {std::vector<double>{4, 4}, {3.5, 4.25}, {3, 3, 5, 5, 3, 3}}) {
+    ring.holes = holes;
+    EXPECT_EQ(ring.problem(), "");
+  }
+  ring.holes = {2, 4};
+  EXPECT_EQ(ring.problem(), "hole 0 at (2, 4) is on a segment");
+  ring.holes = {4, 4, 2, 2};
+  EXPECT_EQ(ring.problem(), "hole 1 at (2, 2) is on a segment");
+  ring.holes = {4, 4, -4, 8};
+  EXPECT_EQ(ring.problem(), "hole 1 at (-4, 8) is outside of the convex hull");
+  ring.holes = {4, NAN};
+  EXPECT_EQ(ring.problem(), "hole 0 is not finite");
+  // What is outside, by a place on an edge of the hull that is no constraint.
+  Case inside = without_outside(all);
+  inside.outside = Outside::keep;
+  EXPECT_NE(inside.problem(), "");
+  inside.holes = {-5, 4, 12, 5};
+  EXPECT_EQ(inside.problem(), "");
+  const Case square({0, 0, 4, 0, 4, 4, 0, 4, 1, 1}, {1, 3});
+  Case half = square;
+  half.keep_if([](const Ids& row) { return std::find(row.begin(), row.end(), 2) == row.end(); });
+  for (const std::vector<double>& hole : {std::vector<double>{4, 3}, {1, 4}, {4, 4}, {3, 3}}) {
+    half.holes = hole;
+    EXPECT_EQ(half.problem(), "");
+  }
+  half.holes = {0, 1};
+  EXPECT_NE(half.problem(), "");
+}
+
+// Rectangles along the lines of a grid, which overlap: depths by counting the rectangles around a triangle.
+TEST(SmallVerifyConstrained, FillRules) {
+  FixtureRandom random(2);
+  int same = 0, others = 0;
+  for (int round = 0; round < 200; ++round) {
+    const int side = static_cast<int>(random.integer(2, 7));
+    struct Rectangle {
+      std::int64_t left, right, bottom, top, turn;
+    };
+    std::vector<Rectangle> rectangles;
+    SegmentInput input;
+    input.points = grid_points(side, side);
+    const auto at = [side](std::int64_t x, std::int64_t y) {
+      return static_cast<std::int32_t>(y * side + x);
+    };
+    for (auto left_over = random.integer(1, 5); left_over > 0; --left_over) {
+      Rectangle r{random.integer(0, side - 2), 0, random.integer(0, side - 2), 0,
+                  random.integer(0, 1) * 2 - 1};
+      r.right = random.integer(r.left + 1, side - 1);
+      r.top = random.integer(r.bottom + 1, side - 1);
+      Ids ring = {at(r.left, r.bottom), at(r.right, r.bottom), at(r.right, r.top), at(r.left, r.top)};
+      if (r.turn < 0) std::reverse(ring.begin(), ring.end());
+      for (std::size_t k = 0; k < 4; ++k) input.segment(ring[k], ring[(k + 1) % 4]);
+      rectangles.push_back(r);
+    }
+    const Case all(input.points, input.segments);
+    const auto depth = [&](const Ids& row, FillRule rule) {
+      double x = 0, y = 0;
+      for (const std::int32_t v : row) {
+        x += input.points[2 * static_cast<std::size_t>(v)];
+        y += input.points[2 * static_cast<std::size_t>(v) + 1];
+      }
+      std::int64_t sum = 0;
+      for (const Rectangle& r : rectangles) {
+        const bool is_in = x > 3 * r.left && x < 3 * r.right && y > 3 * r.bottom && y < 3 * r.top;
+        if (is_in) sum += rule == FillRule::winding ? r.turn : 1;
+      }
+      return rule == FillRule::winding ? sum : sum % 2;
+    };
+    std::vector<Case> results;
+    for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+      Case result = all;
+      result.keep_if([&](const Ids& row) { return depth(row, rule) != 0; });
+      result.outside = random.integer(0, 1) == 0 ? Outside::hull : Outside::holes;
+      result.fill_rule = rule;
+      EXPECT_EQ(result.verify().problem, "");
+      results.push_back(result);
+    }
+    results.push_back(without_outside(all));
+    EXPECT_EQ(results.back().verify().problem, "");
+    // Each is right by another rule only if that has the same result.
+    for (const Case& one : results) {
+      for (const Case& other : results) {
+        Case changed = one;
+        changed.fill_rule = other.fill_rule;
+        changed.outside = other.outside;
+        const bool is_same = one.triangles == other.triangles;
+        EXPECT_EQ(changed.problem().empty(), is_same);
+        ++(is_same ? same : others);
+      }
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(same, 600);
+  EXPECT_GT(others, 200);
 }
 
 TEST(SmallVerifyConstrained, DegenerateSets) {
