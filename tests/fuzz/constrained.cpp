@@ -20,6 +20,7 @@
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.hpp"
 #include "tests/constrained/check.hpp"
+#include "tests/constrained/nasty.hpp"
 #include "tests/fuzz/minimise.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/fuzz/segments.hpp"
@@ -164,17 +165,23 @@ struct Verdict {
 class Devices {
  public:
   Devices() {
-    for (const char* const tuning : {"", "gpu:32", "small"}) {
-      const testing::ScopedEnvironment environment("FLAUNAY_TUNING", tuning);
-      all_.push_back({tuning, std::make_unique<Triangulator>()});
-    }
+    add("host", "");
+    add("host", "small");
+    add("#0", "gpu:32,chain_wrapped_most=5");  // takes some milliseconds per case
+    // Kernels are compiled now, since that takes longer than a case may.
+    const testing::SegmentInput any = testing::nasty_detail::spirals(200, 1);
+    const Flat flat_any{any.points, {0, any.points.size() / 2}, any.segments, {}};
+    for (const Tuned& tuned : all_) compare(flat_any, *tuned.triangulator);
   }
 
-  /// Whether the public call has the result of the twin for the same Delaunay triangulation, with all sizes.
-  std::string compare(const Flat& all) {
+  /// Whether the public call has the result of the twin for the same Delaunay triangulation: natively, and if
+  /// asked for also by OpenCL, with sizes by which few segments are many groups and rounds.
+  std::string compare(const Flat& all, bool with_opencl) {
     for (const Tuned& tuned : all_) {
+      if (tuned.is_opencl && !with_opencl) continue;
+      start_check();
       const std::string problem = compare(all, *tuned.triangulator);
-      if (!problem.empty()) return fmt::format("the call tuned '{}': {}", tuned.name, problem);
+      if (!problem.empty()) return fmt::format("{}: {}", tuned.name, problem);
     }
     return "";
   }
@@ -182,8 +189,15 @@ class Devices {
  private:
   struct Tuned {
     std::string name;
+    bool is_opencl;
     std::unique_ptr<Triangulator> triangulator;
   };
+
+  void add(const std::string& device, const std::string& tuning) {
+    const testing::ScopedEnvironment environment("FLAUNAY_TUNING", tuning.c_str());
+    all_.push_back({fmt::format("device {} tuned '{}'", device, tuning), device != "host",
+                    std::make_unique<Triangulator>(device)});
+  }
 
   static std::string compare(const Flat& all, Triangulator& triangulator) {
     Options options;
@@ -199,6 +213,8 @@ class Devices {
       const ConstrainedTriangulation result =
           triangulator.constrained(all.points.data(), all.offsets, constraints, constrained_options);
       if (!expected.result) return "has a result instead of the error: " + expected.error;
+      if (result.constrained != expected.result->constrained)
+        return "its marks of constraints differ from the twin's";
       if (result.triangles != expected.result->triangles) return "its triangles differ from the twin's";
       if (result.neighbors != expected.result->neighbors) return "its neighbours differ from the twin's";
       if (result.constraint_edges != expected.result->constraint_edges)
@@ -234,9 +250,10 @@ class Constrained : public Fuzzer {
  public:
   bool run(testing::FixtureRandom& random) override {
     const SegmentBatch batch = degenerate_segments(random);
-    const Verdict verdict = judge(batch);
+    const bool with_opencl = random.integer(1, 8) == 1;
+    const Verdict verdict = judge(batch, with_opencl);
     if (!verdict.problem.empty()) {
-      report(batch);
+      report(batch, with_opencl);
       return false;
     }
     refused_ += verdict.refused;
@@ -254,7 +271,7 @@ class Constrained : public Fuzzer {
   }
 
  private:
-  Verdict judge(const SegmentBatch& batch) {
+  Verdict judge(const SegmentBatch& batch, bool with_opencl) {
     const Flat all = flat(batch);
     Triangulation delaunay;
     try {
@@ -266,17 +283,17 @@ class Constrained : public Fuzzer {
     try {
       const Outcome outcome = constrain(all, delaunay, all.segments);
       std::string problem = problem_of(batch, all, delaunay, outcome);
-      if (problem.empty()) problem = devices_.compare(all);
+      if (problem.empty()) problem = devices_.compare(all, with_opencl);
       return {problem, false, !outcome.result};
     } catch (const Error& error) {
       return {error.what()};
     }
   }
 
-  void report(const SegmentBatch& batch) {
-    const auto problem_of = [this](const SegmentBatch& smaller) {
+  void report(const SegmentBatch& batch, bool with_opencl) {
+    const auto problem_of = [=, this](const SegmentBatch& smaller) {
       start_check();
-      return judge(smaller).problem;
+      return judge(smaller, with_opencl).problem;
     };
     fmt::print("{}\n{}\n{} sets; shrinking them\n", case_name(), problem_of(batch), batch.size());
     std::fflush(stdout);
