@@ -107,12 +107,12 @@ static inline int star_search_step(const walked_mesh* mesh, star_search* star, d
   if (star->corner == star->first) return STAR_BROKEN;
   if (star->turn > 0) {
     star->next_side = star->previous_side;
-    star->previous_side = side_of_segment(mesh, star->at, star->goal_at, star->goal,
-                                          mesh->triangles[previous_halfedge(star->corner)]);
+    star->previous_side =
+        side_of_segment(mesh, star->at, star->goal_at, star->goal, mesh->triangles[previous_halfedge(star->corner)]);
   } else {
     star->previous_side = star->next_side;
-    star->next_side = side_of_segment(mesh, star->at, star->goal_at, star->goal,
-                                      mesh->triangles[next_halfedge(star->corner)]);
+    star->next_side =
+        side_of_segment(mesh, star->at, star->goal_at, star->goal, mesh->triangles[next_halfedge(star->corner)]);
   }
   return STAR_GOES_ON;
 }

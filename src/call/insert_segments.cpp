@@ -1,4 +1,4 @@
-#include "call/constrain.hpp"
+#include "call/insert_segments.hpp"
 
 #include <algorithm>
 
@@ -34,9 +34,9 @@ void add(const Statistics& step, Statistics& all) {
       [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
 }
 
-constrained::Result constrain_on(Engine& engine, const double* coordinates,
-                                 const std::vector<std::size_t>& offsets, Triangulation& delaunay,
-                                 const std::vector<std::int32_t>& segments, const Options& options) {
+constrained::Result insert_on(Engine& engine, const double* coordinates,
+                              const std::vector<std::size_t>& offsets, Triangulation& delaunay,
+                              const std::vector<std::int32_t>& segments, const Options& options) {
   const statistics::Phases phases(options);
   const host::Runtime::BeforeCompiling announce(engine.runtime,
                                                 [&] { phases.interrupt("compiling kernels"); });
@@ -52,15 +52,15 @@ constrained::Result constrain_on(Engine& engine, const double* coordinates,
 
 }  // namespace
 
-constrained::Result constrain(Implementation& self, const double* coordinates,
-                              const std::vector<std::size_t>& offsets, Triangulation& delaunay,
-                              const std::vector<std::int32_t>& segments, const Options& options) {
+constrained::Result insert_segments(Implementation& self, const double* coordinates,
+                                    const std::vector<std::size_t>& offsets, Triangulation& delaunay,
+                                    const std::vector<std::int32_t>& segments, const Options& options) {
   const bool may_stay = !self.is_named() && !options.profile;
   const std::size_t size = offsets.back() + segments.size() / 2;
   if (may_stay && size <= self.host_tuning().host_points) {
     return constrained::constrain(coordinates, offsets, delaunay, segments);
   }
-  return constrain_on(self.for_host_memory(), coordinates, offsets, delaunay, segments, options);
+  return insert_on(self.for_host_memory(), coordinates, offsets, delaunay, segments, options);
 }
 
 }  // namespace flaunay::call
