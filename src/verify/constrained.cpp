@@ -52,7 +52,7 @@ class ConstrainedChecker : public Checker {
       sort_points();
       report_.ok = check_orientations() && check_representatives() && match_half_edges() && cut_segments() &&
                    check_triangulation() && check_circles() && check_edges() && check_segment_edges() &&
-                   check_neighbors_if_given();
+                   check_edge_segments() && check_labels() && check_neighbors_if_given();
     }
     report_.exact_evaluations = predicates_.exact_evaluations();
     return report_;
@@ -104,25 +104,25 @@ class ConstrainedChecker : public Checker {
         for (; hole != holes.end() && is_before(*hole, sorted_[i]); ++hole) add_hole(*hole);
         add_place(sorted_[i], true);
         for (; hole != holes.end() && !is_before(sorted_[i], *hole); ++hole)
-          place_of_hole_[hole->index] = last_place();
+          place_of_hole_[hole->index] = newest_place();
       }
       const auto index = static_cast<std::int32_t>(sorted_[i].index);
       if (point_of_place_.back() == kNoPoint || used_[index] != 0) point_of_place_.back() = index;
-      place_of_point_[index] = last_place();
+      place_of_point_[index] = newest_place();
     }
     for (; hole != holes.end(); ++hole) add_hole(*hole);
   }
   static bool is_before(const SortedPoint& a, const SortedPoint& b) {
     return a.x != b.x ? a.x < b.x : a.y < b.y;
   }
-  std::int32_t last_place() const { return static_cast<std::int32_t>(places_.size()) - 1; }
+  std::int32_t newest_place() const { return static_cast<std::int32_t>(places_.size()) - 1; }
   void add_place(const SortedPoint& at, bool is_point) {
     places_.push_back({{at.x, at.y}, is_point});
     point_of_place_.push_back(kNoPoint);
   }
   void add_hole(const SortedPoint& hole) {
     add_place(hole, false);
-    place_of_hole_[hole.index] = last_place();
+    place_of_hole_[hole.index] = newest_place();
   }
   std::vector<SortedPoint> sorted_holes() const {
     std::vector<SortedPoint> holes;
@@ -197,13 +197,15 @@ class ConstrainedChecker : public Checker {
   bool choose_faces() {
     covered_.assign(sweep_.face_count(), 1);
     covered_[0] = 0;
-    if (constraints_.outside != Outside::keep) {
+    const bool by_nesting = constraints_.fill_rule == FillRule::nesting;
+    if (constraints_.outside != Outside::keep || constraints_.depths != nullptr) {
       if (!check_closed()) return false;
-      const bool by_nesting = constraints_.fill_rule == FillRule::nesting;
-      const std::vector<std::int64_t> depths = by_nesting ? nesting_depths() : winding_depths();
+      depths_ = by_nesting ? nesting_depths() : winding_depths();
+    }
+    if (constraints_.outside != Outside::keep) {
       const bool drops_holes = by_nesting && constraints_.outside == Outside::holes;
       for (std::size_t f = 0; f < covered_.size(); ++f) {
-        if (depths[f] == 0 || (drops_holes && depths[f] % 2 == 0)) covered_[f] = 0;
+        if (depths_[f] == 0 || (drops_holes && depths_[f] % 2 == 0)) covered_[f] = 0;
       }
     }
     return drop_seeded();
@@ -288,33 +290,50 @@ class ConstrainedChecker : public Checker {
   /// By piece: how many segments a step from its right to its left crosses; with winding numbers, less those
   /// that run the other way.
   std::vector<std::int64_t> steps_across() const {
-    const std::vector<Piece>& pieces = sweep_.pieces();
-    // Pieces by line. They remain in their order on it.
-    std::vector<std::int32_t> first(sweep_.line_count() + 1, 0), order(pieces.size());
-    for (const Piece& piece : pieces) ++first[piece.line + 1];
-    for (std::size_t l = 0; l < sweep_.line_count(); ++l) first[l + 1] += first[l];
-    std::vector<std::int32_t> next(first.begin(), first.end() - 1);
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-      order[next[pieces[i].line]++] = static_cast<std::int32_t>(i);
+    const PiecesByLine pieces(sweep_);
     // A segment counts from its first piece on, up to the one that begins where it ends.
-    std::vector<std::int64_t> changes(pieces.size() + 1, 0), steps(pieces.size());
+    std::vector<std::int64_t> changes(pieces.order.size() + 1, 0), steps(pieces.order.size());
     for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
-      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
+      const std::int32_t a = first_place(s), b = last_place(s);
       if (a == b) continue;
-      const std::int32_t line = sweep_.line_of_segment()[s];
-      const auto at = [&](std::int32_t place) {
-        return std::lower_bound(order.begin() + first[line], order.begin() + first[line + 1], place,
-                                [&](std::int32_t piece, std::int32_t v) { return pieces[piece].from < v; }) -
-               order.begin();
-      };
-      const std::int64_t step = is_even_odd() || a < b ? 1 : -1;
-      changes[at(std::min(a, b))] += step;
-      changes[at(std::max(a, b))] -= step;
+      const std::int64_t step = is_even_odd() || place_of_point_[segments_[2 * s]] == a ? 1 : -1;
+      changes[pieces.position(s, a)] += step;
+      changes[pieces.position(s, b)] -= step;
     }
     std::int64_t sum = 0;
-    for (std::size_t i = 0; i < pieces.size(); ++i) steps[order[i]] = sum += changes[i];
+    for (std::size_t i = 0; i < pieces.order.size(); ++i) steps[pieces.order[i]] = sum += changes[i];
     return steps;
   }
+  std::int32_t first_place(std::size_t segment) const {
+    return std::min(place_of_point_[segments_[2 * segment]], place_of_point_[segments_[2 * segment + 1]]);
+  }
+  std::int32_t last_place(std::size_t segment) const {
+    return std::max(place_of_point_[segments_[2 * segment]], place_of_point_[segments_[2 * segment + 1]]);
+  }
+
+  /// Pieces by line, in their order on it.
+  struct PiecesByLine {
+    const Sweep& sweep;
+    std::vector<std::int32_t> first, order;
+
+    explicit PiecesByLine(const Sweep& of)
+        : sweep(of), first(of.line_count() + 1, 0), order(of.pieces().size()) {
+      for (const Piece& piece : sweep.pieces()) ++first[piece.line + 1];
+      for (std::size_t l = 0; l < sweep.line_count(); ++l) first[l + 1] += first[l];
+      std::vector<std::int32_t> next(first.begin(), first.end() - 1);
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        order[next[sweep.pieces()[i].line]++] = static_cast<std::int32_t>(i);
+      }
+    }
+    /// Where a segment's piece from a place is in `order`; behind its last one if it ends there.
+    std::size_t position(std::size_t segment, std::int32_t place) const {
+      const std::int32_t line = sweep.line_of_segment()[segment];
+      const auto found = std::lower_bound(
+          order.begin() + first[line], order.begin() + first[line + 1], place,
+          [this](std::int32_t piece, std::int32_t v) { return sweep.pieces()[piece].from < v; });
+      return static_cast<std::size_t>(found - order.begin());
+    }
+  };
 
   /// Leaves out the faces of holes.
   bool drop_seeded() {
@@ -492,6 +511,88 @@ class ConstrainedChecker : public Checker {
     return true;
   }
 
+  /// Segments claim their pieces in ascending order, and skip those that have been claimed.
+  bool check_edge_segments() {
+    if (constraints_.edge_segments == nullptr || constraints_.edges == nullptr) return true;
+    const std::vector<std::int32_t>& claimed = *constraints_.edge_segments;
+    if (2 * claimed.size() != constraints_.edges->size()) {
+      return fail("there are {} segments of edges, but there are {} constraint edges", claimed.size(),
+                  constraints_.edges->size() / 2);
+    }
+    const PiecesByLine pieces(sweep_);
+    std::vector<std::int32_t> smallest(pieces.order.size(), -1);
+    std::vector<std::size_t> next(pieces.order.size() + 1);
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] = i;
+    const auto unclaimed = [&next](std::size_t i) {
+      while (next[i] != i) i = next[i] = next[next[i]];
+      return i;
+    };
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      if (first_place(s) == last_place(s)) continue;
+      const std::size_t end = pieces.position(s, last_place(s));
+      for (std::size_t i = unclaimed(pieces.position(s, first_place(s))); i < end; i = unclaimed(i)) {
+        smallest[pieces.order[i]] = static_cast<std::int32_t>(s);
+        next[i] = i + 1;
+      }
+    }
+    for (std::size_t e = 0; e < claimed.size(); ++e) {
+      const std::int32_t expected =
+          smallest[piece_between((*constraints_.edges)[2 * e], (*constraints_.edges)[2 * e + 1])];
+      if (claimed[e] == expected) continue;
+      return fail("constraint edge {} is said to be a part of segment {} first, but it is one of segment {}",
+                  e, claimed[e], expected);
+    }
+    return true;
+  }
+
+  bool check_labels() {
+    if (constraints_.depths == nullptr && constraints_.regions == nullptr) return true;
+    for (const auto* const labels : {constraints_.depths, constraints_.regions}) {
+      if (labels != nullptr && labels->size() != report_.triangles) {
+        return fail("there are {} depths or regions, but {} triangles", labels->size(), report_.triangles);
+      }
+    }
+    const std::vector<std::int32_t> faces = faces_of_triangles();
+    std::vector<std::int32_t> regions(covered_.size(), -1);
+    std::int32_t count = 0;
+    for (std::size_t t = 0; t < report_.triangles; ++t) {
+      std::int32_t& region = regions[faces[t]];
+      if (region < 0) region = count++;
+      if (constraints_.depths != nullptr && (*constraints_.depths)[t] != depths_[faces[t]]) {
+        return fail("{} has depth {}, but it should be {}", describe_triangle(t), (*constraints_.depths)[t],
+                    depths_[faces[t]]);
+      }
+      if (constraints_.regions != nullptr && (*constraints_.regions)[t] != region) {
+        return fail("{} has region {}, but it should be {}", describe_triangle(t), (*constraints_.regions)[t],
+                    region);
+      }
+    }
+    return true;
+  }
+
+  /// Every face has triangles beside its pieces, and the others are connected with these.
+  std::vector<std::int32_t> faces_of_triangles() const {
+    std::vector<std::int32_t> faces(report_.triangles, Sweep::kNoFace);
+    std::vector<std::size_t> open;
+    const auto enter = [&](std::int64_t triangle, std::int32_t face) {
+      if (triangle == kNone || faces[triangle] != Sweep::kNoFace) return;
+      faces[triangle] = face;
+      open.push_back(static_cast<std::size_t>(triangle));
+    };
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      enter(below_[i], sweep_.pieces()[i].below);
+      enter(above_[i], sweep_.pieces()[i].above);
+    }
+    while (!open.empty()) {
+      const std::size_t t = open.back();
+      open.pop_back();
+      for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (piece_of_[h] == kNoPiece) enter(twins_[h] / 3, faces[t]);
+      }
+    }
+    return faces;
+  }
+
   bool check_neighbors_if_given() { return neighbors_ == nullptr || check_neighbors(); }
 
   const VerifyConstraints& constraints_;
@@ -501,6 +602,7 @@ class ConstrainedChecker : public Checker {
   Sweep sweep_;
   std::vector<std::int32_t> piece_of_;       // by half-edge
   std::vector<std::int64_t> below_, above_;  // by piece: the triangles on its right and on its left, or kNone
+  std::vector<std::int64_t> depths_;         // by face
   std::vector<char> covered_;                // by face
 };
 

@@ -23,6 +23,10 @@ struct VerifyConstraints {
   /// and the one after its last.
   const std::vector<std::int32_t>* edges = nullptr;
   const std::vector<std::int32_t>* segment_edges = nullptr;
+  /// If given: per constraint edge the smallest index of a segment that has it.
+  const std::vector<std::int32_t>* edge_segments = nullptr;
+  /// If given: per triangle its depth by the fill rule, and the number of its region.
+  const std::vector<std::int32_t>*depths = nullptr, *regions = nullptr;
 };
 
 /// Checks, exactly and for any finite input: what `verify` checks of triangles, edges and points; that every
