@@ -26,7 +26,10 @@ const NamedChoices<Outside> kOutside = {
 const NamedChoices<FillRule> kFillRules = {
     {"nesting", FillRule::nesting}, {"even-odd", FillRule::even_odd}, {"winding", FillRule::winding}};
 
-const std::vector<const char*> kChoices = {"--crossings", "--outside", "--fill", "--hole", "--separate"};
+const NamedChoices<Overlaps> kOverlaps = {{"first", Overlaps::first}, {"error", Overlaps::error}};
+
+const std::vector<const char*> kChoices = {"--crossings", "--outside",  "--fill",
+                                           "--hole",      "--separate", "--overlaps"};
 
 std::vector<const char*> file_options() {
   std::vector<const char*> options = {"--points", "--polygons"};
@@ -75,6 +78,21 @@ void choose_for(const io::Map& map, const std::string& input, ConstraintRequest&
   if (!request.chose_fill) request.fill = has_polygons ? FillRule::winding : FillRule::nesting;
 }
 
+/// Whether the map is given to the library as polygons, which knows then which triangle is in which of them.
+/// Throws if the request needs that and it is not possible.
+bool are_polygons(const io::Map& map, const ConstrainedWork& work, const ConstraintRequest& request) {
+  const bool possible =
+      map.polygon_count() > 0 && !map.has_others && map.holes.empty() && request.fill != FillRule::nesting;
+  if (!possible && (request.separate || request.chose_overlaps || !request.polygons.empty())) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: --separate, --overlaps and --polygons need a file of polygons alone, without "
+                    "lines and points, and neither --hole nor --fill nesting",
+                    io::printable(work.input)));
+  }
+  return possible;
+}
+
 /// The map's segments with its lines. A line in both directions bounds nothing by rules that count crossings.
 std::vector<std::int32_t> all_segments(const io::Map& map, FillRule fill) {
   std::vector<std::int32_t> segments = map.segments;
@@ -106,6 +124,32 @@ ConstrainedOptions options_of(const ConstrainedWork& work, const ConstraintReque
     progress.update(stage, level, done);
   };
   return options;
+}
+
+ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const io::Map& map,
+                                              const ConstraintRequest& request,
+                                              const ConstrainedOptions& options) {
+  Polygons polygons;
+  polygons.coordinates = map.points.coordinates.data();
+  polygons.ring_offsets = map.ring_offsets;
+  polygons.polygon_offsets = map.polygon_offsets;
+  PolygonOptions polygon_options;
+  static_cast<ConstrainedOptions&>(polygon_options) = options;
+  polygon_options.map = !request.separate;
+  polygon_options.overlaps = request.overlaps;
+  return triangulator.polygons(polygons, polygon_options);
+}
+
+ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const io::Map& map,
+                                              const ConstraintRequest& request,
+                                              const ConstrainedOptions& options) {
+  const std::vector<std::int32_t> segments = all_segments(map, request.fill);
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  constraints.holes = map.holes.data();
+  constraints.hole_count = map.holes.size() / 2;
+  return triangulator.constrained(map.points.coordinates.data(), map.points.size(), constraints, options);
 }
 
 /// For each triangle the number of its set.
@@ -167,7 +211,10 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
     io::write_npy_indices(files, request.arrays[k], mesh.*file.values, file.columns, index);
   }
   if (!request.points.empty()) io::write_points(files, request.points, map.points);
-  if (!request.polygons.empty()) io::write_npy_indices(files, request.polygons, sets_of(mesh), 0, index);
+  if (!request.polygons.empty()) {
+    io::write_npy_indices(files, request.polygons, request.separate ? sets_of(mesh) : mesh.polygons, 0,
+                          index);
+  }
   files.write_out();
   facts.writing_seconds = stopwatch.seconds();
   research::Triangulation statistics;
@@ -184,7 +231,8 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
       "Segments that become edges: .npy, .txt or .csv, 2 point indices per row; .poly and .geojson files "
       "have their own");
   add_named_choice(command, "--crossings", request.crossings,
-                   "Segments that cross: an error, or split where they do, which adds points", kCrossings);
+                   "Segments that cross: an error, or split where they do, which adds points", kCrossings)
+      ->default_str("error");
   add_named_choice(command, "--outside", request.outside,
                    "Triangles: keep all, up to the hull; hull: without those outside; holes: nor those in "
                    "holes. Default: keep, for .poly hull, for polygons in GeoJSON holes",
@@ -199,6 +247,9 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
       ->allow_extra_args(false)
       ->type_name("X,Y");
   command->add_flag("--separate", request.separate, "GeoJSON: triangulate each polygon on its own");
+  add_named_choice(command, "--overlaps", request.overlaps,
+                   "GeoJSON: what is in several polygons belongs to the first one, or is an error", kOverlaps)
+      ->default_str("first");
   for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
     add_path(command, kConstraintArrayFiles[k].option, request.arrays[k],
              kConstraintArrayFiles[k].description);
@@ -207,7 +258,7 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
            "The points of the map and those that were added, to which indices refer: .npy, .node, .xy, .txt, "
            ".csv or .bin");
   add_path(command, "--polygons", request.polygons,
-           "With --separate, for each triangle the number of its polygon: .npy");
+           "GeoJSON: for each triangle the number of its polygon, -1 for none: .npy");
 }
 
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
@@ -227,12 +278,13 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
     io::check_segments_ending(request.segments);
   }
   if (io::ending_of(input) == ".poly" || !is_map) {
-    refuse(command, "--separate", "needs polygons, from a .geojson file");
+    for (const char* option : {"--separate", "--overlaps", "--polygons"}) {
+      refuse(command, option, "needs polygons, from a .geojson file");
+    }
   }
   if (request.separate) {
-    refuse(command, "--hole", "does not say of which polygon; without --separate it needs not");
-  } else {
-    refuse(command, "--polygons", "needs --separate");
+    refuse(command, "--hole", "does not say of which polygon, as it needs with --separate");
+    refuse(command, "--overlaps", "with --separate, each polygon has triangles of its own");
   }
   for (const char* option : {"--memory", "--chunk-points", "--scratch"}) {
     refuse(command, option, "constraints need all points at once, not in chunks");
@@ -243,6 +295,7 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   holes_of(request);
   request.chose_outside = command.count("--outside") > 0;
   request.chose_fill = command.count("--fill") > 0;
+  request.chose_overlaps = command.count("--overlaps") > 0;
   return true;
 }
 
@@ -263,7 +316,7 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   choose_for(map, work.input, request);
   const std::vector<double> further_holes = holes_of(request);
   map.holes.insert(map.holes.end(), further_holes.begin(), further_holes.end());
-  const std::vector<std::int32_t> segments = all_segments(map, request.fill);
+  const auto triangulate = are_polygons(map, work, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
 
   progress.update_slow("preparing the device", kCompiling);
@@ -273,19 +326,12 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   facts.compiling_seconds = compile_kernels(map.points.size(), Mode::blocks,
                                             [&](std::size_t n) { triangulator.triangulate(coordinates, n); });
 
-  Constraints constraints;
-  constraints.segments = segments.data();
-  constraints.segment_count = segments.size() / 2;
-  constraints.holes = map.holes.data();
-  constraints.hole_count = map.holes.size() / 2;
-  ConstrainedTriangulation mesh =
-      naming_files({{"segment", request.segments.empty() ? work.input : request.segments},
-                    {"point", work.input},
-                    {"hole", work.input}},
-                   [&] {
-                     return triangulator.constrained(coordinates, map.points.size(), constraints,
-                                                     options_of(work, request, progress));
-                   });
+  ConstrainedTriangulation mesh = naming_files(
+      {{"segment", request.segments.empty() ? work.input : request.segments},
+       {"point", work.input},
+       {"polygon", work.input},
+       {"hole", work.input}},
+      [&] { return triangulate(triangulator, map, request, options_of(work, request, progress)); });
   facts.constraints = facts_of(map, request, mesh);
   map.points.coordinates.insert(map.points.coordinates.end(), mesh.added_points.begin(),
                                 mesh.added_points.end());

@@ -35,11 +35,12 @@ struct ConstraintRequest {
   FillRule fill = FillRule::nesting;
   std::vector<std::string> holes;  ///< "X,Y" each
   bool separate = false;
+  Overlaps overlaps = Overlaps::first;
   std::array<std::string, kConstraintArrayFiles.size()> arrays;  ///< paths, one per row of the table
   std::string points;                                            ///< the file for input and added points
   std::string polygons;  ///< the file with the polygon of each triangle
   // Whether the user chose these; otherwise the input decides.
-  bool chose_outside = false, chose_fill = false;
+  bool chose_outside = false, chose_fill = false, chose_overlaps = false;
 };
 
 /// What a triangulation with constraints needs besides a ConstraintRequest.
