@@ -340,7 +340,7 @@ class Picture {
   }
 
   void write_constraints() {
-    open_stroke("constraints", kConstraintColor, std::clamp(3.5 * line_width_, 1.4, 3.6));
+    open_stroke("constraints", kConstraintColor, std::clamp(2.8 * line_width_, 1.2, 3.0));
     const std::vector<std::int32_t>& edges = constraints_->constraint_edges;
     for (std::size_t e = 0; e < edges.size(); e += 2) write_segment(edges[e], edges[e + 1]);
     file_.print("\"/>\n");
