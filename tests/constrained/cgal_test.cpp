@@ -13,9 +13,11 @@
 
 #include "constrained/constrained.hpp"
 #include "tests/constrained/check.hpp"
+#include "tests/constrained/nasty.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
+#include "verify/constrained.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -25,7 +27,8 @@ using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>
 using Structure =
     CGAL::Triangulation_data_structure_2<Vertex, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using Constrained =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
+                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 Constrained cgal_constrained(const Coordinates& points, const Triangulation& delaunay,
                              const Segments& segments) {
@@ -66,6 +69,42 @@ TEST(ConstrainedCgal, CountsOnFixtures) {
   }
 }
 
+std::vector<std::int32_t> triangles_of(const Constrained& triangulation) {
+  std::vector<std::int32_t> triangles;
+  if (triangulation.dimension() < 2) return triangles;
+  for (const auto& face : triangulation.finite_face_handles()) {
+    for (int corner = 0; corner < 3; ++corner) triangles.push_back(face->vertex(corner)->info());
+  }
+  return triangles;
+}
+
+// The same triangles wherever no four points on a circle leave a choice.
+TEST(ConstrainedCgal, NastySegments) {
+  int unique = 0;
+  for (const NastySegments& nasty : nasty_segments()) {
+    for (const int n : {3, 10, 100, 3000}) {
+      SCOPED_TRACE(nasty.name + ", n = " + std::to_string(n));
+      const SegmentInput input = nasty.make(n, 1);
+      const Triangulation delaunay = delaunay_of(input.points, {0, input.points.size() / 2});
+      const auto result =
+          constrained::constrain(input.points.data(), {0, input.points.size() / 2}, delaunay, input.segments);
+      const Constrained expected = cgal_constrained(input.points, delaunay, input.segments);
+      const std::vector<std::int32_t> triangles = triangles_of(expected);
+      EXPECT_EQ(result.triangles.size(), triangles.size());
+      EXPECT_EQ(result.constraint_edges.size() / 2, constrained_edges(expected));
+      VerifyConstraints constraints;
+      constraints.segments = &input.segments;
+      const VerifyReport report = verify_constrained(input.points.data(), input.points.size() / 2,
+                                                     result.triangles, &result.neighbors, constraints);
+      EXPECT_EQ(report.problem, "");
+      if (report.cocircular_edges > 0) continue;
+      ++unique;
+      EXPECT_EQ(sorted_triangles(result.triangles), sorted_triangles(triangles));
+    }
+  }
+  EXPECT_GT(unique, 20);
+}
+
 TEST(ConstrainedCgal, SameTriangles) {
   for (const char* name : {"uniform", "normal", "kuzmin", "line", "clusters"}) {
     for (const double factor : {0x1p-7, 0.25, 2.0}) {
@@ -75,11 +114,7 @@ TEST(ConstrainedCgal, SameTriangles) {
       const Segments segments = edges_of_stretched(points, factor, 5, 3);
       const auto result = constrained::constrain(points.data(), {0, points.size() / 2}, delaunay, segments);
       const Constrained expected = cgal_constrained(points, delaunay, segments);
-      std::vector<std::int32_t> triangles;
-      for (const auto& face : expected.finite_face_handles()) {
-        for (int corner = 0; corner < 3; ++corner) triangles.push_back(face->vertex(corner)->info());
-      }
-      EXPECT_EQ(sorted_triangles(result.triangles), sorted_triangles(triangles));
+      EXPECT_EQ(sorted_triangles(result.triangles), sorted_triangles(triangles_of(expected)));
     }
   }
 }
