@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
 namespace {
@@ -23,6 +24,9 @@ int compare_slopes(const Point* points, Piece p, Piece q) {
   return first.x != second.x ? kernel::sign_of(first.x - second.x) : kernel::sign_of(first.y - second.y);
 }
 
+// So many doubles may be between the rounded slopes of parallel pieces, and some more.
+constexpr std::uint64_t kSlopeErrors = 16;
+
 // Pieces that overlap are together one line. Sorted by slope, across and along lines, those of one line
 // follow each other.
 class LineFinder {
@@ -30,25 +34,35 @@ class LineFinder {
   LineFinder(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces)
       : predicates_(predicates), points_(points), pieces_(pieces) {}
 
-  // line_of: per piece.
+  // line_of: per piece. Pieces whose rounded slopes are apart need no exact comparison.
   std::vector<Piece> find(std::vector<std::int32_t>& line_of) const {
-    std::vector<std::int32_t> order(pieces_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [this](std::int32_t p, std::int32_t q) {
-      const int side = compare_lines(pieces_[p], pieces_[q]);
-      return side != 0 ? side > 0 : comes_before(pieces_[p].from, pieces_[q].from);
-    });
+    std::vector<Keyed> order;
+    order.reserve(pieces_.size());
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      order.push_back({sort_key(slope(pieces_[p])), static_cast<std::int32_t>(p)});
+    }
+    sort_by_key(order);
     std::vector<Piece> lines;
     line_of.resize(pieces_.size());
-    for (const std::int32_t p : order) {
-      const Piece piece = pieces_[p];
-      if (lines.empty() || !comes_before(piece.from, lines.back().to) ||
-          compare_lines(lines.back(), piece) != 0) {
-        lines.push_back(piece);
-      } else if (comes_before(lines.back().to, piece.to)) {
-        lines.back().to = piece.to;
+    for (auto begin = order.begin(), end = begin; begin != order.end(); begin = end) {
+      for (++end; end != order.end() && end->key - (end - 1)->key <= kSlopeErrors; ++end) {
       }
-      line_of[p] = static_cast<std::int32_t>(lines.size()) - 1;
+      if (end - begin > 1) {
+        std::sort(begin, end, [this](const Keyed& p, const Keyed& q) {
+          const int side = compare_lines(pieces_[p.index], pieces_[q.index]);
+          return side != 0 ? side > 0 : comes_before(pieces_[p.index].from, pieces_[q.index].from);
+        });
+      }
+      for (auto p = begin; p != end; ++p) {
+        const Piece piece = pieces_[p->index];
+        if (p == begin || !comes_before(piece.from, lines.back().to) ||
+            compare_lines(lines.back(), piece) != 0) {
+          lines.push_back(piece);
+        } else if (comes_before(lines.back().to, piece.to)) {
+          lines.back().to = piece.to;
+        }
+        line_of[p->index] = static_cast<std::int32_t>(lines.size()) - 1;
+      }
     }
     return lines;
   }
@@ -56,6 +70,11 @@ class LineFinder {
  private:
   bool comes_before(std::int32_t u, std::int32_t v) const {
     return kernel::comes_before(points_[u], points_[v]) != 0;
+  }
+  // Wrong by the rounding of two differences and a quotient: less than 4 units in the last place.
+  double slope(Piece p) const {
+    const Point a = points_[p.from], b = points_[p.to];
+    return a.x == b.x ? HUGE_VAL : (b.y - a.y) / (b.x - a.x) + 0.0;
   }
   // 0 on one line.
   int compare_lines(Piece p, Piece q) const {

@@ -16,9 +16,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "constrained/crossing.hpp"
 #include "flaunay/flaunay.hpp"
+#include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
 namespace {
@@ -43,6 +45,18 @@ struct Rank {
   std::size_t below, not_above;
 };
 
+// Whether two pieces have exactly one common point, which is inside of both.
+bool cross(const Predicates& predicates, const Line& p, const Line& q) {
+  const auto [a, b] = p;
+  const auto [c, d] = q;
+  if (std::max(a.x, c.x) > std::min(b.x, d.x) ||
+      std::max(std::min(a.y, b.y), std::min(c.y, d.y)) > std::min(std::max(a.y, b.y), std::max(c.y, d.y))) {
+    return false;
+  }
+  return predicates.orient(a, b, c) * predicates.orient(a, b, d) < 0 &&
+         predicates.orient(c, d, a) * predicates.orient(c, d, b) < 0;
+}
+
 class Search {
  public:
   Search(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
@@ -50,17 +64,19 @@ class Search {
       : predicates_(predicates), points_(points), pieces_(pieces), most_(most) {}
 
   void find_crossings() {
-    for (std::size_t k = 0; k < pieces_.size(); ++k) piece_stack_.push_back(static_cast<std::int32_t>(k));
-    run();
+    Ids pieces(pieces_.size());
+    std::iota(pieces.begin(), pieces.end(), 0);
+    run(std::move(pieces), {});
   }
   // Of pieces that are not vertical.
   void find_vertices(const Ids& vertices) {
+    Ids pieces;
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
-      if (!is_vertical(static_cast<std::int32_t>(k))) piece_stack_.push_back(static_cast<std::int32_t>(k));
+      if (points_[pieces_[k].from].x != points_[pieces_[k].to].x)
+        pieces.push_back(static_cast<std::int32_t>(k));
     }
-    vertex_stack_ = vertices;
     of_vertices_ = true;
-    run();
+    run(std::move(pieces), vertices);
   }
   Pairs take() { return std::move(pairs_); }
 
@@ -78,21 +94,69 @@ class Search {
   };
   enum class Axis { x, y };
 
-  Point from(std::int32_t piece) const { return points_[pieces_[piece].from]; }
-  Point to(std::int32_t piece) const { return points_[pieces_[piece].to]; }
-  bool is_vertical(std::int32_t piece) const { return from(piece).x == to(piece).x; }
+  Point from(std::int32_t piece) const { return lines_[piece].a; }
+  Point to(std::int32_t piece) const { return lines_[piece].b; }
   bool spans(std::int32_t piece, Slab slab) const {
     return from(piece).x <= slab.begin && slab.end <= to(piece).x;
   }
 
-  void run() {
-    if (piece_stack_.empty()) return;
+  // Numbers what is given by place, so that what is near in the plane is near in memory.
+  void run(Ids pieces, Ids vertices) {
+    if (pieces.empty()) return;
+    sort_by_place(pieces, [this](std::int32_t p) {
+      const Point a = points_[pieces_[p].from], b = points_[pieces_[p].to];
+      return Point{0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y};
+    });
+    sort_by_place(vertices, [this](std::int32_t v) { return points_[v]; });
     Slab slab{HUGE_VAL, -HUGE_VAL};
-    for (const std::int32_t p : piece_stack_) {
-      slab.begin = std::min(slab.begin, from(p).x);
-      slab.end = std::max(slab.end, to(p).x);
+    for (const std::int32_t p : pieces) {
+      lines_.push_back({points_[pieces_[p].from], points_[pieces_[p].to]});
+      slab.begin = std::min(slab.begin, lines_.back().a.x);
+      slab.end = std::max(slab.end, lines_.back().b.x);
     }
+    for (const std::int32_t v : vertices) places_.push_back(points_[v]);
+    piece_stack_.resize(pieces.size());
+    std::iota(piece_stack_.begin(), piece_stack_.end(), 0);
+    vertex_stack_.resize(vertices.size());
+    std::iota(vertex_stack_.begin(), vertex_stack_.end(), 0);
     divide(slab, {0, 0});
+    for (auto& [piece, other] : pairs_) {
+      piece = pieces[piece];
+      other = of_vertices_ ? vertices[other] : pieces[other];
+      if (!of_vertices_ && other < piece) std::swap(piece, other);
+    }
+  }
+
+  // Along a curve that fills the plane (Morton 1966).
+  template <typename Place>
+  static void sort_by_place(Ids& items, const Place& place) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (const std::int32_t i : items) {
+      const Point p = place(i);
+      low[0] = std::min(low[0], p.x);
+      low[1] = std::min(low[1], p.y);
+      high[0] = std::max(high[0], p.x);
+      high[1] = std::max(high[1], p.y);
+    }
+    std::vector<Keyed> keyed;
+    keyed.reserve(items.size());
+    for (const std::int32_t i : items) {
+      const Point p = place(i);
+      keyed.push_back({spread(part(p.x, low[0], high[0])) | spread(part(p.y, low[1], high[1])) << 1, i});
+    }
+    sort_by_key(keyed);
+    std::transform(keyed.begin(), keyed.end(), items.begin(), [](const Keyed& k) { return k.index; });
+  }
+  // Where a number is between two others, in 16 bits.
+  static std::uint64_t part(double x, double low, double high) {
+    return high > low ? static_cast<std::uint64_t>((x - low) / (high - low) * 0xffff) : 0;
+  }
+  // Leaves a 0 before each of 16 bits.
+  static std::uint64_t spread(std::uint64_t bits) {
+    bits = (bits | bits << 8) & 0x00ff00ff;
+    bits = (bits | bits << 4) & 0x0f0f0f0f;
+    bits = (bits | bits << 2) & 0x33333333;
+    return (bits | bits << 1) & 0x55555555;
   }
 
   // Finds all pairs of items at the top of the stacks that meet in a slab, and removes them.
@@ -140,7 +204,7 @@ class Search {
     return axis == Axis::x ? b.x > middle : std::max(a.y, b.y) > middle;
   }
   bool is_low_vertex(std::int32_t v, Axis axis, double middle) const {
-    return (axis == Axis::x ? points_[v].x : points_[v].y) <= middle;
+    return (axis == Axis::x ? places_[v].x : places_[v].y) <= middle;
   }
 
   void halve(Slab slab, Items items, Axis axis, double middle) {
@@ -200,7 +264,7 @@ class Search {
       add(from(piece_stack_[k]).x);
       add(to(piece_stack_[k]).x);
     }
-    for (std::size_t k = items.vertices; k < vertex_stack_.size(); ++k) add(points_[vertex_stack_[k]].x);
+    for (std::size_t k = items.vertices; k < vertex_stack_.size(); ++k) add(places_[vertex_stack_[k]].x);
     if (inside_.empty()) return false;
     const auto half = inside_.begin() + static_cast<std::ptrdiff_t>(inside_.size() / 2);
     std::nth_element(inside_.begin(), half, inside_.end());
@@ -312,7 +376,7 @@ class Search {
   }
 
   void add_chain_at(std::int32_t v) {
-    const Rank at = rank_of(points_[v]);
+    const Rank at = rank_of(places_[v]);
     for (std::size_t k = at.below; k < at.not_above; ++k) add_if_inside(chain_[k].piece, v);
   }
 
@@ -368,8 +432,8 @@ class Search {
   }
 
   void add_if_crossing(std::int32_t p, std::int32_t q) {
-    if (!cross(predicates_, points_, pieces_[p], pieces_[q])) return;
-    pairs_.emplace_back(std::min(p, q), std::max(p, q));
+    if (!cross(predicates_, lines_[p], lines_[q])) return;
+    pairs_.emplace_back(p, q);
     if (pairs_.size() > most_) {
       throw Error(
           ErrorKind::input,
@@ -377,7 +441,7 @@ class Search {
     }
   }
   void add_if_inside(std::int32_t p, std::int32_t v) {
-    const Point a = from(p), b = to(p), point = points_[v];
+    const Point a = from(p), b = to(p), point = places_[v];
     if (a.x < point.x && point.x < b.x && predicates_.orient(a, b, point) == 0) pairs_.emplace_back(p, v);
   }
 
@@ -386,6 +450,8 @@ class Search {
   const std::vector<Piece>& pieces_;
   std::size_t most_;
   bool of_vertices_ = false;
+  std::vector<Line> lines_;    // of pieces, by place
+  std::vector<Point> places_;  // of vertices, by place
   Ids piece_stack_, vertex_stack_;
   std::vector<double> inside_;
   std::vector<Spanning> chain_;
@@ -408,16 +474,6 @@ void add_inner_vertices_of_vertical(const Point* points, const std::vector<Piece
 }
 
 }  // namespace
-
-bool cross(const Predicates& predicates, const Point* points, Piece p, Piece q) {
-  const Point a = points[p.from], b = points[p.to], c = points[q.from], d = points[q.to];
-  if (std::max(a.x, c.x) > std::min(b.x, d.x) ||
-      std::max(std::min(a.y, b.y), std::min(c.y, d.y)) > std::min(std::max(a.y, b.y), std::max(c.y, d.y))) {
-    return false;
-  }
-  return predicates.orient(a, b, c) * predicates.orient(a, b, d) < 0 &&
-         predicates.orient(c, d, a) * predicates.orient(c, d, b) < 0;
-}
 
 Pairs crossing_pairs(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
                      std::size_t most) {

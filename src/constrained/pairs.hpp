@@ -30,7 +30,4 @@ Pairs crossing_pairs(const Predicates& predicates, const Point* points, const st
 Pairs inner_vertices(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
                      const std::vector<std::int32_t>& vertices);
 
-/// Whether two pieces cross.
-bool cross(const Predicates& predicates, const Point* points, Piece a, Piece b);
-
 }  // namespace flaunay::constrained

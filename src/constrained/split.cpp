@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include "constrained/constrained.hpp"
 #include "constrained/crossing.hpp"
 #include "constrained/lines.hpp"
-#include "constrained/segments.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/point_sets.hpp"
@@ -312,7 +312,9 @@ std::vector<Ids> segments_of_sets(const std::vector<std::size_t>& offsets, const
   std::vector<Ids> by_set(offsets.size() - 1);
   for (std::size_t s = 0; s < segments.size() / 2; ++s) {
     if (representatives[segments[2 * s]] == representatives[segments[2 * s + 1]]) continue;
-    by_set[set_of(offsets, segments[2 * s])].push_back(static_cast<std::int32_t>(s));
+    const auto end =
+        std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(segments[2 * s]));
+    by_set[static_cast<std::size_t>(end - offsets.begin()) - 1].push_back(static_cast<std::int32_t>(s));
   }
   return by_set;
 }
