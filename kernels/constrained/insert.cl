@@ -18,6 +18,11 @@
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
 // rows are marked by the round, which anyone may claim again.
 
+// Exact predicates are rare, and compiling each where it may be called takes long.
+#ifndef __cplusplus
+#define OUT_OF_LINE __attribute__((noinline))
+#endif
+
 #include "shared/codes.h"
 #include "shared/halfedges.h"
 #include "shared/language.h"

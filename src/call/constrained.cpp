@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "call/constrain.hpp"
+#include "call/device_mesh.hpp"
 #include "call/errors.hpp"
 #include "call/handles.hpp"
 #include "call/host_call.hpp"
@@ -59,7 +61,7 @@ ConstrainedTriangulation compute(call::Implementation& self, const double* coord
   static_cast<Triangulation&>(result) = call::triangulate(self, {coordinates, nullptr}, offsets, plain);
 
   const double begin = host::now();
-  constrained::Result edges = constrained::constrain(coordinates, offsets, result, segments);
+  constrained::Result edges = call::constrain(self, coordinates, offsets, result, segments, options);
   result.triangles = std::move(edges.triangles);
   result.neighbors = std::move(edges.neighbors);
   result.constrained = std::move(edges.constrained);
@@ -70,7 +72,9 @@ ConstrainedTriangulation compute(call::Implementation& self, const double* coord
   result.edge_segments =
       segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
   result.added_offsets.assign(offsets.size(), 0);
-  if (options.halfedges) geometry::write_halfedges(options, result);
+  result.halfedges = std::move(edges.halfedges);
+  if (result.halfedges.empty()) geometry::write_halfedges(options, result);
+  if (!options.neighbors) result.neighbors.clear();
   const double seconds = host::now() - begin;
   result.statistics.seconds += seconds;
   result.statistics.phases.push_back({"constrain", seconds});
