@@ -45,6 +45,13 @@ struct Rank {
   std::size_t below, not_above;
 };
 
+[[noreturn]] void throw_too_many(std::size_t most) {
+  throw Error(
+      ErrorKind::input,
+      fmt::format("segments cross at more than {} places, for which memory or 32-bit indices do not suffice",
+                  most));
+}
+
 // Whether two pieces have exactly one common point, which is inside of both.
 bool cross(const Predicates& predicates, const Line& p, const Line& q) {
   const auto [a, b] = p;
@@ -434,11 +441,8 @@ class Search {
   void add_if_crossing(std::int32_t p, std::int32_t q) {
     if (!cross(predicates_, lines_[p], lines_[q])) return;
     pairs_.emplace_back(p, q);
-    if (pairs_.size() > most_) {
-      throw Error(
-          ErrorKind::input,
-          fmt::format("segments cross at more than {} places, which is too much to split them", most_));
-    }
+    // Few pairs are found twice.
+    if (pairs_.size() / 2 > most_) throw_too_many(most_);
   }
   void add_if_inside(std::int32_t p, std::int32_t v) {
     const Point a = from(p), b = to(p), point = places_[v];
@@ -482,6 +486,7 @@ Pairs crossing_pairs(const Predicates& predicates, const Point* points, const st
   Pairs pairs = search.take();
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  if (pairs.size() > most) throw_too_many(most);
   return pairs;
 }
 

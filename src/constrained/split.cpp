@@ -375,11 +375,11 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
   result.pieces.reserve(ends.size());
   result.piece_offsets.assign(1, 0);
   for (std::size_t s = 0; s < counts.size(); ++s) {
-    const auto begin = ends.begin() + static_cast<std::ptrdiff_t>(place[s]);
-    if (counts[s] == 0) {
-      result.pieces.insert(result.pieces.end(), {segments[2 * s], segments[2 * s + 1]});
-    } else {
-      result.pieces.insert(result.pieces.end(), begin, begin + static_cast<std::ptrdiff_t>(2 * counts[s]));
+    const std::int32_t from = segments[2 * s], to = segments[2 * s + 1];
+    const bool backward = rank[sets.representatives[to]] < rank[sets.representatives[from]];
+    if (counts[s] == 0) result.pieces.insert(result.pieces.end(), {from, to});
+    for (std::size_t e = place[s]; e < place[s] + 2 * counts[s]; e += 2) {
+      result.pieces.insert(result.pieces.end(), {ends[backward ? e + 1 : e], ends[backward ? e : e + 1]});
     }
     result.piece_offsets.push_back(static_cast<std::int32_t>(result.pieces.size() / 2));
   }

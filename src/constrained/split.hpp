@@ -18,9 +18,9 @@ struct Split {
   /// As in ConstrainedTriangulation.
   std::vector<double> added_points;
   std::vector<std::size_t> added_offsets;
-  /// Pieces that do not cross: 2 points per piece, in the direction from the lexicographically smaller end of
-  /// their segment to the other one. Added point k has the index n + k. Pieces can overlap, and go through
-  /// points.
+  /// Pieces that do not cross: 2 points per piece. Those of a segment follow each other from its
+  /// lexicographically smaller end to the other one; each has the direction of its segment. Added point k has
+  /// the index n + k. Pieces can overlap, and go through points.
   std::vector<std::int32_t> pieces;
   /// segments + 1 values: segment s has the pieces [piece_offsets[s], piece_offsets[s + 1]).
   std::vector<std::int32_t> piece_offsets;
