@@ -40,13 +40,13 @@ TEST(SmallSplitCall, SeveralSets) {
     constraints.segment_count = segments.size() / 2;
     ConstrainedOptions options;
     options.crossings = Crossings::split;
-    options.neighbors = true;
     const ConstrainedTriangulation result =
         SharedTriangulator::get().constrained(points.data(), offsets, constraints, options);
 
     const constrained::Split split = constrained::split(points.data(), offsets, segments);
     const constrained::AllPoints all = constrained::join_added(points.data(), offsets, split);
-    const Triangulation delaunay = delaunay_of(all.coordinates, all.offsets);
+    const Triangulation delaunay =
+        SharedTriangulator::get().triangulate(all.coordinates.data(), all.offsets, Options{});
     EXPECT_EQ(result.added_points, split.added_points);
     EXPECT_EQ(result.added_offsets, split.added_offsets);
     EXPECT_EQ(result.piece_offsets, split.piece_offsets);
@@ -90,6 +90,7 @@ TEST(SmallSplitCall, CrossingsAreAnErrorUnlessTheyAreSplit) {
   EXPECT_THROW(SharedTriangulator::get().constrained(points.data(), 4, constraints, options), Error);
   options.crossings = Crossings::split;
   options.halfedges = true;
+  options.neighbors = false;
   const ConstrainedTriangulation result =
       SharedTriangulator::get().constrained(points.data(), 4, constraints, options);
   EXPECT_EQ(result.added_points, (Coordinates{1, 1}));
