@@ -202,12 +202,12 @@ def as_points(given: ArrayLike) -> FloatArray:
     return points
 
 
-def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
+def as_offsets(given: npt.ArrayLike, name: str = "offsets") -> npt.NDArray[np.int64]:
     """Offsets of sets; UsageError unless they are a list of integers."""
-    array = _as_array(given, "segments")
+    array = _as_array(given, name)
     if array.ndim != 1 or array.dtype.kind not in "iu":
         raise UsageError(
-            f"segments must be integers in one dimension, not {array.dtype} of shape {array.shape}"
+            f"{name} must be integers in one dimension, not {array.dtype} of shape {array.shape}"
         )
     return np.ascontiguousarray(array, dtype=np.int64)
 

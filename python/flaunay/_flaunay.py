@@ -90,20 +90,22 @@ def _as_doubles(values: npt.NDArray[Any]) -> _Doubles:
     return np.ascontiguousarray(values)
 
 
-def _as_offsets(segments: Optional[_Offsets], n: int) -> tuple[Optional[_Offsets], int]:
+def _as_offsets(
+    given: Optional[_Offsets], n: int, name: str = "offsets", what: str = "points"
+) -> tuple[Optional[_Offsets], int]:
     """The sets' offsets for n points, and the number of sets; None means one set.
 
     Where they decrease, the library says so.
     """
-    if segments is None:
+    if given is None:
         return None, 0
-    if len(segments) == 0:
-        raise UsageError("segments need one offset at least, 0")
-    offsets = np.array(segments, _INT64)  # a copy, which does not change any more
+    if len(given) == 0:
+        raise UsageError(f"{name} must have one number at least, 0")
+    offsets = np.array(given, _INT64)  # a copy, which does not change any more
     if offsets.min() < 0:
-        raise UsageError("segments must begin with 0 and not decrease")
+        raise UsageError(f"{name} must begin with 0 and not decrease")
     if offsets[-1] != n:
-        raise UsageError(f"segments end with {offsets[-1]}, but there are {n} points")
+        raise UsageError(f"{name} end with {offsets[-1]}, but there are {n} {what}")
     return offsets, len(offsets) - 1
 
 
@@ -263,7 +265,7 @@ class _Triangulation(Handle):
 
 
 def triangulate_without_device(
-    points: _Doubles, segments: Optional[_Offsets], mode: str, wanted: set[str]
+    points: _Doubles, given_offsets: Optional[_Offsets], mode: str, wanted: set[str]
 ) -> dict[str, Any]:
     """Triangulates points in a mode that runs on the host. wanted: names of the optional arrays."""
     n = _count_points(points)
@@ -271,7 +273,7 @@ def triangulate_without_device(
     parts = _parts_of(wanted) | PARTS["triangles"]
     options = _options_for(mode, parts)
     points = _as_doubles(points)
-    offsets, sets = _as_offsets(segments, n)
+    offsets, sets = _as_offsets(given_offsets, n)
     result = _Triangulation()
     check(
         library.triangulate_on_host(
@@ -325,7 +327,7 @@ class Triangulator(DeviceHandle):
             return self._known(library.triangulator_capacity(self.pointer) or None)
 
     def triangulate(
-        self, points: FloatArray, segments: Optional[_Offsets], mode: str, wanted: set[str]
+        self, points: FloatArray, given_offsets: Optional[_Offsets], mode: str, wanted: set[str]
     ) -> dict[str, Any]:
         """Triangulates points in host memory. wanted: names of the optional arrays."""
         n = _count_points(points)
@@ -337,7 +339,7 @@ class Triangulator(DeviceHandle):
             coordinates = cast(FloatArray, np.ascontiguousarray(points))
         else:
             call, coordinates = library.triangulate, _as_doubles(points)
-        offsets, sets = _as_offsets(segments, n)
+        offsets, sets = _as_offsets(given_offsets, n)
         result = _Triangulation()
         with self.turn:
             check(
@@ -404,8 +406,8 @@ class DevicePoints:
         count: int,
         single: bool,
         first: int,
-        segments: Optional[_Offsets] = None,
-        device_segments: int = 0,
+        given_offsets: Optional[_Offsets] = None,
+        device_offsets: int = 0,
         sets: int = 0,
     ) -> None:
         self.struct = _library.DevicePoints(
@@ -413,10 +415,10 @@ class DevicePoints:
             count=count,
             precision=_library.FLOAT32 if single else _library.FLOAT64,
             first=first,
-            device_offsets=device_segments or None,
+            device_offsets=device_offsets or None,
             sets=sets,
         )
-        self._offsets, host_sets = _as_offsets(segments, count)
+        self._offsets, host_sets = _as_offsets(given_offsets, count)
         if self._offsets is not None:
             self.struct.offsets, self.struct.sets = _address_of(self._offsets), host_sets
 

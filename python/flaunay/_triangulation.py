@@ -14,7 +14,7 @@ from flaunay._arrays import (
     ArrayLike,
     FloatArray,
     as_points,
-    as_segments,
+    as_offsets,
     check_out,
     names_of,
     summary,
@@ -136,7 +136,7 @@ def arrays_of_mesh(
 
 def triangulate(
     points: ArrayLike,
-    segments: Optional[npt.ArrayLike] = None,
+    offsets: Optional[npt.ArrayLike] = None,
     device: Optional[str] = None,
     neighbors: bool = True,
     halfedges: bool = False,
@@ -153,8 +153,8 @@ def triangulate(
     points : array_like, shape (n, 2)
         Coordinates. C-contiguous arrays of float64 and float32 are taken as they are; other numbers
         become float64, and must be one exactly.
-    segments : array_like of int, shape (sets + 1,), optional
-        Set s has the points ``segments[s]`` to ``segments[s + 1]``. Begins with 0, does not decrease
+    offsets : array_like of int, shape (sets + 1,), optional
+        Set s has the points ``offsets[s]`` to ``offsets[s + 1]``. Begins with 0, does not decrease
         and ends with n. Without it, there is one set.
     device : str, optional
         A part of a device's or platform's name, ``"#k"``, the k-th of `devices`, or ``"host"`` for the
@@ -177,7 +177,7 @@ def triangulate(
     Raises
     ------
     UsageError
-        For a wrong shape, what is no number, segments that are none, an unknown mode, arrays in `out`
+        For a wrong shape, what is no number, offsets that are none, an unknown mode, arrays in `out`
         that results cannot be written to.
     InputError
         For a point that is not finite, magnitudes too different to be exact, or too many points.
@@ -203,12 +203,12 @@ def triangulate(
 
     Two sets at once, the second of them without triangles:
 
-    >>> meshes = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5], [6, 6]], segments=[0, 3, 5])
+    >>> meshes = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5], [6, 6]], offsets=[0, 3, 5])
     >>> meshes.triangle_offsets
     array([0, 1, 1])
     """
     coordinates = as_points(points)
-    offsets = None if segments is None else as_segments(segments)
+    offsets = None if offsets is None else as_offsets(offsets)
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     places = None if out is None else _arrays_of(out, wanted)
     result = arrays_of_mesh(coordinates, offsets, wanted, device, mode)
