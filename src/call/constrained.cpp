@@ -10,8 +10,8 @@
 #include "call/host_call.hpp"
 #include "call/implementation.hpp"
 #include "constrained/constrained.hpp"
-#include "geometry/magnitudes.hpp"
 #include "geometry/halfedges.hpp"
+#include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
 
 namespace flaunay {

@@ -58,6 +58,38 @@ struct ConstrainedOptions : Options {
   bool labels = false;                     ///< compute ConstrainedTriangulation::depths and regions
 };
 
+/// What becomes of places that are in several polygons of a map.
+enum class Overlaps {
+  first,  ///< they belong to the polygon with the smallest index
+  error,  ///< Error(input), which names a triangle and two of its polygons
+};
+
+/// Polygons with holes, as rings with offsets, in the layout of GeoArrow. A ring may repeat its first point
+/// at its end, and may have any orientation. Rings without area, such as those of fewer than 3 points, have
+/// no triangles. A polygon may have several outer rings.
+struct Polygons {
+  const double* coordinates = nullptr;  ///< x and y per point; the array belongs to the caller
+  /// rings + 1 values: ring r has points [ring_offsets[r], ring_offsets[r + 1]). It has a segment from each
+  /// of its points to the next one, and from the last one to the first. Segment i begins at point i.
+  std::vector<std::size_t> ring_offsets;
+  /// polygons + 1 values: polygon p has rings [polygon_offsets[p], polygon_offsets[p + 1]).
+  std::vector<std::size_t> polygon_offsets;
+};
+
+/// The options of a triangulation of polygons. Unlike for segments, only what is inside is kept, and insides
+/// are those of the even-odd rule, unless these options say otherwise.
+struct PolygonOptions : ConstrainedOptions {
+  PolygonOptions() {
+    outside = Outside::holes;
+    fill_rule = FillRule::even_odd;
+  }
+  /// Makes one map of all polygons: a single set, in which polygons share the edges of common borders.
+  /// ConstrainedTriangulation::polygons says which triangle is in which polygon. The fill rule decides for
+  /// each polygon what is inside of it, and must not be nesting. Depths are numbers of polygons.
+  bool map = false;
+  Overlaps overlaps = Overlaps::first;  ///< what becomes of places that are in several polygons of a map
+};
+
 /// The triangulations of one or more point sets with constraints. If triangles are left out, neighbours and
 /// half-edges are -1 there; the hull remains that of the points.
 struct ConstrainedTriangulation : Triangulation {
@@ -82,8 +114,10 @@ struct ConstrainedTriangulation : Triangulation {
   /// One per triangle: its depth by ConstrainedOptions::fill_rule. Empty unless ConstrainedOptions::labels.
   std::vector<std::int32_t> depths;
   /// One per triangle: a region is what is connected without crossing a constraint. Regions are numbered from
-  /// 0 by their first triangles. Empty unless ConstrainedOptions::labels.
+  /// 0 by their first triangles, over all sets. Empty unless ConstrainedOptions::labels.
   std::vector<std::int32_t> regions;
+  /// One per triangle: the polygon that it is in; -1 if it is in none. Empty unless PolygonOptions::map.
+  std::vector<std::int32_t> polygons;
 };
 
 }  // namespace flaunay

@@ -164,6 +164,8 @@ class DeviceBuffer;
 // Types for triangulations with constraints. Include flaunay/constrained.hpp to use them.
 struct ConstrainedOptions;
 struct ConstrainedTriangulation;
+struct Polygons;
+struct PolygonOptions;
 struct Constraints;
 /// Returns Enqueue{}: the triangulator's own queue, without waiting for events. O(1).
 FLAUNAY_API const Enqueue& own_queue() noexcept;
@@ -284,6 +286,12 @@ class FLAUNAY_API Triangulator {
   /// Triangulates many sets with segments at once.
   ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
                                        const Constraints& constraints, const ConstrainedOptions& options);
+  /// Triangulates the insides of polygons, all at once. Each polygon is a set of its own, or all are one
+  /// (PolygonOptions::map). Throws Error(usage) if the offsets do not fit each other, and otherwise what the
+  /// call for sets with segments throws; if segments cross, the message names the polygon, too.
+  ConstrainedTriangulation polygons(const Polygons& polygons);
+  /// Triangulates the insides of polygons, all at once.
+  ConstrainedTriangulation polygons(const Polygons& polygons, const PolygonOptions& options);
 
   /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
   /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them, on
