@@ -56,6 +56,8 @@ _ROWS = 1 << 14
 _SINGULAR = {
     "points": "point",
     "triangles": "triangle",
+    "constraint_edges": "constraint edge",
+    "polygons": "polygon",
     "hull_vertices": "hull vertex",
     "vertices": "vertex",
 }
@@ -138,6 +140,8 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     if is_masked(given):
         return _of_masked(given, name)
     library = type(given).__module__.partition(".")[0]
+    if hasattr(given, "why_no_array"):
+        raise UsageError(f"{name} {given.why_no_array}")
     try:
         if library == "pyarrow":
             return _of_arrow(given, name)
@@ -200,6 +204,14 @@ def as_points(given: ArrayLike) -> FloatArray:
     points = as_floats(given, "points")
     check_points_shape(points)
     return points
+
+
+def as_integers(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
+    """An array of integers, or an empty one; UsageError for anything else."""
+    array = _as_array(given, name)
+    if array.dtype.kind not in "iu" and array.size:
+        raise UsageError(f"{name} must be integers, not {array.dtype}")
+    return array
 
 
 def as_offsets(given: npt.ArrayLike, name: str = "offsets") -> npt.NDArray[np.int64]:

@@ -30,6 +30,7 @@ __version__: str = text_of(library.version())
 
 _INT32, _INT64 = np.dtype(np.int32), np.dtype(np.int64)
 _FLOAT64, _FLOAT32, _UINT8 = np.dtype(np.float64), np.dtype(np.float32), np.dtype(np.uint8)
+_BOOL = np.dtype(np.bool_)
 
 
 # ---- Arrays
@@ -238,30 +239,59 @@ def _parts_of(wanted: set[str]) -> int:
 # ---- Points and results in host memory
 
 
+def _arrays_of(owner: Handle, mesh: Any, parts: int) -> dict[str, Any]:
+    """What was computed, by its name; None if an array was not asked for."""
+    triangles, sets = mesh.triangle_count, mesh.set_count
+    rows = (triangles, 3)
+    return {
+        "triangles": _view(owner, mesh.triangles, rows, _INT32),
+        "neighbors": (
+            _view(owner, mesh.neighbors, rows, _INT32) if parts & PARTS["neighbors"] else None
+        ),
+        "halfedges": (
+            _view(owner, mesh.halfedges, (3 * triangles,), _INT32)
+            if parts & PARTS["halfedges"]
+            else None
+        ),
+        "hull": _view(owner, mesh.hull, (mesh.hull_count,), _INT32),
+        "representatives": _view(owner, mesh.representatives, (mesh.point_count,), _INT32),
+        "triangle_offsets": _view(owner, mesh.triangle_offsets, (sets + 1,), _INT64),
+        "hull_offsets": _view(owner, mesh.hull_offsets, (sets + 1,), _INT64),
+        "statistics": _statistics_of(mesh.statistics[0]),
+    }
+
+
 class _Triangulation(Handle):
     _destroy = library.triangulation_destroy
 
     def arrays(self, parts: int) -> dict[str, Any]:
-        """What was computed, by its name; None if an array was not asked for."""
-        mesh = library.triangulation_mesh(self.pointer)[0]
-        triangles, sets = mesh.triangle_count, mesh.set_count
-        rows = (triangles, 3)
-        return {
-            "triangles": _view(self, mesh.triangles, rows, _INT32),
-            "neighbors": (
-                _view(self, mesh.neighbors, rows, _INT32) if parts & PARTS["neighbors"] else None
-            ),
-            "halfedges": (
-                _view(self, mesh.halfedges, (3 * triangles,), _INT32)
-                if parts & PARTS["halfedges"]
-                else None
-            ),
-            "hull": _view(self, mesh.hull, (mesh.hull_count,), _INT32),
-            "representatives": _view(self, mesh.representatives, (mesh.point_count,), _INT32),
-            "triangle_offsets": _view(self, mesh.triangle_offsets, (sets + 1,), _INT64),
-            "hull_offsets": _view(self, mesh.hull_offsets, (sets + 1,), _INT64),
-            "statistics": _statistics_of(mesh.statistics[0]),
+        return _arrays_of(self, library.triangulation_mesh(self.pointer)[0], parts)
+
+
+class _Constrained(Handle):
+    _destroy = library.constrained_destroy
+
+    def arrays(self, parts: int, labels: bool) -> dict[str, Any]:
+        """What was computed, by its name."""
+        result = _arrays_of(self, library.constrained_mesh(self.pointer)[0], parts)
+        given = library.constrained_get_arrays(self.pointer)[0]
+        triangles, sets = len(result["triangles"]), len(result["triangle_offsets"]) - 1
+        shapes: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
+            "added_points": ((given.added_count, 2), _FLOAT64),
+            "added_offsets": ((sets + 1,), _INT64),
+            "constraint_edges": ((given.constraint_count, 2), _INT32),
+            "edge_segments": ((given.constraint_count,), _INT32),
+            "piece_offsets": ((given.segment_count + 1,), _INT32),
+            "piece_edges": ((given.piece_count, 2), _INT32),
+            "constrained": ((triangles, 3), _BOOL),
+            "depths": ((triangles,), _INT32),
+            "regions": ((triangles,), _INT32),
         }
+        for name, (shape, dtype) in shapes.items():
+            result[name] = _view(self, getattr(given, name), shape, dtype)
+        if not labels:
+            result["depths"] = result["regions"] = None
+        return result
 
 
 def triangulate_without_device(
@@ -354,6 +384,48 @@ class Triangulator(DeviceHandle):
                 )
             )
         return result.arrays(parts)
+
+    def triangulate_constrained(
+        self,
+        points: _Doubles,
+        given_offsets: Optional[_Offsets],
+        segments: _Indices,
+        holes: _Doubles,
+        hole_offsets: Optional[_Offsets],
+        rules: dict[str, int],
+        wanted: set[str],
+    ) -> dict[str, Any]:
+        """Triangulates points with segments. rules: members of flaunay_constraints that are no arrays."""
+        n = _count_points(points)
+        parts = _parts_of(wanted) | PARTS["triangles"]
+        offsets, sets = _as_offsets(given_offsets, n)
+        kept_holes, hole_sets = _as_offsets(hole_offsets, len(holes), "hole_offsets", "holes")
+        if kept_holes is not None and hole_sets != max(sets, 1):
+            raise UsageError(f"hole_offsets are of {hole_sets} sets, but there are {max(sets, 1)}")
+        points, holes = _as_doubles(points), _as_doubles(holes)
+        constraints = _library.Constraints(
+            segments=_address_of(segments),
+            segment_count=len(segments),
+            holes=_address_of(holes),
+            hole_count=len(holes),
+            hole_offsets=_address_or_none(kept_holes),
+            **rules,
+        )
+        result = _Constrained()
+        with self.turn:
+            check(
+                library.triangulate_constrained(
+                    self.pointer,
+                    _address_of(points),
+                    n,
+                    _address_or_none(offsets),
+                    sets,
+                    ctypes.byref(constraints),
+                    _options_for("blocks", parts),
+                    result.place,
+                )
+            )
+        return result.arrays(parts, bool(rules["labels"]))
 
 
 def _encoded(text: str) -> bytes:

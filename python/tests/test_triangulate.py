@@ -152,9 +152,7 @@ def test_many_sets(random, mode):
         assert np.array_equal(hull - offsets[s], alone.hull)
 
 
-@pytest.mark.parametrize(
-    "offsets", [[0, 5, 10], (0, 5, 10), range(0, 11, 5), np.uint8([0, 5, 10])]
-)
+@pytest.mark.parametrize("offsets", [[0, 5, 10], (0, 5, 10), range(0, 11, 5), np.uint8([0, 5, 10])])
 def test_offsets_of_any_integer_type(random, offsets):
     mesh = flaunay.triangulate(random.random((10, 2)), offsets=offsets)
     assert len(mesh.triangle_offsets) == 3
