@@ -1127,6 +1127,99 @@ static void test_bad_constraints(void) {
   flaunay_constrained_destroy(NULL);
 }
 
+// A square with a hole, whose ring repeats its first point, and a triangle.
+static const double kRings[] = {0, 0, 6, 0, 6, 6, 0, 6, 2, 2, 2, 4, 4, 4, 4, 2, 2, 2, 6, 0, 9, 3, 6, 6};
+static const size_t kRingOffsets[] = {0, 4, 9, 12}, kPolygonOffsets[] = {0, 2, 3};
+static const flaunay_polygons kPolygons = {.coordinates = kRings,
+                                           .ring_offsets = kRingOffsets,
+                                           .ring_count = 3,
+                                           .polygon_offsets = kPolygonOffsets,
+                                           .polygon_count = 2};
+
+static void test_polygons(void) {
+  flaunay_constrained* result = NULL;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &kPolygons, NULL, &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  CHECK(mesh->point_count == 12 && mesh->set_count == 2 && mesh->triangle_count == 9);
+  CHECK(mesh->triangle_offsets[1] == 8 && mesh->triangle_offsets[2] == 9);
+  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  CHECK(arrays->segment_count == 12 && arrays->constraint_count == 11 && arrays->polygons == NULL);
+  flaunay_constrained_destroy(result);
+
+  flaunay_polygons given = kPolygons;
+  given.map = 1;
+  given.labels = 1;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &given, NULL, &result) == FLAUNAY_SUCCESS);
+  mesh = flaunay_constrained_mesh(result);
+  arrays = flaunay_constrained_get_arrays(result);
+  CHECK(mesh->set_count == 1 && mesh->triangle_count == 9 && arrays->constraint_count == 10);
+  int of_second = 0;
+  for (size_t t = 0; t < 9; ++t) of_second += arrays->polygons[t] == 1;
+  CHECK(of_second == 1 && arrays->depths[0] == 1 && arrays->regions[0] == 0);
+  flaunay_constrained_destroy(result);
+
+  // Rings alone: the hole is a polygon of its own.
+  flaunay_polygons rings = kPolygons;
+  rings.polygon_offsets = NULL;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &rings, NULL, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_constrained_mesh(result)->set_count == 3);
+  CHECK(flaunay_constrained_mesh(result)->triangle_count == 5);
+  flaunay_constrained_destroy(result);
+
+  // What is outside and in holes may be kept.
+  flaunay_polygons kept = kPolygons;
+  kept.has_outside = 1;
+  kept.has_fill_rule = 1;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &kept, NULL, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_constrained_mesh(result)->triangle_count == 11);
+  flaunay_constrained_destroy(result);
+}
+
+static flaunay_status polygons_with(flaunay_polygons given) {
+  flaunay_constrained* result = NULL;
+  const flaunay_status status = flaunay_triangulate_polygons(triangulator, &given, NULL, &result);
+  flaunay_constrained_destroy(result);
+  return status;
+}
+
+static void test_bad_polygons(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const flaunay_polygons none = {0};
+  CHECK(polygons_with(none) == FLAUNAY_SUCCESS);
+  flaunay_polygons given = kPolygons;
+  given.ring_offsets = NULL;
+  CHECK(fails(polygons_with(given), usage, "rings"));
+  given = kPolygons;
+  given.coordinates = NULL;
+  CHECK(fails(polygons_with(given), usage, "null"));
+  given = kPolygons;
+  given.polygon_count = 1;
+  CHECK(polygons_with(given) == usage);
+  given = kPolygons;
+  given.overlaps = 2;
+  CHECK(fails(polygons_with(given), usage, "flaunay_overlaps"));
+  given = kPolygons;
+  given.crossings = 2;
+  CHECK(fails(polygons_with(given), usage, "flaunay_crossings"));
+  given = kPolygons;
+  given.reserved[1] = 1;
+  CHECK(fails(polygons_with(given), usage, "flaunay_polygons"));
+  given = kPolygons;
+  given.outside = given.fill_rule = 3;
+  CHECK(polygons_with(given) == FLAUNAY_SUCCESS);
+  given.has_outside = 1;
+  CHECK(fails(polygons_with(given), usage, "flaunay_outside"));
+  given.has_outside = 0;
+  given.has_fill_rule = 1;
+  CHECK(fails(polygons_with(given), usage, "flaunay_fill_rule"));
+  const double bow[] = {0, 0, 2, 2, 2, 0, 0, 2};
+  const flaunay_polygons crossing = {.coordinates = bow, .ring_offsets = kRingOffsets, .ring_count = 1};
+  CHECK(fails(polygons_with(crossing), FLAUNAY_ERROR_INPUT, "cross"));
+  flaunay_constrained* result = NULL;
+  CHECK(flaunay_triangulate_polygons(triangulator, NULL, NULL, &result) == usage);
+  CHECK(flaunay_triangulate_polygons(triangulator, &kPolygons, NULL, NULL) == usage);
+}
+
 static void test_clipped_voronoi(void) {
   const double box[] = {0, 0, 3, 0, 3, 3, 0, 3}, bow[] = {0, 0, 3, 3, 3, 0, 0, 3};
   flaunay_triangulation* mesh = NULL;
@@ -1890,6 +1983,8 @@ static void test_all(void) {
   test_constrained();
   test_constrained_without_constraints();
   test_bad_constraints();
+  test_polygons();
+  test_bad_polygons();
   test_clipped_voronoi();
   test_clipped_voronoi_on_device();
   test_relax();

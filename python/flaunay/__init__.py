@@ -36,6 +36,7 @@ from flaunay._interpolate import (
 )
 from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
+from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._triangulate import triangulate
 from flaunay._triangulation import Triangulation, modes
 from flaunay._triangulators import devices
@@ -59,6 +60,7 @@ __all__ = [
     "LinearInterpolator",
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
+    "PolygonTriangulation",
     "Triangulation",
     "UsageError",
     "Voronoi",
@@ -67,6 +69,7 @@ __all__ = [
     "devices",
     "griddata",
     "modes",
+    "polygons",
     "relax",
     "relax_device",
     "triangulate",

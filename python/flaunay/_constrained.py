@@ -226,6 +226,17 @@ class ConstrainedTriangulation(Triangulation, TriangleExports):
         )
 
 
+def collections_of(
+    result: ConstrainedTriangulation, triangles: Indices, owners: Indices, count: int
+) -> npt.NDArray[Any]:
+    """Collections of triangles as polygons of Shapely. owners: that of each triangle, in increasing order."""
+    shapely = optional("shapely", f"{type(result).__name__}.to_shapely")
+    shapes = shapely.polygons(result.points[triangles[:, [0, 1, 2, 0]]])
+    collections: npt.NDArray[Any] = np.full(count, shapely.GeometryCollection(), object)
+    shapely.geometrycollections(shapes, indices=owners.astype(np.intp), out=collections)
+    return collections
+
+
 def _unique_pairs(first: Indices, second: Indices, n: int) -> Indices:
     """Pairs of indices of n points without order, each once, sorted, the smaller one first."""
     low, high = np.minimum(first, second).astype(np.int64), np.maximum(first, second)
@@ -234,7 +245,7 @@ def _unique_pairs(first: Indices, second: Indices, n: int) -> Indices:
     return pairs
 
 
-def _number_of(names: Mapping[str, int], given: object, name: str) -> int:
+def number_of(names: Mapping[str, int], given: object, name: str) -> int:
     """The number of a choice; UsageError for what is none."""
     if not isinstance(given, str) or given not in names:
         choices = ", ".join(repr(key) for key in names)
@@ -245,9 +256,9 @@ def _number_of(names: Mapping[str, int], given: object, name: str) -> int:
 def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict[str, int]:
     """The members of flaunay_constraints that are no arrays; UsageError for unknown names."""
     return {
-        "crossings": _number_of(CROSSINGS, crossings, "crossings"),
-        "outside": _number_of(OUTSIDE, outside, "outside"),
-        "fill_rule": _number_of(FILL_RULES, fill_rule, "fill_rule"),
+        "crossings": number_of(CROSSINGS, crossings, "crossings"),
+        "outside": number_of(OUTSIDE, outside, "outside"),
+        "fill_rule": number_of(FILL_RULES, fill_rule, "fill_rule"),
         "labels": int(bool(labels)),
     }
 
@@ -305,4 +316,5 @@ def arrays_of_constrained(
     result = triangulator.triangulate_constrained(
         coordinates, offsets, pairs, places, sets_of_holes, rules, wanted
     )
+    del result["polygons"]
     return with_points(result, coordinates)

@@ -271,8 +271,8 @@ class _Triangulation(Handle):
 class _Constrained(Handle):
     _destroy = library.constrained_destroy
 
-    def arrays(self, parts: int, labels: bool) -> dict[str, Any]:
-        """What was computed, by its name."""
+    def arrays(self, parts: int, labels: bool, is_map: bool = False) -> dict[str, Any]:
+        """What was computed, by its name; None if an array was not asked for."""
         result = _arrays_of(self, library.constrained_mesh(self.pointer)[0], parts)
         given = library.constrained_get_arrays(self.pointer)[0]
         triangles, sets = len(result["triangles"]), len(result["triangle_offsets"]) - 1
@@ -286,11 +286,14 @@ class _Constrained(Handle):
             "constrained": ((triangles, 3), _BOOL),
             "depths": ((triangles,), _INT32),
             "regions": ((triangles,), _INT32),
+            "polygons": ((triangles,), _INT32),
         }
         for name, (shape, dtype) in shapes.items():
             result[name] = _view(self, getattr(given, name), shape, dtype)
         if not labels:
             result["depths"] = result["regions"] = None
+        if not is_map:
+            result["polygons"] = None
         return result
 
 
@@ -426,6 +429,41 @@ class Triangulator(DeviceHandle):
                 )
             )
         return result.arrays(parts, bool(rules["labels"]))
+
+    def triangulate_polygons(
+        self,
+        points: _Doubles,
+        ring_offsets: _Offsets,
+        polygon_offsets: _Offsets,
+        rules: dict[str, int],
+        wanted: set[str],
+    ) -> dict[str, Any]:
+        """Triangulates polygons. rules: members of flaunay_polygons that are no arrays."""
+        parts = _parts_of(wanted) | PARTS["triangles"]
+        rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
+        outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
+        points = _as_doubles(points)
+        polygons = _library.Polygons(
+            coordinates=_address_of(points),
+            ring_offsets=_address_or_none(rings),
+            ring_count=ring_count,
+            polygon_offsets=_address_or_none(outer),
+            polygon_count=count,
+            has_outside=1,
+            has_fill_rule=1,
+            **rules,
+        )
+        result = _Constrained()
+        with self.turn:
+            check(
+                library.triangulate_polygons(
+                    self.pointer,
+                    ctypes.byref(polygons),
+                    _options_for("blocks", parts),
+                    result.place,
+                )
+            )
+        return result.arrays(parts, bool(rules["labels"]), bool(rules["map"]))
 
 
 def _encoded(text: str) -> bytes:

@@ -164,6 +164,11 @@ def test_functions(name):
             {k.upper(): v for k, v in _library.FILL_RULES.items()},
         ),
         (
+            "flaunay_overlaps",
+            "FLAUNAY_OVERLAPS_",
+            {k.upper(): v for k, v in _library.OVERLAPS.items()},
+        ),
+        (
             "flaunay_precision",
             "FLAUNAY_",
             {"FLOAT64": _library.FLOAT64, "FLOAT32": _library.FLOAT32},

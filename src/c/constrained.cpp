@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <numeric>
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
@@ -33,6 +34,7 @@ flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   view.constrained = elements(result.constrained);
   view.depths = elements(result.depths);
   view.regions = elements(result.regions);
+  view.polygons = elements(result.polygons);
   return view;
 }
 
@@ -48,6 +50,7 @@ static_assert(FLAUNAY_OUTSIDE_HULL == static_cast<int>(Outside::hull) &&
               FLAUNAY_OUTSIDE_HOLES == static_cast<int>(Outside::holes));
 static_assert(FLAUNAY_FILL_RULE_EVEN_ODD == static_cast<int>(FillRule::even_odd) &&
               FLAUNAY_FILL_RULE_WINDING == static_cast<int>(FillRule::winding));
+static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
 
 Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
   Constraints result;
@@ -61,18 +64,54 @@ Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
   return result;
 }
 
-ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
+// The options that are the same for segments and for polygons, without the defaults that differ.
+template <typename Result, typename Given>
+Result to_options(const Given& given, const flaunay_options* options) {
   const research::Options plain = c::to_options(options);
   if (plain.mode != research::Mode::blocks) {
     throw Error(ErrorKind::usage, fmt::format("mode {} has no constraints; mode {} has",
                                               to_string(plain.mode), to_string(research::Mode::blocks)));
   }
-  ConstrainedOptions result;
+  Result result;
   static_cast<Options&>(result) = plain;
   result.crossings = to_enum<Crossings>(given.crossings, 2, "flaunay_crossings");
-  result.outside = to_enum<Outside>(given.outside, 3, "flaunay_outside");
-  result.fill_rule = to_enum<FillRule>(given.fill_rule, 3, "flaunay_fill_rule");
   result.labels = given.labels != 0;
+  return result;
+}
+
+Outside to_outside(int outside) { return to_enum<Outside>(outside, 3, "flaunay_outside"); }
+FillRule to_fill_rule(int rule) { return to_enum<FillRule>(rule, 3, "flaunay_fill_rule"); }
+
+ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
+  auto result = to_options<ConstrainedOptions>(given, options);
+  result.outside = to_outside(given.outside);
+  result.fill_rule = to_fill_rule(given.fill_rule);
+  return result;
+}
+
+PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_options* options) {
+  auto result = to_options<PolygonOptions>(given, options);
+  if (given.has_outside != 0) result.outside = to_outside(given.outside);
+  if (given.has_fill_rule != 0) result.fill_rule = to_fill_rule(given.fill_rule);
+  result.map = given.map != 0;
+  result.overlaps = to_enum<Overlaps>(given.overlaps, 2, "flaunay_overlaps");
+  return result;
+}
+
+Polygons to_polygons(const flaunay_polygons& given) {
+  Polygons result;
+  result.coordinates = given.coordinates;
+  result.ring_offsets = {0};
+  if (given.ring_count > 0) {
+    const std::size_t* const first = &required(given.ring_offsets, "the offsets of rings");
+    result.ring_offsets.assign(first, first + given.ring_count + 1);
+  }
+  if (given.polygon_offsets != nullptr) {
+    result.polygon_offsets.assign(given.polygon_offsets, given.polygon_offsets + given.polygon_count + 1);
+  } else {
+    result.polygon_offsets.resize(given.ring_count + 1);
+    std::iota(result.polygon_offsets.begin(), result.polygon_offsets.end(), 0);
+  }
   return result;
 }
 
@@ -106,6 +145,18 @@ flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulato
     return std::make_unique<flaunay_constrained>(
         cpp.constrained(coordinates, sets_of_points, to_constraints(given, c::set_count(sets_of_points)),
                         to_constrained_options(given, options)));
+  });
+}
+
+flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
+                                            const flaunay_polygons* polygons, const flaunay_options* options,
+                                            flaunay_constrained** result) {
+  return create(result, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const flaunay_polygons& given = required(polygons, "the polygons");
+    c::check_reserved(given, "flaunay_polygons");
+    return std::make_unique<flaunay_constrained>(
+        cpp.polygons(to_polygons(given), to_polygon_options(given, options)));
   });
 }
 

@@ -146,6 +146,12 @@ typedef enum flaunay_fill_rule {
   FLAUNAY_FILL_RULE_WINDING = 2
 } flaunay_fill_rule;
 
+/// What becomes of places that are in several polygons of a map.
+typedef enum flaunay_overlaps {
+  FLAUNAY_OVERLAPS_FIRST = 0,  ///< they belong to the polygon with the smallest index
+  FLAUNAY_OVERLAPS_ERROR = 1  ///< FLAUNAY_ERROR_INPUT, whose message names a triangle and two of its polygons
+} flaunay_overlaps;
+
 /// How values are computed between points.
 typedef enum flaunay_interpolation {
   FLAUNAY_INTERPOLATION_LINEAR = 0,   ///< linearly in each triangle; continuous
@@ -412,6 +418,35 @@ typedef struct flaunay_constraints {
   uintptr_t reserved[8];  ///< 0
 } flaunay_constraints;
 
+/// Polygons with holes, as rings with offsets, in the layout of GeoArrow. {0}: no polygons. A ring may repeat
+/// its first point at its end, and may have any orientation. Rings without area, such as those of fewer than
+/// 3 points, have no triangles. A polygon may have several outer rings.
+typedef struct flaunay_polygons {
+  const double* coordinates;  ///< x and y per point
+  /// ring_count + 1 values from 0: ring r has points [ring_offsets[r], ring_offsets[r + 1]). It has a segment
+  /// from each of its points to the next one, and from the last one to the first. Segment i begins at point
+  /// i. NULL if there are no rings.
+  const size_t* ring_offsets;
+  size_t ring_count;  ///< number of rings
+  /// polygon_count + 1 values from 0 to ring_count: polygon p has rings
+  /// [polygon_offsets[p], polygon_offsets[p + 1]). NULL: each ring is a polygon, and polygon_count is
+  /// ignored.
+  const size_t* polygon_offsets;
+  size_t polygon_count;  ///< number of polygons
+  int crossings;         ///< a flaunay_crossings
+  int has_outside;       ///< other than 0: `outside` counts; 0: FLAUNAY_OUTSIDE_HOLES, what is inside is kept
+  int outside;           ///< a flaunay_outside
+  int has_fill_rule;     ///< other than 0: `fill_rule` counts; 0: FLAUNAY_FILL_RULE_EVEN_ODD
+  int fill_rule;         ///< a flaunay_fill_rule
+  int labels;            ///< other than 0: depths and regions are computed
+  /// Other than 0: all polygons are one map: a single set, in which polygons share the edges of common
+  /// borders. The result says which triangle is in which polygon. The fill rule decides for each polygon what
+  /// is inside of it, and must not be nesting. Depths are numbers of polygons.
+  int map;
+  int overlaps;           ///< a flaunay_overlaps
+  uintptr_t reserved[8];  ///< 0
+} flaunay_polygons;
+
 /// What a constrained triangulation has besides its triangles. Arrays are NULL if they are empty.
 typedef struct flaunay_constrained_arrays {
   size_t added_count;           ///< a, the number of points that splitting added
@@ -435,6 +470,7 @@ typedef struct flaunay_constrained_arrays {
   /// t values: a region is what is connected without crossing a constraint. Regions are numbered from 0 by
   /// their first triangles. NULL without labels.
   const int32_t* regions;
+  const int32_t* polygons;  ///< t values: the polygon of a map, -1 if it is in none; NULL if there is no map
 } flaunay_constrained_arrays;
 
 /// A round of chunks.
@@ -666,6 +702,14 @@ FLAUNAY_API flaunay_status flaunay_triangulate_constrained(flaunay_triangulator*
                                                            const flaunay_constraints* constraints,
                                                            const flaunay_options* options,
                                                            flaunay_constrained** result);
+/// Triangulates the insides of polygons, all at once. Each polygon is a set of its own, or all are one map.
+/// options: as for flaunay_triangulate_constrained. FLAUNAY_ERROR_USAGE if the offsets do not fit each other;
+/// the other errors are those of flaunay_triangulate_constrained. If segments cross, the message names the
+/// polygon, too.
+FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
+                                                        const flaunay_polygons* polygons,
+                                                        const flaunay_options* options,
+                                                        flaunay_constrained** result);
 /// Frees the arrays.
 FLAUNAY_API void flaunay_constrained_destroy(flaunay_constrained* result);
 /// The triangles with their neighbours and the other arrays of a triangulation. Where triangles are left out,
