@@ -1,12 +1,12 @@
 // The public calls for triangulations with constraints.
-#include "flaunay/constrained.hpp"
+#include "call/constrained.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "call/errors.hpp"
-#include "call/handles.hpp"
+#include "call/device_mesh.hpp"
+#include "call/domains.hpp"
 #include "call/host_call.hpp"
 #include "call/implementation.hpp"
 #include "constrained/constrained.hpp"
@@ -46,9 +46,20 @@ Ids segments_of_edges(std::size_t edges, const Ids& piece_offsets, const Ids& pi
   return owner;
 }
 
-ConstrainedTriangulation compute(call::Implementation& self, const double* coordinates,
-                                 const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                                 const ConstrainedOptions& options) {
+// The coordinates of all points, those that splitting added too. Empty if there are none of these.
+std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added) {
+  std::vector<double> all;
+  if (added.empty()) return all;
+  all.assign(coordinates, coordinates + 2 * n);
+  all.insert(all.end(), added.begin(), added.end());
+  return all;
+}
+
+}  // namespace
+
+ConstrainedTriangulation call::constrain(Implementation& self, const double* coordinates,
+                                         const std::vector<std::size_t>& offsets,
+                                         const Constraints& constraints, const ConstrainedOptions& options) {
   geometry::check_offsets(offsets);
   geometry::check_coordinates(coordinates, offsets.back());
   const Ids segments = checked_segments(constraints);
@@ -70,21 +81,41 @@ ConstrainedTriangulation compute(call::Implementation& self, const double* coord
   result.edge_segments =
       segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
   result.added_offsets.assign(offsets.size(), 0);
-  if (options.halfedges) geometry::write_halfedges(options, result);
-  const double seconds = host::now() - begin;
-  result.statistics.seconds += seconds;
-  result.statistics.phases.push_back({"constrain", seconds});
+  end_phase("constrain", begin, result.statistics);
   return result;
 }
 
-}  // namespace
+void call::end_phase(const char* name, double begin, Statistics& statistics) {
+  const double seconds = host::now() - begin;
+  statistics.seconds += seconds;
+  statistics.phases.push_back({name, seconds});
+}
+
+void call::finish(const Options& options, ConstrainedTriangulation& result) {
+  geometry::write_halfedges(options, result);
+  result.statistics.triangles = result.triangles.size() / 3;
+}
+
+ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options, bool are_closed) {
+  ConstrainedTriangulation result = constrain(self, coordinates, offsets, constraints, options);
+  const double begin = host::now();
+  const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
+  apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints,
+                request_of(options, are_closed), result);
+  finish(options, result);
+  end_phase("domains", begin, result.statistics);
+  return result;
+}
 
 ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
                                                    const std::vector<std::size_t>& offsets,
                                                    const Constraints& constraints,
                                                    const ConstrainedOptions& options) {
   return call::take_turn(*implementation_, [&] {
-    return compute(*implementation_, coordinates, offsets, constraints, options);
+    return call::constrain_and_leave(*implementation_, coordinates, offsets, constraints, options, false);
   });
 }
 

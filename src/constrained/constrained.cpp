@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "constrained/constraints.hpp"
+#include "constrained/crossing_error.hpp"
 #include "constrained/mesh.hpp"
 #include "geometry/magnitudes.hpp"
 #include "shared/barycentric.h"
@@ -252,11 +253,11 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
 [[noreturn]] void throw_crossing(const ScaledPoints& scaled, int shift, const Ids& segments,
                                  const Segment& first, const Segment& second) {
   const Point place = crossing(scaled, shift, first, second);
-  throw Error(
-      ErrorKind::input,
+  throw CrossingError(
       fmt::format("segments {} (points {} and {}) and {} (points {} and {}) cross near ({:.17g}, {:.17g})",
                   second.index, segments[2 * second.index], segments[2 * second.index + 1], first.index,
-                  segments[2 * first.index], segments[2 * first.index + 1], place.x, place.y));
+                  segments[2 * first.index], segments[2 * first.index + 1], place.x, place.y),
+      second.index, first.index);
 }
 
 // Of segments that cross, names the first one that crosses an earlier one.

@@ -73,6 +73,11 @@ struct Tuning : host::Sizes {
   /// merged.
   std::size_t merge_from_percent = 1;
 
+  /// Other than 0: kernels read by atomic operations what other work-groups may change meanwhile.
+  std::size_t atomic_reads = 0;
+  /// So many levels of regions are reached from outside between two waits.
+  std::size_t depth_rounds = 1;
+
   /// Other than 0: kernels compute the errors of products without fma, as for devices whose fma is not exact.
   std::size_t split_products = 0;
 
