@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +20,7 @@ from flaunay._constrained import (
 )
 from flaunay._errors import UsageError
 from flaunay._library import OVERLAPS
+from flaunay._optional import optional
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -132,7 +132,7 @@ def _is_shapely(given: object) -> bool:
 
 def _of_shapely(geometries: npt.NDArray[Any]) -> _Rings:
     """The rings of geometries, in one dimension; missing ones have none."""
-    shapely = sys.modules["shapely"]
+    shapely = optional("shapely", "polygons")
     types = shapely.get_type_id(geometries)
     # -1: missing; 3: Polygon; 6: MultiPolygon
     wrong = np.flatnonzero(~np.isin(types, (-1, 3, 6)))
@@ -230,12 +230,12 @@ def _of_lists(rows: Sequence[Any]) -> _Rings:
     )
 
 
-def _rows_of(given: Any) -> Sequence[Any]:
+def _rows_of(given: Any) -> list[Any]:
     """The polygons of a list, an array or a column of a table."""
     # A table of geopandas has its polygons in one column, and a geometry has no length.
     column = getattr(given, "geometry", given) if hasattr(given, "columns") else given
     if isinstance(column, (list, tuple)):
-        return column
+        return list(column)
     if hasattr(column, "__array__") or hasattr(column, "__len__"):
         rows = column if isinstance(column, np.ndarray) else np.asarray(column, object)
         if rows.ndim >= 1:
@@ -254,12 +254,10 @@ def _rings_of(given: Any) -> _Rings:
     if described is not None:
         return _of_lists(list(_rows_of_geojson(described)))
     rows = _rows_of(given)
-    shapely = sys.modules.get("shapely")
-    if shapely is not None and len(rows):
-        array = np.empty(len(rows), object)
-        array[:] = rows
-        if (shapely.is_geometry(array) | shapely.is_missing(array)).all():
-            return _of_shapely(array)
+    if any(map(_is_shapely, rows)) and all(row is None or _is_shapely(row) for row in rows):
+        geometries = np.empty(len(rows), object)
+        geometries[:] = rows
+        return _of_shapely(geometries)
     return _of_lists(rows)
 
 

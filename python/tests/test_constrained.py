@@ -215,6 +215,88 @@ def test_pickling_keeps_everything(random):
     assert np.array_equal(copy.edges_of(3), mesh.edges_of(3))
 
 
+# ---- What is kept
+
+
+def squares(*sizes):
+    """Squares around the origin, and their sides."""
+    points = np.concatenate([size * (2 * SQUARE - 1) for size in sizes])
+    first = 4 * np.arange(len(sizes))[:, None, None]
+    segments = first + np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    return points, segments.reshape(-1, 2)
+
+
+def middles(mesh):
+    return mesh.points[mesh.triangles].mean(axis=1)
+
+
+def test_what_is_outside_and_in_holes_is_left_out():
+    points, segments = squares(1, 2)
+    points = np.concatenate([points, [[9, 0]]])
+    keep = flaunay.triangulate(points, segments)
+    hull = flaunay.triangulate(points, segments, outside="hull")
+    holes = flaunay.triangulate(points, segments, outside="holes", halfedges=True)
+    assert keep.areas.sum() == 30 and hull.areas.sum() == 16 and holes.areas.sum() == 12
+    assert len(holes.triangles) == 8 and as_set(holes.triangles) < as_set(hull.triangles)
+    assert as_set(hull.triangles) < as_set(keep.triangles)
+    check_neighbors(holes.triangles, holes.neighbors)
+    assert ((holes.neighbors < 0).sum(), (holes.halfedges < 0).sum()) == (8, 8)
+    assert np.array_equal(holes.hull, keep.hull)
+    # Only what has triangles has edges.
+    assert 8 not in holes.edges and 8 in keep.edges
+
+
+def test_a_hole_is_what_is_around_a_place():
+    points, segments = squares(1, 2)
+    inner = flaunay.triangulate(points, segments, holes=[[0, 0]])
+    assert inner.areas.sum() == 12
+    outer = flaunay.triangulate(points, segments, [[1.5, 0]])
+    assert outer.areas.sum() == 4
+    both = flaunay.triangulate(points, segments, [[1.5, 0], [0, 0.5]])
+    assert len(both.triangles) == 0 and both.triangle_offsets.tolist() == [0, 0]
+    with pytest.raises(flaunay.InputError, match="hole"):
+        flaunay.triangulate(points, segments, [[1, 0.5]])
+    with pytest.raises(flaunay.InputError, match="hole"):
+        flaunay.triangulate(points, segments, [[5, 5]])
+
+
+def test_holes_of_several_sets():
+    points, segments = squares(1, 2)
+    mesh = flaunay.triangulate(
+        np.concatenate([points, points]),
+        np.concatenate([segments, segments + 8]),
+        [[1.5, 0], [0, 0]],
+        offsets=[0, 8, 8, 16],
+        hole_offsets=[0, 1, 1, 2],
+    )
+    first = mesh.triangle_offsets
+    assert [mesh.areas[a:b].sum() for a, b in pairs(first)] == [4, 0, 12]
+
+
+@pytest.mark.parametrize("rule", ["nesting", "even_odd", "winding"])
+def test_depths_and_regions(rule):
+    points, segments = squares(1, 2, 3, 4)
+    mesh = flaunay.triangulate(points, segments, fill_rule=rule, labels=True)
+    nesting = 4 - (np.abs(middles(mesh)).max(axis=1) // 1).astype(int)
+    expected = {"nesting": nesting, "even_odd": nesting % 2, "winding": nesting}[rule]
+    assert np.array_equal(mesh.depths, expected)
+    # Regions are numbered by their first triangles.
+    _, places = np.unique(nesting, return_index=True)
+    numbers = {nesting[place]: k for k, place in enumerate(sorted(places))}
+    assert mesh.regions.tolist() == [numbers[depth] for depth in nesting.tolist()]
+    kept = flaunay.triangulate(points, segments, fill_rule=rule, outside="holes")
+    assert kept.areas.sum() == {"nesting": 40, "even_odd": 40, "winding": 64}[rule]
+
+
+def test_the_direction_of_segments_decides_what_winds():
+    points, segments = squares(1, 2)
+    segments[:4] = segments[:4, ::-1]
+    options = {"fill_rule": "winding", "outside": "holes"}
+    assert flaunay.triangulate(points, segments, **options).areas.sum() == 12
+    with pytest.raises(flaunay.InputError):
+        flaunay.triangulate(points, segments[:7], **options)
+
+
 # ---- Beside other programs
 
 

@@ -175,6 +175,13 @@ def test_shapely_s_own_ragged_arrays(random):
     assert same(flaunay.polygons(coordinates, rings, outer), flaunay.polygons(geometries))
 
 
+def test_lists_of_one_shape():
+    mesh = flaunay.polygons([[SQUARE, HOLE], [SQUARE, HOLE]])
+    assert mesh.polygon_areas.tolist() == [32, 32]
+    rings = np.array([[SQUARE, HOLE], [SQUARE, HOLE]])
+    assert same(flaunay.polygons(rings), mesh) and same(flaunay.polygons(list(rings)), mesh)
+
+
 def test_a_single_geometry_and_one_of_several_parts():
     one = flaunay.polygons(POLYGONS[0])
     assert one.triangle_offsets.tolist() == [0, 8] and one.polygon_areas.tolist() == [32]
@@ -332,7 +339,7 @@ def test_offsets_that_are_none(rings, outer, message):
     [
         ({"overlaps": "last"}, "overlaps must be one of 'first', 'error'"),
         ({"outside": "all"}, "outside must be one of"),
-        ({"map": True, "fill_rule": "nesting"}, "nesting"),
+        ({"map": True, "fill_rule": "nesting"}, "even-odd or winding"),
     ],
 )
 def test_options_that_are_none(options, message):
