@@ -27,9 +27,17 @@ def winding_border(start: Points, end: Points, random: np.random.Generator) -> P
     for _ in range(5):
         step = np.diff(path, axis=0)
         aside = np.stack([-step[:, 1], step[:, 0]], axis=1)
-        middle = (path[:-1] + path[1:]) / 2 + random.uniform(-0.17, 0.17, (len(step), 1)) * aside
+        middle = (path[:-1] + path[1:]) / 2 + random.uniform(-0.15, 0.15, (len(step), 1)) * aside
         path = np.insert(path, np.arange(1, len(path)), middle, axis=0)
     return path
+
+
+def lake(random: np.random.Generator) -> Points:
+    """A shore with some bays around the origin."""
+    angles = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    bays = np.sin(random.integers(2, 5) * angles + random.uniform(0, 6))
+    radii = 0.3 + 0.08 * bays + random.uniform(-0.02, 0.02, 40)
+    return np.asarray(radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1))
 
 
 def countries(random: np.random.Generator) -> list[Rings]:
@@ -47,14 +55,8 @@ def countries(random: np.random.Generator) -> list[Rings]:
             a, b = (end, start) if backwards else (start, end)
             border = borders.setdefault((*a, *b), winding_border(a, b, random))
             ring.append(border[:0:-1] if backwards else border[:-1])
-        angles = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-        radii = (
-            0.3 + 0.08 * np.sin(3 * angles + random.uniform(0, 6)) + random.uniform(-0.02, 0.02, 40)
-        )
-        lake = seed + radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        found.append(
-            [np.concatenate(ring), lake] if random.random() < 0.4 else [np.concatenate(ring)]
-        )
+        lakes = [seed + lake(random)] if random.random() < 0.4 else []
+        found.append([np.concatenate(ring), *lakes])
     return found
 
 
