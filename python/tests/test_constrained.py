@@ -330,7 +330,7 @@ def test_crossing_segments_are_named():
         ([[0, 1], [2, 4]], r"segments\[1, 1\] = 4 is none of the 4 points"),
         ([[-1, 1]], r"segments\[0, 0\] = -1 is none"),
         ([[0, 2**40]], rf"segments\[0, 1\] = {2**40} is none"),
-        ([[0], [1, 2]], "segments are no array"),
+        ([[0], [1, 2]], "segments (are no array|must be integers)"),
         (np.ma.masked_equal([[0, 1]], 1), r"segments\[0, 1\] is masked"),
     ],
 )
