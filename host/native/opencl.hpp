@@ -79,6 +79,12 @@ T atomic_improve(volatile T* at, T value, const IsBetter& is_better) {
 inline int atomic_min(volatile int* at, int value) {
   return atomic_improve(at, value, [](int a, int b) { return a < b; });
 }
+inline uint atomic_min(volatile uint* at, uint value) {
+  return atomic_improve(at, value, [](uint a, uint b) { return a < b; });
+}
+inline uint atomic_xchg(volatile uint* at, uint value) {
+  return __atomic_exchange_n(at, value, __ATOMIC_RELAXED);
+}
 inline int atomic_max(volatile int* at, int value) {
   return atomic_improve(at, value, [](int a, int b) { return a > b; });
 }

@@ -48,25 +48,6 @@ std::size_t set_of(const std::vector<std::size_t>& offsets, std::int32_t point) 
          1;
 }
 
-void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments) {
-  if (segments.size() % 2 != 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("segments need two points each, but {} indices were given", segments.size()));
-  }
-  const auto n = static_cast<std::int32_t>(offsets.back());
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i] < 0 || segments[i] >= n) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("segment {} has point {}, but there are {} points", i / 2, segments[i], n));
-    }
-    if (i % 2 == 0 || offsets.size() == 2) continue;
-    if (set_of(offsets, segments[i - 1]) != set_of(offsets, segments[i])) {
-      throw Error(ErrorKind::usage, fmt::format("segment {} joins points {} and {} of different sets", i / 2,
-                                                segments[i - 1], segments[i]));
-    }
-  }
-}
-
 // A segment between distinct points, the lexicographically smaller one first.
 struct Segment {
   std::int32_t from, to;
@@ -279,6 +260,25 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
 
 }  // namespace
 
+void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments) {
+  if (segments.size() % 2 != 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("segments need two points each, but {} indices were given", segments.size()));
+  }
+  const auto n = static_cast<std::int32_t>(offsets.back());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (segments[i] < 0 || segments[i] >= n) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("segment {} has point {}, but there are {} points", i / 2, segments[i], n));
+    }
+    if (i % 2 == 0 || offsets.size() == 2) continue;
+    if (set_of(offsets, segments[i - 1]) != set_of(offsets, segments[i])) {
+      throw Error(ErrorKind::usage, fmt::format("segment {} joins points {} and {} of different sets", i / 2,
+                                                segments[i - 1], segments[i]));
+    }
+  }
+}
+
 Result constrain(const double* coordinates, const std::vector<std::size_t>& offsets,
                  const Triangulation& delaunay, const Ids& segments) {
   check_offsets(offsets);
@@ -299,7 +299,7 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   Result result;
   inserter.mesh().write(result.triangles, result.neighbors, result.constrained);
   Constraints& constraints = inserter.constraints();
-  constraints.sort(offsets);
+  constraints.sort();
   result.constraint_edges = constraints.sorted_edges();
   result.segment_edges.assign(segments.size(), 0);
   for (std::size_t s = 0; s < unique_of.size(); ++s) {

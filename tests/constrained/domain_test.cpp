@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -28,8 +28,6 @@ using Runtimes = SharedRuntimes<make_tuned_runtime>;
 
 constexpr FillRule kRules[] = {FillRule::nesting, FillRule::even_odd, FillRule::winding};
 constexpr Outside kOutsides[] = {Outside::keep, Outside::hull, Outside::holes};
-
-bool is_simulated() { return std::getenv("FLAUNAY_DEVICE") == std::string("oclgrind"); }
 
 // The tuning that the environment names, or the device's and those of GPUs with groups of several sizes.
 std::vector<std::string> tunings() {
@@ -378,7 +376,7 @@ TEST(SmallDomains, HolesAtPlaces) {
     input.holes = {0, 5};
     EXPECT_EQ(message(tuning), "hole 0 at (0, 5) is on a constraint");
     input.holes = {1, NAN};
-    EXPECT_EQ(message(tuning), "hole 0 at (1, nan) is not finite");
+    EXPECT_EQ(message(tuning), "hole 0 is not finite: (1, nan)");
     input.holes = {};
     EXPECT_EQ(area(tuning), 64);
   }
@@ -408,13 +406,14 @@ TEST(SmallDomains, HolesOfSets) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Large input
 
+// Of all processors together.
 double seconds_of(const Case& input, const DomainRequest& request, ConstrainedTriangulation& mesh) {
   host::Runtime& runtime = Runtimes::get("own");
   ConstrainedTriangulation warm = mesh;
   call::apply_domains_on(runtime, input.points.data(), input.offsets, input.constraints(), request, warm);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   call::apply_domains_on(runtime, input.points.data(), input.offsets, input.constraints(), request, mesh);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 void expect_large(const Case& input, const char* name) {

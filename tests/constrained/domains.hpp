@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "constrained/constrained.hpp"
@@ -33,6 +35,12 @@ inline ConstrainedTriangulation constrained_of(const Coordinates& points,
   std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
   result.added_offsets.assign(offsets.size(), 0);
   return result;
+}
+
+/// Whether a simulator runs the kernels, which is slow.
+inline bool is_simulated() {
+  const char* const device = std::getenv("FLAUNAY_DEVICE");
+  return device != nullptr && device == std::string("oclgrind");
 }
 
 struct RationalPlace {

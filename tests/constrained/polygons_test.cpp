@@ -18,8 +18,6 @@
 namespace flaunay::testing {
 namespace {
 
-bool is_simulated() { return std::getenv("FLAUNAY_DEVICE") == std::string("oclgrind"); }
-
 // Rings with their own points.
 struct Rings {
   Coordinates coordinates;
@@ -326,7 +324,9 @@ TEST(SmallPolygons, Arrays) {
   ASSERT_EQ(mesh.halfedges.size(), mesh.triangles.size());
   for (std::size_t h = 0; h < mesh.halfedges.size(); ++h) {
     const std::int32_t twin = mesh.halfedges[h];
-    if (twin >= 0) EXPECT_EQ(mesh.halfedges[twin], static_cast<std::int32_t>(h));
+    if (twin >= 0) {
+      EXPECT_EQ(mesh.halfedges[twin], static_cast<std::int32_t>(h));
+    }
   }
 }
 

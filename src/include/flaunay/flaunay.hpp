@@ -320,6 +320,9 @@ class FLAUNAY_API Triangulator {
   /// triangulation without neighbours or of another number of points. O(n) work; one work-item per point
   /// takes as many steps as the point has triangles.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
+  /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
+  Voronoi voronoi(const double* coordinates, std::size_t n,
+                  const ConstrainedTriangulation& triangulation) = delete;
   /// Computes the dual in device memory. The triangulation must have the parts triangles, neighbors, hull and
   /// representatives. The work is enqueued like that of triangulate for device memory, with the same errors.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
@@ -334,6 +337,10 @@ class FLAUNAY_API Triangulator {
   /// magnitudes. O(n log m) work for m corners, and O(m) for each Voronoi edge across the polygon's border.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation,
                                  const double* corners, std::size_t corner_count);
+  /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
+  ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n,
+                                 const ConstrainedTriangulation& triangulation, const double* corners,
+                                 std::size_t corner_count) = delete;
   /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors,
   /// hull and representatives; the corners are in host memory. The host waits twice; otherwise the work is
   /// enqueued like that of triangulate for device memory, with the same errors.
@@ -415,6 +422,12 @@ class FLAUNAY_API Locator {
   /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
+  /// These do not compile: in a constrained triangulation, walks to a query need not end, and the nearest
+  /// point need not be near.
+  Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
+          const ConstrainedTriangulation& triangulation) = delete;
+  Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
+          const ConstrainedTriangulation& triangulation) = delete;
   /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
   /// neighbors, hull and representatives. The work is enqueued like that of Triangulator::triangulate for
   /// device memory, with the same errors.
