@@ -265,11 +265,12 @@ def _with_offsets(
     coordinates: ArrayLike, ring_offsets: npt.ArrayLike, polygon_offsets: Optional[npt.ArrayLike]
 ) -> _Rings:
     """Rings in GeoArrow's layout. The library checks the offsets."""
-    points = np.array(as_points(coordinates), np.float64)
-    rings = as_offsets(ring_offsets, "ring_offsets")
+    points = np.asarray(as_points(coordinates), np.float64)
+    # Copies, which the result keeps.
+    rings = as_offsets(ring_offsets, "ring_offsets").copy()
     if polygon_offsets is None:
         return points, rings, np.arange(max(len(rings), 1), dtype=np.int64)
-    return points, rings, as_offsets(polygon_offsets, "polygon_offsets")
+    return points, rings, as_offsets(polygon_offsets, "polygon_offsets").copy()
 
 
 def _check_increasing(offsets: Offsets, name: str) -> None:

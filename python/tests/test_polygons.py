@@ -169,6 +169,15 @@ def test_offsets_as_in_geoarrow():
     assert same(flaunay.polygons(coordinates.astype(np.float32), rings, outer), expected)
 
 
+def test_what_was_given_stays_the_caller_s():
+    coordinates = np.array(SQUARE, float)
+    rings, outer = np.array([0, 4]), np.array([0, 1])
+    mesh = flaunay.polygons(coordinates, rings, outer)
+    coordinates[:] = rings[:] = outer[:] = 7
+    assert mesh.points.tolist() == SQUARE and mesh.polygon_areas.tolist() == [36]
+    assert mesh.ring_offsets.tolist() == [0, 4] and mesh.polygon_offsets.tolist() == [0, 1]
+
+
 def test_shapely_s_own_ragged_arrays(random):
     geometries = [with_holes(random) for _ in range(5)]
     _, coordinates, (rings, outer) = shapely.to_ragged_array(geometries)
