@@ -113,10 +113,11 @@ kernel void number_regions(int n, global const uint* restrict numbers, global in
 // ---------------------------------------------------------------------------------------------------------------------
 // Weights
 
-// The pieces of a segment are on its way from the lexicographically smaller end to the other one. changes: 0 throughout;
-// gets 1 where a piece's edges begin, and -1 where they end; with the winding rule the opposite if the segment goes the
-// other way than its edges. balances: 0 throughout; gets how many segments begin at a point, less those that end there,
-// or how many do either. Those of points that several have the same coordinates with are their representative's.
+// The pieces of a segment are on its way from the lexicographically smaller end to the other one. changes: 0
+// throughout; gets 1 where a piece's edges begin, and -1 where they end; with the winding rule the opposite if the
+// segment goes the other way than its edges. balances: 0 throughout; gets how many segments begin at a point, less
+// those that end there, or how many do either. Those of points that several have the same coordinates with are their
+// representative's.
 kernel void cover_edges(int n, int rule, global const double* restrict input, global const int* restrict segments,
                         global const int* restrict representatives, global const int* restrict piece_offsets,
                         global const int* restrict piece_edges, global const int* restrict edges,
@@ -149,7 +150,8 @@ kernel void find_unbalanced(int n, int rule, global const uint* restrict balance
   if (i < n && (rule == FILL_WINDING ? balances[i] != 0 : balances[i] & 1)) atomic_min(&bad[0], i);
 }
 
-// Whether edges must be known: not if the rule is even-odd and every one is covered an odd number of times. needed[0]: 0.
+// Whether edges must be known: not if the rule is even-odd and every one is covered an odd number of times. needed[0]:
+// 0.
 kernel void find_even(int n, int rule, global const uint* restrict sums, global uint* restrict needed) {
   const int e = get_global_id(0);
   if (e < n && (rule == FILL_WINDING || (sums[e + 1] & 1) == 0)) needed[0] = 1;

@@ -1,7 +1,7 @@
 // Constraints become edges of a triangulation, all at once, in rounds. docs/constrained.md says why this is right.
 //
-// A row is a triangle; corner 3t + k stands for the vertex there and for the edge opposite to it. A constraint's rank is
-// a random number, which is always the same. Each kernel has a work-item per constraint unless it says otherwise.
+// A row is a triangle; corner 3t + k stands for the vertex there and for the edge opposite to it. A constraint's rank
+// is a random number, which is always the same. Each kernel has a work-item per constraint unless it says otherwise.
 //
 // - walk_segments: how many edges each segment consists of, in the Delaunay triangulation, in which it walks from
 //   vertex to vertex. Those that are edges already are flagged as constraints; the others claim the rows that they
@@ -17,6 +17,11 @@
 //
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
 // rows are marked by the round, which anyone may claim again.
+
+// Exact predicates are rare, and compiling each where it may be called takes long.
+#ifndef __cplusplus
+#define OUT_OF_LINE __attribute__((noinline))
+#endif
 
 #include "shared/codes.h"
 #include "shared/halfedges.h"
@@ -193,10 +198,11 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
 
 // The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
 // claims: of which nothing is used any more.
-kernel void write_pieces(int n, double bound, global const double* restrict points, global const int* restrict triangles,
-                         global const int* restrict neighbors, global const int* restrict hull,
-                         global const ulong* restrict keys, global const uint* restrict offsets,
-                         global volatile uint* restrict claims, global int* restrict ends) {
+kernel void write_pieces(int n, double bound, global const double* restrict points,
+                         global const int* restrict triangles, global const int* restrict neighbors,
+                         global const int* restrict hull, global const ulong* restrict keys,
+                         global const uint* restrict offsets, global volatile uint* restrict claims,
+                         global int* restrict ends) {
   const int s = get_global_id(0);
   if (s < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
@@ -277,9 +283,10 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
     if (claims[beyond] != rank) return 0;
     const int facing = corner_with(beyond, row, mesh->neighbors), v = mesh->triangles[facing];
     row = beyond;
-    const int side = v == walk->goal                                     ? 0
-                     : is_long                                          ? side_of_segment(mesh, from, to, walk->goal, v)
-                     : (walk->turns >> j & 1) ? 1 : -1;
+    const int side = v == walk->goal          ? 0
+                     : is_long                ? side_of_segment(mesh, from, to, walk->goal, v)
+                     : (walk->turns >> j & 1) ? 1
+                                              : -1;
     if (entries) {
       entries[j].row = row;
       if (side >= 0) {
@@ -305,12 +312,13 @@ static inline int holds_edge(int corner, uint rank, global const int* neighbors,
 }
 
 // offsets: of the entries. lefts: how many of these are on the left.
-kernel void choose_constraints(int n, double bound, global const int* restrict list, global const uint* restrict offsets,
-                               global const constraint_walk* restrict walks, global const double* restrict points,
-                               global const int* restrict triangles, global const int* restrict neighbors,
-                               global const uint* restrict claims, global const uchar* restrict flags,
-                               global uchar* restrict outcomes, global int* restrict lefts,
-                               global chain_entry* restrict entries, global volatile uint* restrict status) {
+kernel void choose_constraints(int n, double bound, global const int* restrict list,
+                               global const uint* restrict offsets, global const constraint_walk* restrict walks,
+                               global const double* restrict points, global const int* restrict triangles,
+                               global const int* restrict neighbors, global const uint* restrict claims,
+                               global const uchar* restrict flags, global uchar* restrict outcomes,
+                               global int* restrict lefts, global chain_entry* restrict entries,
+                               global volatile uint* restrict status) {
   const int i = get_global_id(0);
   if (i < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
@@ -555,8 +563,7 @@ kernel void gather_long(int n, double bound, global const int* restrict winners,
     const int constraint = list[winners[i]];
     const constraint_walk walk = walks[constraint];
     int crosses = 0;
-    const int left =
-        gather_cavity(&walk, rank_of(constraint), &mesh, claims, flags, entries + offsets[i], &crosses);
+    const int left = gather_cavity(&walk, rank_of(constraint), &mesh, claims, flags, entries + offsets[i], &crosses);
     chain_offsets[2 * i] = (int)offsets[i];
     chain_offsets[2 * i + 1] = (int)offsets[i] + left;
     if (i + 1 == n) chain_offsets[2 * n] = (int)offsets[n];
@@ -618,6 +625,5 @@ kernel void join_long(int n, uint mark, global const uint* restrict claims, glob
                       global const int* restrict new_corners, global const chain_entry* restrict entries,
                       global int* restrict neighbors, global volatile uint* restrict places) {
   const int i = get_global_id(0);
-  if (i < n && entries[i].corner >= 0)
-    join_side(entries[i], mark, claims, marks, new_corners, neighbors, places);
+  if (i < n && entries[i].corner >= 0) join_side(entries[i], mark, claims, marks, new_corners, neighbors, places);
 }

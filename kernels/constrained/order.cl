@@ -44,7 +44,7 @@ kernel void take_rows(int n, global const int* restrict rows, global const int* 
     for (int k = 0; k < 3; ++k) {
       const int beyond = neighbors[corner];
       copied_triangles[3 * i + k] = triangles[corner];
-      copied_neighbors[3 * i + k] = beyond < 0         ? OUTSIDE
+      copied_neighbors[3 * i + k] = beyond < 0        ? OUTSIDE
                                     : changed[beyond] ? (uint)beyond
                                                       : UNCHANGED | (uint)corner_with(beyond, row, neighbors);
       corner = next_halfedge(corner);
@@ -85,8 +85,7 @@ kernel void write_row_halfedges(int n, global const int* restrict neighbors, glo
   if (t < n) {
     for (int k = 0; k < 3; ++k) {
       const int beyond = neighbors[3 * t + k];
-      halfedges[3 * t + next_corner(k)] =
-          beyond < 0 ? -1 : next_halfedge(corner_with(beyond, t, neighbors));
+      halfedges[3 * t + next_corner(k)] = beyond < 0 ? -1 : next_halfedge(corner_with(beyond, t, neighbors));
     }
   }
 }

@@ -1,7 +1,8 @@
 // Segments and their edges: what is sorted and numbered before and after constraints are inserted (insert.cl).
 //
 // A vertex' *place* is the first corner at which it stands in the array of triangles; so the order of places is one of
-// places in the plane. A vertex of a set without triangles has PLACE_ON_LINE and its number on the hull. Before insertion:
+// places in the plane. A vertex of a set without triangles has PLACE_ON_LINE and its number on the hull. Before
+// insertion:
 // - mark_ends, over the segments: checks them, and marks the vertices at their ends. clear_vertices is before that.
 // - start_rows, over the triangles: the places of the marked vertices; all rows are unclaimed. line_places, over the
 //   hulls: those in sets on a line.

@@ -50,11 +50,11 @@ INTEGER_CONSTANT(NO_LOWEST, 10000);
 INTEGER_CONSTANT(NO_BAD, 0x7fffffff);
 
 // What the insertion of segments tells the host: the places of its numbers.
-INTEGER_CONSTANT(INSERTION_WRONG, 0);   // whether a segment is wrong: no points, or of different sets
-INTEGER_CONSTANT(INSERTION_CROSSED, 1); // whether segments cross
-INTEGER_CONSTANT(INSERTION_BROKEN, 2);  // whether a walk left the triangulation, which is an error of the program
-INTEGER_CONSTANT(INSERTION_LONG, 3);    // how many constraints have walks longer than SHORT_WALK
-INTEGER_CONSTANT(INSERTION_PIECES, 4);  // parts of segments that have several
+INTEGER_CONSTANT(INSERTION_WRONG, 0);    // whether a segment is wrong: no points, or of different sets
+INTEGER_CONSTANT(INSERTION_CROSSED, 1);  // whether segments cross
+INTEGER_CONSTANT(INSERTION_BROKEN, 2);   // whether a walk left the triangulation, which is an error of the program
+INTEGER_CONSTANT(INSERTION_LONG, 3);     // how many constraints have walks longer than SHORT_WALK
+INTEGER_CONSTANT(INSERTION_PIECES, 4);   // parts of segments that have several
 INTEGER_CONSTANT(INSERTION_NUMBERS, 5);
 
 // What became of a constraint in a round.

@@ -107,12 +107,12 @@ static inline int star_search_step(const walked_mesh* mesh, star_search* star, d
   if (star->corner == star->first) return STAR_BROKEN;
   if (star->turn > 0) {
     star->next_side = star->previous_side;
-    star->previous_side = side_of_segment(mesh, star->at, star->goal_at, star->goal,
-                                          mesh->triangles[previous_halfedge(star->corner)]);
+    star->previous_side =
+        side_of_segment(mesh, star->at, star->goal_at, star->goal, mesh->triangles[previous_halfedge(star->corner)]);
   } else {
     star->previous_side = star->next_side;
-    star->next_side = side_of_segment(mesh, star->at, star->goal_at, star->goal,
-                                      mesh->triangles[next_halfedge(star->corner)]);
+    star->next_side =
+        side_of_segment(mesh, star->at, star->goal_at, star->goal, mesh->triangles[next_halfedge(star->corner)]);
   }
   return STAR_GOES_ON;
 }
@@ -125,17 +125,18 @@ static inline int star_search_step(const walked_mesh* mesh, star_search* star, d
 // Finds how the segment between the vertices at two corners leaves one of them. If that takes long, looks around both
 // in turns, so it takes O(the smaller of their numbers of edges).
 static inline int find_departure(const walked_mesh* mesh, int first, int second, departure* found) {
-  star_search star = star_search_at(mesh, first, mesh->triangles[second]);
-  int outcome = STAR_GOES_ON;
-  for (int k = 0; k < STAR_PATIENCE && outcome == STAR_GOES_ON; ++k) outcome = star_search_step(mesh, &star, found);
-  if (outcome == STAR_FOUND) return LEAVES_FIRST;
-  if (outcome == STAR_BROKEN) return LEAVES_NONE;
-  star_search other = star_search_at(mesh, second, mesh->triangles[first]);
-  while (1) {
-    outcome = star_search_step(mesh, &other, found);
-    if (outcome != STAR_GOES_ON) return outcome == STAR_FOUND ? LEAVES_SECOND : LEAVES_NONE;
-    outcome = star_search_step(mesh, &star, found);
-    if (outcome != STAR_GOES_ON) return outcome == STAR_FOUND ? LEAVES_FIRST : LEAVES_NONE;
+  star_search star = star_search_at(mesh, first, mesh->triangles[second]), other = star;
+  int end = LEAVES_FIRST;
+  for (int k = 0;; ++k) {
+    // One call, as it is long.
+    const int outcome = star_search_step(mesh, &star, found);
+    if (outcome != STAR_GOES_ON) return outcome == STAR_FOUND ? end : LEAVES_NONE;
+    if (k >= STAR_PATIENCE) {
+      const star_search swapped = star;
+      star = k == STAR_PATIENCE ? star_search_at(mesh, second, mesh->triangles[first]) : other;
+      other = swapped;
+      end = end == LEAVES_FIRST ? LEAVES_SECOND : LEAVES_FIRST;
+    }
   }
 }
 

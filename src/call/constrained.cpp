@@ -9,6 +9,7 @@
 #include "call/domains.hpp"
 #include "call/host_call.hpp"
 #include "call/implementation.hpp"
+#include "call/insert_segments.hpp"
 #include "constrained/constrained.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
@@ -70,7 +71,7 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
   static_cast<Triangulation&>(result) = call::triangulate(self, {coordinates, nullptr}, offsets, plain);
 
   const double begin = host::now();
-  constrained::Result edges = constrained::constrain(coordinates, offsets, result, segments);
+  constrained::Result edges = call::insert_segments(self, coordinates, offsets, result, segments, options);
   result.triangles = std::move(edges.triangles);
   result.neighbors = std::move(edges.neighbors);
   result.constrained = std::move(edges.constrained);
@@ -81,6 +82,7 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
   result.edge_segments =
       segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
   result.added_offsets.assign(offsets.size(), 0);
+  result.halfedges = std::move(edges.halfedges);
   end_phase("constrain", begin, result.statistics);
   return result;
 }
@@ -92,7 +94,9 @@ void call::end_phase(const char* name, double begin, Statistics& statistics) {
 }
 
 void call::finish(const Options& options, ConstrainedTriangulation& result) {
-  geometry::write_halfedges(options, result);
+  // Otherwise all triangles were kept.
+  if (result.halfedges.size() != result.triangles.size()) geometry::write_halfedges(options, result);
+  if (!options.neighbors) result.neighbors.clear();
   result.statistics.triangles = result.triangles.size() / 3;
 }
 

@@ -99,7 +99,8 @@ void apply_domains_on(host::Runtime& runtime, const double* coordinates,
   if (request.needs_depths()) find_depths(runtime, mesh, request.rules, regions);
   if (constraints.hole_count > 0) {
     const constrained::Seeds seeds = constrained::make_seeds(
-        constraints, constrained::magnitudes_at_holes(coordinates, offsets, result.added_offsets, constraints));
+        constraints,
+        constrained::magnitudes_at_holes(coordinates, offsets, result.added_offsets, constraints));
     drop_holes(runtime, mesh, seeds, constraints, regions);
   }
   if (request.rules.outside != Outside::keep || constraints.hole_count > 0) {

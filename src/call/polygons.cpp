@@ -52,7 +52,8 @@ Ids segments_of(const Polygons& polygons) {
 }
 
 std::size_t polygon_of(const std::vector<std::size_t>& points, std::size_t segment) {
-  return static_cast<std::size_t>(std::upper_bound(points.begin(), points.end(), segment) - points.begin()) - 1;
+  return static_cast<std::size_t>(std::upper_bound(points.begin(), points.end(), segment) - points.begin()) -
+         1;
 }
 
 // Runs a call on the segments of polygons. If some cross, names their polygons, too.
@@ -63,9 +64,9 @@ auto with_names(const std::vector<std::size_t>& points, const Work& work) {
   } catch (const constrained::CrossingError& error) {
     const std::size_t first = polygon_of(points, static_cast<std::size_t>(error.crossed)),
                       second = polygon_of(points, static_cast<std::size_t>(error.segment));
-    throw Error(ErrorKind::input,
-                first == second ? fmt::format("polygon {}: {}", first, error.what())
-                                : fmt::format("polygons {} and {}: {}", first, second, error.what()));
+    throw Error(ErrorKind::input, first == second
+                                      ? fmt::format("polygon {}: {}", first, error.what())
+                                      : fmt::format("polygons {} and {}: {}", first, second, error.what()));
   }
 }
 
@@ -83,8 +84,8 @@ ConstrainedTriangulation make_map(call::Implementation& self, const Polygons& po
   }
   constrained::HostRegions regions = constrained::find_regions_on_host(result);
   constrained::MapLabels labels =
-      constrained::label_map(polygons.coordinates, result, regions.of_triangles, regions.left.size(), segments,
-                             polygon_of_segment, options.fill_rule, options.overlaps);
+      constrained::label_map(polygons.coordinates, result, regions.of_triangles, regions.left.size(),
+                             segments, polygon_of_segment, options.fill_rule, options.overlaps);
   if (options.outside != Outside::keep) {
     for (std::size_t r = 0; r < regions.left.size(); ++r) regions.left[r] = labels.polygons[r] >= 0 ? 1 : 0;
   }
@@ -113,9 +114,9 @@ ConstrainedTriangulation compute(call::Implementation& self, const Polygons& pol
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
   return with_names(points, [&] {
-    return options.map ? make_map(self, polygons, points, segments, constraints, options)
-                       : call::constrain_and_leave(self, polygons.coordinates, points, constraints, options,
-                                                   true);
+    return options.map
+               ? make_map(self, polygons, points, segments, constraints, options)
+               : call::constrain_and_leave(self, polygons.coordinates, points, constraints, options, true);
   });
 }
 

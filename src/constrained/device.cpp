@@ -43,8 +43,7 @@ struct ScaledPoints {
 };
 
 ScaledPoints scale_points(host::Runtime& runtime, const DeviceMesh& mesh) {
-  const points::UniformPoints uniform =
-      points::make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
+  const points::UniformPoints uniform = points::make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
   ScaledPoints scaled{uniform.coordinates, uniform.scaling.bounds};
   if (uniform.scaling.shift == 0) return scaled;
   const std::size_t n = mesh.points();
@@ -202,15 +201,15 @@ class Insertion {
     runtime_.map(n_, kernels::clear_vertices{.all = all, .marks = marks_, .places = places_});
   }
   void mark_ends(const Buffer<cl_int>& ends) {
-    runtime_.map(segment_count_,
-                 kernels::mark_ends{.points = n_,
-                                    .sets = delaunay_.sets(),
-                                    .offsets = runtime_.upload(arena_, points::integers(delaunay_.point_offsets)),
-                                    .segments = segments_,
-                                    .representatives = delaunay_.representatives,
-                                    .ends = ends,
-                                    .marks = marks_,
-                                    .status = status_});
+    runtime_.map(segment_count_, kernels::mark_ends{.points = n_,
+                                                    .sets = delaunay_.sets(),
+                                                    .offsets = runtime_.upload(
+                                                        arena_, points::integers(delaunay_.point_offsets)),
+                                                    .segments = segments_,
+                                                    .representatives = delaunay_.representatives,
+                                                    .ends = ends,
+                                                    .marks = marks_,
+                                                    .status = status_});
   }
   void place_vertices() {
     runtime_.map(rows_, kernels::start_rows{.triangles = result_.triangles,
@@ -220,7 +219,8 @@ class Insertion {
                                             .flags = flags_,
                                             .changed = changed_});
     const auto& triangle_offsets = delaunay_.triangle_offsets;
-    if (std::adjacent_find(triangle_offsets.begin(), triangle_offsets.end()) == triangle_offsets.end()) return;
+    if (std::adjacent_find(triangle_offsets.begin(), triangle_offsets.end()) == triangle_offsets.end())
+      return;
     runtime_.map(delaunay_.hull_offsets.back(),
                  kernels::line_places{
                      .sets = delaunay_.sets(),
@@ -236,8 +236,8 @@ class Insertion {
     const auto keys = arena_.allocate<cl_ulong>(count);
     const auto payloads = arena_.allocate<cl_int>(count);
     const auto ranks = arena_.allocate<cl_uint>(count + 1);
-    runtime_.map(
-        count, kernels::segment_keys{.ends = ends, .places = places_, .keys = keys, .payloads = payloads});
+    runtime_.map(count,
+                 kernels::segment_keys{.ends = ends, .places = places_, .keys = keys, .payloads = payloads});
     host::sort_by_key(runtime_, keys, payloads, count);
     runtime_.map(count, kernels::find_runs{.keys = keys, .counts = ranks});
     host::exclusive_scan(runtime_, ranks, count, ranks);
@@ -451,17 +451,18 @@ class Insertion {
   }
 
   void fill_long(const Waiting& waiting, const LongWinners& winners) {
-    runtime_.map(winners.entry_count - 4 * winners.count, kernels::fill_long{.mark = waiting.mark,
-                                                                            .chains = 2 * winners.count,
-                                                                            .chain_offsets = winners.chain_offsets,
-                                                                            .chain_triangles = winners.triangles,
-                                                                            .triangles = result_.triangles,
-                                                                            .neighbors = result_.neighbors,
-                                                                            .claims = claims_,
-                                                                            .flags = flags_,
-                                                                            .changed = changed_,
-                                                                            .new_corners = new_corners_,
-                                                                            .entries = winners.entries});
+    runtime_.map(winners.entry_count - 4 * winners.count,
+                 kernels::fill_long{.mark = waiting.mark,
+                                    .chains = 2 * winners.count,
+                                    .chain_offsets = winners.chain_offsets,
+                                    .chain_triangles = winners.triangles,
+                                    .triangles = result_.triangles,
+                                    .neighbors = result_.neighbors,
+                                    .claims = claims_,
+                                    .flags = flags_,
+                                    .changed = changed_,
+                                    .new_corners = new_corners_,
+                                    .entries = winners.entries});
   }
 
   // -------------------------------------------------------------------------------------------------------
@@ -473,11 +474,10 @@ class Insertion {
     const auto keys = arena_.allocate<cl_ulong>(edges.count);
     const auto payloads = arena_.allocate<cl_int>(edges.count);
     const auto numbers = arena_.allocate<cl_int>(edges.count);
-    runtime_.map(edges.count, kernels::edge_keys{.with_chains = false,
-                                                 .ends = ends,
-                                                 .heads = payloads,
-                                                 .keys = keys,
-                                                 .payloads = payloads});
+    runtime_.map(
+        edges.count,
+        kernels::edge_keys{
+            .with_chains = false, .ends = ends, .heads = payloads, .keys = keys, .payloads = payloads});
     host::sort_by_key(runtime_, keys, payloads, edges.count);
     runtime_.map(edges.count, kernels::number_edges{
                                   .keys = keys, .payloads = payloads, .numbers = numbers, .edges = made});
@@ -497,8 +497,9 @@ class Insertion {
     const auto next = arena_.allocate<cl_int>(count), previous = arena_.allocate<cl_int>(count);
     runtime_.fill(next, count, cl_int{-1});
     runtime_.fill(previous, count, cl_int{-1});
-    runtime_.map(segments.count,
-                 kernels::link_pieces{.offsets = offsets, .piece_of = edges.of, .next = next, .previous = previous});
+    runtime_.map(
+        segments.count,
+        kernels::link_pieces{.offsets = offsets, .piece_of = edges.of, .next = next, .previous = previous});
     auto heads = arena_.allocate<cl_int>(count), distances = arena_.allocate<cl_int>(count);
     auto next_heads = arena_.allocate<cl_int>(count), next_distances = arena_.allocate<cl_int>(count);
     runtime_.map(count, kernels::start_chains{.previous = previous, .heads = heads, .distances = distances});
@@ -515,11 +516,9 @@ class Insertion {
     const auto lengths = arena_.allocate<cl_uint>(count), counts = arena_.allocate<cl_uint>(count + 1);
     runtime_.map(count, kernels::measure_chains{
                             .next = next, .heads = heads, .distances = distances, .lengths = lengths});
-    runtime_.map(count, kernels::edge_keys{.with_chains = true,
-                                           .ends = ends,
-                                           .heads = heads,
-                                           .keys = keys,
-                                           .payloads = payloads});
+    runtime_.map(count,
+                 kernels::edge_keys{
+                     .with_chains = true, .ends = ends, .heads = heads, .keys = keys, .payloads = payloads});
     host::sort_by_key(runtime_, keys, payloads, count);
     runtime_.map(count, kernels::sorted_lengths{
                             .keys = keys, .payloads = payloads, .lengths = lengths, .counts = counts});
@@ -552,8 +551,9 @@ class Insertion {
     if (count == 0) return;
     const auto keys = arena_.allocate<cl_ulong>(count);
     const auto sorted = arena_.allocate<cl_int>(count);
-    runtime_.map(count, kernels::row_keys{
-                            .rows = changed, .triangles = result_.triangles, .keys = keys, .payloads = sorted});
+    runtime_.map(
+        count,
+        kernels::row_keys{.rows = changed, .triangles = result_.triangles, .keys = keys, .payloads = sorted});
     host::sort_by_key(runtime_, keys, sorted, count);
     const auto triangles = arena_.allocate<cl_int>(3 * count);
     const auto neighbors = arena_.allocate<cl_uint>(3 * count);
@@ -581,8 +581,8 @@ class Insertion {
 
   void write_halfedges() {
     if (result_.halfedges.memory() == nullptr) return;
-    runtime_.map(rows_, kernels::write_row_halfedges{.neighbors = result_.neighbors,
-                                                     .halfedges = result_.halfedges});
+    runtime_.map(
+        rows_, kernels::write_row_halfedges{.neighbors = result_.neighbors, .halfedges = result_.halfedges});
   }
 
   host::Runtime& runtime_;
@@ -596,12 +596,12 @@ class Insertion {
   ScaledPoints points_;
   Buffer<cl_uint> status_{};
   cl_uint last_status_[kernel::INSERTION_NUMBERS] = {};
-  Buffer<cl_uint> marks_{};        // a bit per vertex: whether it is an end of a constraint
-  Buffer<cl_uint> places_{};       // per marked vertex: a corner at which it is, or its place on the line
-  Buffer<cl_uint> claims_{};       // per row: the smallest rank of the constraints that cross it
-  Buffer<cl_uchar> flags_{};       // per row: see edge_flag
-  Buffer<cl_uchar> changed_{};     // per row: whether it is new
-  Buffer<cl_int> new_corners_{};   // see replaced_rows
+  Buffer<cl_uint> marks_{};       // a bit per vertex: whether it is an end of a constraint
+  Buffer<cl_uint> places_{};      // per marked vertex: a corner at which it is, or its place on the line
+  Buffer<cl_uint> claims_{};      // per row: the smallest rank of the constraints that cross it
+  Buffer<cl_uchar> flags_{};      // per row: see edge_flag
+  Buffer<cl_uchar> changed_{};    // per row: whether it is new
+  Buffer<cl_int> new_corners_{};  // see replaced_rows
 };
 
 }  // namespace

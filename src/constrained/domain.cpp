@@ -196,17 +196,16 @@ Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
     Arena::Scope scope(runtime.arena());
     const auto parents = runtime.arena().allocate<cl_int>(triangles);
     const auto numbers = runtime.arena().allocate<cl_uint>(triangles + 1);
-    runtime.map(triangles, kernels::start_regions{.neighbors = mesh.neighbors,
-                                                  .constrained = mesh.constrained,
-                                                  .parents = parents});
-    runtime.map(triangles, kernels::join_regions{.neighbors = mesh.neighbors,
-                                                 .constrained = mesh.constrained,
-                                                 .parents = parents});
-    runtime.map(triangles, kernels::find_roots{
-                               .parents = parents, .regions = regions.of_triangles, .counts = numbers});
-    host::exclusive_scan(runtime, numbers, triangles, numbers);
     runtime.map(triangles,
-                kernels::number_regions{.numbers = numbers, .regions = regions.of_triangles});
+                kernels::start_regions{
+                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    runtime.map(triangles,
+                kernels::join_regions{
+                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    runtime.map(triangles,
+                kernels::find_roots{.parents = parents, .regions = regions.of_triangles, .counts = numbers});
+    host::exclusive_scan(runtime, numbers, triangles, numbers);
+    runtime.map(triangles, kernels::number_regions{.numbers = numbers, .regions = regions.of_triangles});
     regions.count = runtime.read_one(numbers, triangles);
   }
   regions.left = filled(runtime, regions.count, cl_uchar{1});
@@ -230,8 +229,8 @@ std::vector<std::size_t> hole_offsets(const Constraints& constraints, std::size_
   std::vector<std::size_t> offsets = constraints.hole_offsets;
   if (offsets.empty() && sets == 1) offsets = {0, constraints.hole_count};
   if (offsets.size() != sets + 1 || offsets.back() != constraints.hole_count) {
-    throw Error(ErrorKind::usage, fmt::format("the offsets of {} holes do not fit {} sets",
-                                              constraints.hole_count, sets));
+    throw Error(ErrorKind::usage,
+                fmt::format("the offsets of {} holes do not fit {} sets", constraints.hole_count, sets));
   }
   geometry::check_offsets(offsets);
   return offsets;
@@ -333,17 +332,16 @@ LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regi
   places.numbers = runtime.arena().allocate<cl_uint>(regions.count + 1);
   Arena::Scope scope(runtime.arena());
   const auto offsets = runtime.arena().allocate<cl_uint>(ends);
-  runtime.map(triangles, kernels::count_left{.regions = regions.of_triangles,
-                                             .left = regions.left,
-                                             .counts = places.triangles});
+  runtime.map(
+      triangles,
+      kernels::count_left{.regions = regions.of_triangles, .left = regions.left, .counts = places.triangles});
   host::exclusive_scan(runtime, places.triangles, triangles, places.triangles);
   runtime.map(regions.count, kernels::count_regions{.left = regions.left, .counts = places.numbers});
   host::exclusive_scan(runtime, places.numbers, regions.count, places.numbers);
-  runtime.map(ends, kernels::find_offsets{
-                        .triangle_offsets =
-                            runtime.upload(runtime.arena(), points::integers(mesh.triangle_offsets)),
-                        .places = places.triangles,
-                        .offsets = offsets});
+  runtime.map(ends, kernels::find_offsets{.triangle_offsets = runtime.upload(
+                                              runtime.arena(), points::integers(mesh.triangle_offsets)),
+                                          .places = places.triangles,
+                                          .offsets = offsets});
   std::vector<cl_uint> found(ends);
   cl_uint left = 0;
   runtime.read_later(offsets, 0, ends, found.data());
@@ -375,8 +373,8 @@ void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces
 
 void write_depths(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
                   const Buffer<cl_int>& depths, const Buffer<cl_int>& triangle_depths) {
-  runtime.map(n,
-              kernels::write_depths{.regions = regions, .depths = depths, .triangle_depths = triangle_depths});
+  runtime.map(
+      n, kernels::write_depths{.regions = regions, .depths = depths, .triangle_depths = triangle_depths});
 }
 
 }  // namespace flaunay::constrained

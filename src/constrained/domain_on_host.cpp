@@ -53,7 +53,8 @@ class EdgeWeights {
   // Goes along the pieces of a segment, from its lexicographically smaller end.
   void cover(std::size_t s, const std::int32_t* segments, FillRule rule, const ConstrainedTriangulation& mesh,
              Ids& balances) {
-    const std::int32_t a = mesh.representatives[segments[2 * s]], b = mesh.representatives[segments[2 * s + 1]];
+    const std::int32_t a = mesh.representatives[segments[2 * s]],
+                       b = mesh.representatives[segments[2 * s + 1]];
     if (a == b) return;
     balances[a] += 1;
     balances[b] += rule == FillRule::winding ? -1 : 1;
@@ -87,8 +88,8 @@ void find_depths(const ConstrainedTriangulation& mesh, const DepthRules& rules, 
         if (u < 0) levels[of[t]] = 0;
       } else if (u < t && (u < 0 || of[u] != of[t])) {
         between.insert(between.end(), {u < 0 ? -1 : of[u], of[t]});
-        steps.push_back(weights.crossed(mesh.triangles[3 * t + (k + 1) % 3],
-                                        mesh.triangles[3 * t + (k + 2) % 3]));
+        steps.push_back(
+            weights.crossed(mesh.triangles[3 * t + (k + 1) % 3], mesh.triangles[3 * t + (k + 2) % 3]));
       }
     }
   }
@@ -105,8 +106,8 @@ void find_depths(const ConstrainedTriangulation& mesh, const DepthRules& rules, 
 void drop_holes(const double* coordinates, const std::vector<std::size_t>& offsets,
                 const Constraints& constraints, const ConstrainedTriangulation& mesh, HostRegions& regions) {
   if (constraints.hole_count == 0) return;
-  const Seeds seeds = make_seeds(
-      constraints, magnitudes_at_holes(coordinates, offsets, mesh.added_offsets, constraints));
+  const Seeds seeds =
+      make_seeds(constraints, magnitudes_at_holes(coordinates, offsets, mesh.added_offsets, constraints));
   Ids found(seeds.places.size(), -1);
   std::vector<std::uint8_t> barred(seeds.places.size(), 0);
   for (std::size_t s = 0; s + 1 < seeds.offsets.size(); ++s) {
@@ -212,9 +213,9 @@ std::vector<geometry::Magnitudes> magnitudes_at_holes(const double* coordinates,
   std::vector<geometry::Magnitudes> magnitudes(sets);
   for (std::size_t s = 0; s < sets; ++s) {
     if (holes[s] == holes[s + 1]) continue;
-    magnitudes[s] = geometry::joined(
-        geometry::inspect(coordinates, offsets[s], offsets[s + 1]),
-        geometry::inspect(coordinates, n + added_offsets[s], n + added_offsets[s + 1]));
+    magnitudes[s] =
+        geometry::joined(geometry::inspect(coordinates, offsets[s], offsets[s + 1]),
+                         geometry::inspect(coordinates, n + added_offsets[s], n + added_offsets[s + 1]));
   }
   return magnitudes;
 }
@@ -228,7 +229,8 @@ void apply_domains_on_host(const double* coordinates, const std::vector<std::siz
     find_depths(result, request.rules, weights, regions);
   }
   drop_holes(coordinates, offsets, constraints, result, regions);
-  if (std::find(regions.left.begin(), regions.left.end(), 0) != regions.left.end()) leave_on_host(result, regions);
+  if (std::find(regions.left.begin(), regions.left.end(), 0) != regions.left.end())
+    leave_on_host(result, regions);
   if (request.labels) label_on_host(regions, result);
 }
 

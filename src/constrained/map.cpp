@@ -38,8 +38,7 @@ Tree make_tree(const ConstrainedTriangulation& mesh, const Ids& regions, std::si
   // Corners whose opposite edge is a border, grouped by the region of their triangle.
   Ids offsets(count + 1, 0), corners, seen(count, 0);
   const auto is_border = [&](std::int32_t c) {
-    return mesh.constrained[c] != 0 && mesh.neighbors[c] >= 0 &&
-           regions[mesh.neighbors[c]] != regions[c / 3];
+    return mesh.constrained[c] != 0 && mesh.neighbors[c] >= 0 && regions[mesh.neighbors[c]] != regions[c / 3];
   };
   for (std::int32_t c = 0; c < halfedges; ++c) offsets[regions[c / 3] + 1] += is_border(c) ? 1 : 0;
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
@@ -86,7 +85,10 @@ struct Steps {
 class Coverage {
  public:
   Coverage(const double* coordinates, const ConstrainedTriangulation& mesh, const Tree& tree)
-      : coordinates_(coordinates), mesh_(mesh), edges_(mesh.constraint_edges.size() / 2), wanted_(edges_, -1) {
+      : coordinates_(coordinates),
+        mesh_(mesh),
+        edges_(mesh.constraint_edges.size() / 2),
+        wanted_(edges_, -1) {
     find_edges(tree);
   }
 
@@ -101,7 +103,8 @@ class Coverage {
       for (std::int32_t p = mesh_.piece_offsets[s]; p < mesh_.piece_offsets[s + 1]; ++p) {
         const std::int32_t first = mesh_.piece_edges[2 * p], end = mesh_.piece_edges[2 * p + 1];
         if (first == end) continue;
-        const std::int32_t low = mesh_.constraint_edges[2 * first], high = mesh_.constraint_edges[2 * end - 1];
+        const std::int32_t low = mesh_.constraint_edges[2 * first],
+                           high = mesh_.constraint_edges[2 * end - 1];
         const bool is_backward = low != from;
         from = is_backward ? low : high;
         for (std::int32_t e = next_[first]; e < end; e = next_[e + 1]) {
@@ -152,8 +155,9 @@ class Coverage {
     });
     for (std::size_t e = 0; e < edges_; ++e) {
       const std::int32_t from = mesh_.constraint_edges[2 * e], to = mesh_.constraint_edges[2 * e + 1];
-      auto found = std::lower_bound(all.begin(), all.end(), std::tie(from, to),
-                                    [](const Wanted& a, const auto& b) { return std::tie(a.from, a.to) < b; });
+      auto found =
+          std::lower_bound(all.begin(), all.end(), std::tie(from, to),
+                           [](const Wanted& a, const auto& b) { return std::tie(a.from, a.to) < b; });
       for (; found != all.end() && found->from == from && found->to == to; ++found) {
         following_[found->region] = wanted_[e];
         wanted_[e] = found->region;
@@ -200,12 +204,13 @@ class Around {
   FillRule rule_;
 };
 
-[[noreturn]] void throw_overlap(const ConstrainedTriangulation& mesh, const Ids& regions,
-                                std::int32_t region, const std::pair<std::int32_t, std::int32_t>& polygons) {
-  const auto t = static_cast<std::size_t>(std::find(regions.begin(), regions.end(), region) - regions.begin());
+[[noreturn]] void throw_overlap(const ConstrainedTriangulation& mesh, const Ids& regions, std::int32_t region,
+                                const std::pair<std::int32_t, std::int32_t>& polygons) {
+  const auto t =
+      static_cast<std::size_t>(std::find(regions.begin(), regions.end(), region) - regions.begin());
   throw Error(ErrorKind::input,
-              fmt::format("polygons {} and {} overlap, at the triangle of points {}, {} and {}", polygons.first,
-                          polygons.second, mesh.triangles[3 * t], mesh.triangles[3 * t + 1],
+              fmt::format("polygons {} and {} overlap, at the triangle of points {}, {} and {}",
+                          polygons.first, polygons.second, mesh.triangles[3 * t], mesh.triangles[3 * t + 1],
                           mesh.triangles[3 * t + 2]));
 }
 

@@ -300,7 +300,8 @@ constexpr Row kTable[] = {
      {0},
      {1},
      {1},
-     "Caches of CPUs are coherent. Other groups' values are read by atomic operations where they may not be."},
+     "Caches of CPUs are coherent. Other groups' values are read by atomic operations where they may not "
+     "be."},
     {"depth_rounds",
      &Tuning::depth_rounds,
      {2},

@@ -26,8 +26,7 @@ namespace flaunay::testing {
 namespace {
 
 using Runtimes = SharedRuntimes<make_tuned_runtime>;
-[[maybe_unused]] ::testing::Environment* const kRuntimes =
-    ::testing::AddGlobalTestEnvironment(new Runtimes);
+[[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
 
 /// Under the tuning that the environment names alone, if it names one.
 std::vector<std::string> tunings() {
@@ -131,9 +130,9 @@ TEST(SmallInsertion, SegmentsThroughPoints) {
     for (int k = 0; k < 8; ++k) {
       const auto y = random.integer(0, rows - 1);
       segments.push_back(static_cast<std::int32_t>(y * columns + random.integer(0, columns - 1)));
-      const auto place =
-          random.integer(0, 1) ? y * columns + random.integer(0, columns - 1)
-                               : random.integer(0, rows - 1) * columns + segments.back() % columns;
+      const auto place = random.integer(0, 1)
+                             ? y * columns + random.integer(0, columns - 1)
+                             : random.integer(0, rows - 1) * columns + segments.back() % columns;
       segments.push_back(static_cast<std::int32_t>(place));
     }
     expect_as_twin(grid_points(columns, rows), segments);

@@ -107,7 +107,8 @@ std::vector<std::int32_t> expected_regions(const ConstrainedTriangulation& mesh)
 
 // The least numbers of constraints on the way from outside, improved until nothing changes.
 std::vector<std::int32_t> expected_nesting(const ConstrainedTriangulation& mesh) {
-  std::vector<std::int32_t> depths(mesh.triangles.size() / 3, static_cast<std::int32_t>(mesh.triangles.size()));
+  std::vector<std::int32_t> depths(mesh.triangles.size() / 3,
+                                   static_cast<std::int32_t>(mesh.triangles.size()));
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t c = 0; c < mesh.neighbors.size(); ++c) {
@@ -334,13 +335,14 @@ TEST(SmallDomains, HolesAtPlaces) {
     if (tuning.empty()) {
       mesh = on_host(input, mesh, {});
     } else {
-      call::apply_domains_on(Runtimes::get(tuning), input.points.data(), input.offsets, input.constraints(), {},
-                             mesh);
+      call::apply_domains_on(Runtimes::get(tuning), input.points.data(), input.offsets, input.constraints(),
+                             {}, mesh);
     }
     double doubled = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
       const double* p[3];
-      for (std::size_t k = 0; k < 3; ++k) p[k] = &input.points[2 * static_cast<std::size_t>(mesh.triangles[t + k])];
+      for (std::size_t k = 0; k < 3; ++k)
+        p[k] = &input.points[2 * static_cast<std::size_t>(mesh.triangles[t + k])];
       doubled += (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
     }
     return doubled / 2;
@@ -449,7 +451,8 @@ TEST(Domains, NestedRings) {
     const double d = r + 1;
     input.points.insert(input.points.end(), {-d, -d, d, -d, d, d, -d, d});
     for (std::int32_t k = 0; k < 4; ++k) {
-      input.segments.insert(input.segments.end(), {4 * r + k, 4 * r + (r % 3 == 0 ? (k + 1) % 4 : (k + 3) % 4)});
+      input.segments.insert(input.segments.end(),
+                            {4 * r + k, 4 * r + (r % 3 == 0 ? (k + 1) % 4 : (k + 3) % 4)});
     }
   }
   input.offsets = {0, input.points.size() / 2};

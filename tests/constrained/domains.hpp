@@ -62,15 +62,16 @@ struct Around {
   int crossings = 0;  ///< of a ray from the place to the right
 };
 
-inline Around around(const Coordinates& points, const Segments& segments, std::size_t first,
-                     std::size_t last, const RationalPlace& place) {
+inline Around around(const Coordinates& points, const Segments& segments, std::size_t first, std::size_t last,
+                     const RationalPlace& place) {
   Around found;
   for (std::size_t s = first; s < last; ++s) {
     const double* a = &points[2 * static_cast<std::size_t>(segments[2 * s])];
     const double* b = &points[2 * static_cast<std::size_t>(segments[2 * s + 1])];
     const bool is_below = a[1] <= place.y, ends_below = b[1] <= place.y;
     if (is_below == ends_below) continue;
-    const mpq_class area = (mpq_class(b[0]) - a[0]) * (place.y - a[1]) - (mpq_class(b[1]) - a[1]) * (place.x - a[0]);
+    const mpq_class area =
+        (mpq_class(b[0]) - a[0]) * (place.y - a[1]) - (mpq_class(b[1]) - a[1]) * (place.x - a[0]);
     // To the left of a segment that goes up, or to the right of one that goes down.
     if (is_below ? area > 0 : area < 0) {
       found.winding += is_below ? 1 : -1;

@@ -74,7 +74,8 @@ Row row_at(const std::vector<std::int32_t>& triangles, std::size_t t) {
 void expect_right_sets(const Rings& input) {
   for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
     SCOPED_TRACE(static_cast<int>(rule));
-    const ConstrainedTriangulation all = triangulator().polygons(input.view(), options_of(rule, Outside::keep));
+    const ConstrainedTriangulation all =
+        triangulator().polygons(input.view(), options_of(rule, Outside::keep));
     const ConstrainedTriangulation found = triangulator().polygons(input.view(), options_of(rule));
     ASSERT_EQ(all.triangle_offsets.size(), input.count() + 1);
     std::vector<std::int32_t> triangles;
@@ -155,7 +156,8 @@ Rings random_polygons(FixtureRandom& random, std::uint64_t round, int most) {
         // The fourth is the first one again.
         ring.insert(ring.end(), {points[2 * v], points[2 * v + 1]});
       }
-      if (is_turned && corners == 4) ring = {ring[0], ring[1], ring[2], ring[3], ring[4], ring[5], ring[0], ring[1]};
+      if (is_turned && corners == 4)
+        ring = {ring[0], ring[1], ring[2], ring[3], ring[4], ring[5], ring[0], ring[1]};
       rings.add_ring(ring);
     }
     if (random.integer(0, 3) == 0) rings.add_ring({});
@@ -236,7 +238,9 @@ TEST(SmallPolygons, Shapes) {
   EXPECT_EQ(area(flat, {}), 1);
   Rings none;
   EXPECT_EQ(triangulator().polygons(none.view()).triangle_offsets, (std::vector<std::size_t>{0}));
-  EXPECT_EQ(triangulator().polygons(none.view(), options_of(FillRule::even_odd, Outside::holes, true)).triangle_offsets,
+  EXPECT_EQ(triangulator()
+                .polygons(none.view(), options_of(FillRule::even_odd, Outside::holes, true))
+                .triangle_offsets,
             (std::vector<std::size_t>{0, 0}));
 }
 
@@ -254,7 +258,8 @@ TEST(SmallPolygons, SharedBordersOfMaps) {
   // Over the common border triangles are neighbours.
   int across = 0;
   for (std::size_t c = 0; c < mesh.neighbors.size(); ++c) {
-    across += mesh.neighbors[c] >= 0 && mesh.polygons[c / 3] == 0 && mesh.polygons[mesh.neighbors[c]] == 1 ? 1 : 0;
+    across +=
+        mesh.neighbors[c] >= 0 && mesh.polygons[c / 3] == 0 && mesh.polygons[mesh.neighbors[c]] == 1 ? 1 : 0;
   }
   EXPECT_EQ(across, 2);
   options.overlaps = Overlaps::error;
@@ -299,7 +304,8 @@ TEST(SmallPolygons, Errors) {
   EXPECT_EQ(message(pair, options_of(FillRule::nesting, Outside::holes, true), ErrorKind::usage),
             "the polygons of a map need the fill rule even-odd or winding");
   pair.polygons.back() = 1;
-  EXPECT_EQ(message(pair, {}, ErrorKind::usage), "the offsets of polygons do not end with the number of rings");
+  EXPECT_EQ(message(pair, {}, ErrorKind::usage),
+            "the offsets of polygons do not end with the number of rings");
   pair.polygons = {};
   EXPECT_EQ(message(pair, {}, ErrorKind::usage),
             "polygons need offsets of rings and of polygons, which begin with 0");
@@ -363,7 +369,8 @@ TEST(Polygons, ManyAreAsEach) {
   std::size_t t = 0;
   std::int32_t regions = 0, point = 0;
   for (std::size_t p = 0; p < each.size(); ++p) {
-    const ConstrainedTriangulation own = triangulator().polygons(each[p].view(), options_of(FillRule::even_odd));
+    const ConstrainedTriangulation own =
+        triangulator().polygons(each[p].view(), options_of(FillRule::even_odd));
     ASSERT_EQ(mesh.triangle_offsets[p], t);
     for (std::size_t i = 0; i < own.triangles.size() / 3; ++i, ++t) {
       Row row = row_at(own.triangles, i);
