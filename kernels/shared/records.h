@@ -148,6 +148,26 @@ typedef struct {
 } open_edge;
 ASSERT_SIZE(open_edge, 12);
 
+// A constraint that is not inserted yet: the corner of its vertex `origin` opposite to the first edge that it crosses
+// on the way to the vertex `goal`; how many rows it crosses; and where the walk turned, a bit per row after the first:
+// 1 if the row's vertex is on the left. rows is 0 if the constraint is an edge already, which is opposite to the
+// corner.
+typedef struct {
+  int origin, goal, corner, rows;
+  ulong turns;
+} constraint_walk;
+ASSERT_SIZE(constraint_walk, 24);
+
+// A vertex of a chain that bounds the rows that a constraint crosses; the side from it to the next one: the corner of
+// the row inside that is opposite to it, -1 at the end of the chain; twice the corner beyond it and 2, or 0 on the
+// hull, and 1 if it is a constraint. Also a row, which has nothing to do with the vertex.
+typedef struct {
+  int vertex, corner;
+  uint side;
+  int row;
+} chain_entry;
+ASSERT_SIZE(chain_entry, 16);
+
 END_SHARED
 
 #endif

@@ -74,6 +74,7 @@ void triangulate(Engine& self, const DevicePoints& points, DeviceTriangulation& 
   statistics.device = runtime.name();
   statistics.points = n;
   result.parts = parts;
+  result.is_constrained = false;
   result.points = n;
   result.point_offsets = offsets;
   result.triangle_offsets.assign(sets + 1, 0);

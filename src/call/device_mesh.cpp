@@ -49,6 +49,7 @@ points::DeviceMesh mesh_of(host::Runtime& runtime, const double* coordinates,
 points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
                            const DeviceTriangulation& triangulation) {
   const Parts& parts = triangulation.parts;
+  expect(!triangulation.is_constrained, "a constrained triangulation is not the dual of a Voronoi diagram");
   expect(parts.triangles && parts.neighbors && parts.hull && parts.representatives,
          "the parts triangles, neighbors, hull and representatives are needed");
   expect(points.count == triangulation.points, "the triangulation is of another number of points");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "constrained/constraints.hpp"
+#include "constrained/crossing_error.hpp"
 #include "constrained/mesh.hpp"
 #include "geometry/magnitudes.hpp"
 #include "shared/barycentric.h"
@@ -45,25 +46,6 @@ ScaledPoints scale_points(const double* coordinates, const std::vector<std::size
 std::size_t set_of(const std::vector<std::size_t>& offsets, std::int32_t point) {
   return std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(point)) - offsets.begin() -
          1;
-}
-
-void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments) {
-  if (segments.size() % 2 != 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("segments need two points each, but {} indices were given", segments.size()));
-  }
-  const auto n = static_cast<std::int32_t>(offsets.back());
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i] < 0 || segments[i] >= n) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("segment {} has point {}, but there are {} points", i / 2, segments[i], n));
-    }
-    if (i % 2 == 0 || offsets.size() == 2) continue;
-    if (set_of(offsets, segments[i - 1]) != set_of(offsets, segments[i])) {
-      throw Error(ErrorKind::usage, fmt::format("segment {} joins points {} and {} of different sets", i / 2,
-                                                segments[i - 1], segments[i]));
-    }
-  }
 }
 
 // A segment between distinct points, the lexicographically smaller one first.
@@ -252,11 +234,11 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
 [[noreturn]] void throw_crossing(const ScaledPoints& scaled, int shift, const Ids& segments,
                                  const Segment& first, const Segment& second) {
   const Point place = crossing(scaled, shift, first, second);
-  throw Error(
-      ErrorKind::input,
+  throw CrossingError(
       fmt::format("segments {} (points {} and {}) and {} (points {} and {}) cross near ({:.17g}, {:.17g})",
                   second.index, segments[2 * second.index], segments[2 * second.index + 1], first.index,
-                  segments[2 * first.index], segments[2 * first.index + 1], place.x, place.y));
+                  segments[2 * first.index], segments[2 * first.index + 1], place.x, place.y),
+      second.index, first.index);
 }
 
 // Of segments that cross, names the first one that crosses an earlier one.
@@ -278,6 +260,25 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
 
 }  // namespace
 
+void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments) {
+  if (segments.size() % 2 != 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("segments need two points each, but {} indices were given", segments.size()));
+  }
+  const auto n = static_cast<std::int32_t>(offsets.back());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (segments[i] < 0 || segments[i] >= n) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("segment {} has point {}, but there are {} points", i / 2, segments[i], n));
+    }
+    if (i % 2 == 0 || offsets.size() == 2) continue;
+    if (set_of(offsets, segments[i - 1]) != set_of(offsets, segments[i])) {
+      throw Error(ErrorKind::usage, fmt::format("segment {} joins points {} and {} of different sets", i / 2,
+                                                segments[i - 1], segments[i]));
+    }
+  }
+}
+
 Result constrain(const double* coordinates, const std::vector<std::size_t>& offsets,
                  const Triangulation& delaunay, const Ids& segments) {
   check_offsets(offsets);
@@ -296,9 +297,9 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   }
 
   Result result;
-  inserter.mesh().write(result.triangles, result.neighbors);
+  inserter.mesh().write(result.triangles, result.neighbors, result.constrained);
   Constraints& constraints = inserter.constraints();
-  constraints.sort(offsets);
+  constraints.sort();
   result.constraint_edges = constraints.sorted_edges();
   result.segment_edges.assign(segments.size(), 0);
   for (std::size_t s = 0; s < unique_of.size(); ++s) {

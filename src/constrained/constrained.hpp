@@ -14,16 +14,24 @@ struct Result {
   /// As in Triangulation. Rows of `delaunay` that no segment crosses are unchanged, at their places; the
   /// other places have the new triangles in ascending order.
   std::vector<std::int32_t> triangles, neighbors;
+  /// As in ConstrainedTriangulation.
+  std::vector<std::uint8_t> constrained;
   /// The edges that segments are made of, each once: 2 vertices per edge, the lexicographically smaller one
   /// first.
   std::vector<std::int32_t> constraint_edges;
   /// 2 per segment: its edges are [first, second) in constraint_edges, from its lexicographically smaller end
   /// to the other one. 0, 0 if its ends have the same coordinates.
   std::vector<std::int32_t> segment_edges;
+  /// As in Triangulation; empty unless asked for.
+  std::vector<std::int32_t> halfedges;
 
   std::size_t large_polygons = 0;     ///< cavities' sides triangulated by random insertion
   std::size_t repeated_polygons = 0;  ///< those of them for which gift-wrapping was needed
 };
+
+/// Throws Error(usage) if an index is no point, if the ends of a segment are in different sets, or if the
+/// number of indices is odd.
+void check_segments(const std::vector<std::size_t>& offsets, const std::vector<std::int32_t>& segments);
 
 /// Makes the segments edges of a triangulation, in one or more sets.
 ///

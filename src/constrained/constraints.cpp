@@ -32,29 +32,18 @@ std::int32_t Constraints::end_of_chain(std::int32_t edge, std::int32_t Edge::*sh
 std::int32_t Constraints::first_of_chain(std::int32_t edge) { return end_of_chain(edge, &Edge::backward); }
 std::int32_t Constraints::last_of_chain(std::int32_t edge) { return end_of_chain(edge, &Edge::forward); }
 
-void Constraints::sort(const std::vector<std::size_t>& offsets) {
-  struct Chain {
-    std::ptrdiff_t set;
-    Point from, to;
-    std::int32_t first;
-  };
-  std::vector<Chain> chains;
+void Constraints::sort() {
+  std::vector<std::int32_t> firsts;
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const Edge& edge = edges_[e];
-    if (edge.previous >= 0) continue;
-    const auto set = std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(edge.from));
-    chains.push_back(
-        {set - offsets.begin(), points_[edge.from], points_[edge.to], static_cast<std::int32_t>(e)});
+    if (edges_[e].previous < 0) firsts.push_back(static_cast<std::int32_t>(e));
   }
-  std::sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
-    if (a.set != b.set) return a.set < b.set;
-    const bool same = a.from == b.from;
-    return kernel::comes_before(same ? a.to : a.from, same ? b.to : b.from) != 0;
+  std::sort(firsts.begin(), firsts.end(), [this](std::int32_t a, std::int32_t b) {
+    return std::pair(from(a), to(a)) < std::pair(from(b), to(b));
   });
   number_.resize(edges_.size());
   chain_offsets_.push_back(0);
-  for (const Chain& chain : chains) {
-    for (std::int32_t e = chain.first; e >= 0; e = edges_[e].next) {
+  for (const std::int32_t first : firsts) {
+    for (std::int32_t e = first; e >= 0; e = edges_[e].next) {
       number_[e] = static_cast<std::int32_t>(order_.size());
       order_.push_back(e);
     }

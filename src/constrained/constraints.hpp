@@ -31,9 +31,9 @@ class Constraints {
   std::int32_t first_of_chain(std::int32_t edge);
   std::int32_t last_of_chain(std::int32_t edge);
 
-  /// Numbers the edges along their chains, and the chains by set, first vertex and second vertex, of which
-  /// the latter two are in lexicographic order. offsets: of the sets' points. No more links after that.
-  void sort(const std::vector<std::size_t>& offsets);
+  /// Numbers the edges along their chains, and the chains by their first and second vertex. No more links
+  /// after that.
+  void sort();
   /// The ends of all edges, two per edge, in this order.
   std::vector<std::int32_t> sorted_edges() const;
   /// After sort: the number of the edge that begins at a vertex of a chain, or where the chain ends, the

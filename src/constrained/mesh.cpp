@@ -215,8 +215,8 @@ void ConstrainedMesh::join(std::int32_t a, std::int32_t b) {
   if (b >= 0) twins_[b] = a;
 }
 
-void ConstrainedMesh::write(std::vector<std::int32_t>& triangles,
-                            std::vector<std::int32_t>& neighbors) const {
+void ConstrainedMesh::write(std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& neighbors,
+                            std::vector<std::uint8_t>& constrained) const {
   const auto rows = static_cast<std::int32_t>(triangles_.size() / 3);
   // Where the smallest vertex of a row is.
   const auto first_corner = [this](std::int32_t t) {
@@ -244,12 +244,14 @@ void ConstrainedMesh::write(std::vector<std::int32_t>& triangles,
 
   triangles.resize(triangles_.size());
   neighbors.resize(triangles_.size());
+  constrained.resize(triangles_.size());
   for (std::int32_t t = 0; t < rows; ++t) {
     std::int32_t h = first_corner(t);
     for (std::int32_t to = 3 * place[t], end = to + 3; to < end; ++to, h = next_halfedge(h)) {
       triangles[to] = triangles_[h];
-      const std::int32_t twin = twins_[next_halfedge(h)];
+      const std::int32_t opposite = next_halfedge(h), twin = twins_[opposite];
       neighbors[to] = twin < 0 ? -1 : place[twin / 3];
+      constrained[to] = constraints_[opposite] >= 0;
     }
   }
 }

@@ -57,9 +57,10 @@ class ConstrainedMesh {
   /// with the edge from its first to its last vertex, which becomes a constraint.
   void retriangulate(const Cavity& cavity, std::int32_t constraint);
 
-  /// The triangles, and those opposite to their vertices, as in Triangulation. Rows that were not replaced
-  /// are as before; the others are in ascending order.
-  void write(std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& neighbors) const;
+  /// The triangles, those opposite to their vertices, and whether a constraint is between, as in
+  /// ConstrainedTriangulation. Rows that were not replaced are as before; the others are in ascending order.
+  void write(std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& neighbors,
+             std::vector<std::uint8_t>& constrained) const;
 
   const PolygonTriangulator& polygons() const { return polygons_; }
 

@@ -237,6 +237,18 @@ constexpr Row kTable[] = {
      {128},
      {2},
      "Of uniform points a query needs some 10 triangles and 20 neighbours."},
+    {"chain_wrapped_most",
+     &Tuning::chain_wrapped_most,
+     {24},
+     {128},
+     {5},
+     "From here on insertion is faster. On a GPU gift-wrapping's loads do not wait for each other."},
+    {"chain_alone_most",
+     &Tuning::chain_alone_most,
+     {kLargestValue},
+     {kLargestValue},
+     {kLargestValue},
+     "A core does alone what would take many work-items of a GPU rounds."},
     {"host_points",
      &Tuning::host_points,
      {6000},
@@ -283,6 +295,19 @@ constexpr Row kTable[] = {
      {0},
      {1},
      "Shows a simulator every access beyond an array."},
+    {"atomic_reads",
+     &Tuning::atomic_reads,
+     {0},
+     {1},
+     {1},
+     "Caches of CPUs are coherent. Other groups' values are read by atomic operations where they may not "
+     "be."},
+    {"depth_rounds",
+     &Tuning::depth_rounds,
+     {2},
+     {16},
+     {1},
+     "A GPU's launch that does nothing costs less than a wait. Few domains are more than 3 deep."},
     {"split_products",
      &Tuning::split_products,
      {0},
@@ -451,8 +476,8 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}{}", Sizes::build_options(), small_region,
-                     fetch_ahead, split_products != 0 ? " -DSPLIT_PRODUCTS" : "");
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}", Sizes::build_options(),
+                     small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "");
 }
 
 Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {

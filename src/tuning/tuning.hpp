@@ -57,6 +57,11 @@ struct Tuning : host::Sizes {
   /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels.
   std::size_t walk_most = 1;
 
+  /// Chains of at most this many vertices are triangulated by gift-wrapping, and of those with more, a
+  /// work-item each inserts the vertices of chains of at most chain_alone_most.
+  std::size_t chain_wrapped_most = 2;
+  std::size_t chain_alone_most = 2;
+
   /// Sets of at most a block's points each, and of at most this many together, are triangulated on the
   /// calling thread if no device is named; 0: none.
   std::size_t host_points = 0;
@@ -72,6 +77,11 @@ struct Tuning : host::Sizes {
   /// If a round leaves more than so many percent of its points, the next one is the last: its blocks are
   /// merged.
   std::size_t merge_from_percent = 1;
+
+  /// Other than 0: kernels read by atomic operations what other work-groups may change meanwhile.
+  std::size_t atomic_reads = 0;
+  /// So many levels of regions are reached from outside between two waits.
+  std::size_t depth_rounds = 1;
 
   /// Other than 0: kernels compute the errors of products without fma, as for devices whose fma is not exact.
   std::size_t split_products = 0;

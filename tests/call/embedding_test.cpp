@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
@@ -1072,6 +1073,54 @@ TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
   expect_usage_error({"two things"}, [&] {
     embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own());
   });
+}
+
+// Rows of points, and a segment through each row, in both directions.
+TEST(SmallConstrainedOnDevice, IsThatOfTheHost) {
+  std::vector<double> points;
+  std::vector<std::int32_t> segments;
+  const std::vector<double> uniform = io::generate("uniform", 24 * 24, 5).coordinates;
+  for (std::int32_t k = 0; k < 24 * 24; ++k) {
+    points.insert(points.end(), {k % 24 + 0.4 * uniform[2 * k], k / 24 + 0.4 * uniform[2 * k + 1]});
+    if (k % 24 == 23) segments.insert(segments.end(), {k - 23, k, k, k - 23});
+  }
+  const std::size_t n = points.size() / 2;
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  const ConstrainedTriangulation expected = triangulator().constrained(points.data(), n, constraints);
+
+  const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
+  DeviceConstrainedTriangulation result;
+  embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, result);
+  embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, result);
+  const auto read = [](const DeviceBuffer& buffer, std::size_t count) {
+    return embedder().download<std::int32_t>(buffer.memory(), count, embedded().queue());
+  };
+  EXPECT_EQ(result.edge_count, expected.constraint_edges.size() / 2);
+  EXPECT_EQ(read(result.mesh.triangles, expected.triangles.size()), expected.triangles);
+  EXPECT_EQ(read(result.mesh.neighbors, expected.neighbors.size()), expected.neighbors);
+  EXPECT_EQ(read(result.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
+  EXPECT_EQ(read(result.piece_edges, expected.piece_edges.size()), expected.piece_edges);
+  EXPECT_EQ(embedder().download<std::uint8_t>(result.constrained.memory(), expected.constrained.size(),
+                                              embedded().queue()),
+            expected.constrained);
+  DeviceVoronoi dual;
+  EXPECT_THROW(embedded().voronoi({memory.get(), n}, result.mesh, dual), Error);
+}
+
+TEST(SmallConstrainedOnDevice, CrossingSegmentsAreNamed) {
+  const std::vector<double> points = {0, 0, 2, 2, 0, 2, 2, 0};
+  const std::vector<std::int32_t> segments = {0, 1, 2, 3};
+  const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
+  DeviceConstrainedTriangulation result;
+  try {
+    embedded().constrained({memory.get(), 4}, {ends.get(), 2}, result);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_NE(std::string(error.what()).find("segments 0"), std::string::npos) << error.what();
+  }
 }
 
 TEST(SmallRelaxOnDevice, IsThatOfTheHost) {

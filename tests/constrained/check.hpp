@@ -148,6 +148,7 @@ inline void expect_canonical(const Coordinates& points, const Triangulation& del
       ASSERT_TRUE(a < b && a < d) << "triangle " << c / 3;
     }
     const Edge edge = unordered(triangles[t + (c + 1) % 3], triangles[t + (c + 2) % 3]);
+    ASSERT_EQ(result.constrained[c] != 0, constraints.count(edge) != 0) << edge.first << "-" << edge.second;
     missing.erase(edge);
     const std::int32_t beyond = result.neighbors[c];
     if (beyond < 0 || constraints.count(edge) != 0) continue;

@@ -90,7 +90,8 @@ struct DeviceTriangulation {
   DeviceBuffer representatives;  ///< 1 per point
   /// The arrays that the last call computed.
   Parts parts{false, false, false, false, false};
-  std::size_t points = 0;  ///< number of points over all sets
+  bool is_constrained = false;  ///< whether it is part of a DeviceConstrainedTriangulation
+  std::size_t points = 0;       ///< number of points over all sets
   /// sets + 1 values in host memory, known when the call returns: set s has points [point_offsets[s],
   /// point_offsets[s + 1]).
   std::vector<std::size_t> point_offsets;
@@ -102,6 +103,24 @@ struct DeviceTriangulation {
   std::vector<std::size_t> hull_offsets;
   /// What the call did and how long it took; Statistics::seconds lasts until everything was enqueued.
   Statistics statistics;
+};
+
+/// Segments in device memory that are to be edges.
+struct DeviceSegments {
+  /// An array of int32: 2 indices of points of the same set per segment, counted from the first point to use.
+  cl_mem memory = nullptr;
+  std::size_t count = 0;  ///< number of segments
+};
+
+/// A ConstrainedTriangulation in device memory. The caller's buffers must have the sizes given here.
+struct DeviceConstrainedTriangulation {
+  /// The triangles with the segments as edges, with all parts but halfedges. Voronoi diagrams and locators
+  /// refuse it.
+  DeviceTriangulation mesh;
+  DeviceBuffer constrained;       ///< ConstrainedTriangulation::constrained, uchar, 6 bytes per point
+  DeviceBuffer piece_edges;       ///< ConstrainedTriangulation::piece_edges, int32, 8 bytes per segment
+  DeviceBuffer constraint_edges;  ///< ConstrainedTriangulation::constraint_edges, int32, 8 bytes per edge
+  std::size_t edge_count = 0;     ///< number of constraint edges, known when the call returns
 };
 
 /// The Voronoi diagram of n points in device memory.

@@ -161,6 +161,14 @@ struct DeviceVoronoi;
 struct Enqueue;
 struct Parts;
 class DeviceBuffer;
+struct DeviceConstrainedTriangulation;
+struct DeviceSegments;
+// Types for triangulations with constraints. Include flaunay/constrained.hpp to use them.
+struct ConstrainedOptions;
+struct ConstrainedTriangulation;
+struct Polygons;
+struct PolygonOptions;
+struct Constraints;
 /// Returns Enqueue{}: the triangulator's own queue, without waiting for events. O(1).
 FLAUNAY_API const Enqueue& own_queue() noexcept;
 /// Returns Parts{}: the triangles alone. O(1).
@@ -261,6 +269,32 @@ class FLAUNAY_API Triangulator {
   Triangulation triangulate(const Coordinate* coordinates, const Size& size,
                             const research::Options& options) = delete;
 
+  /// Triangulates one set of n points with segments as edges: the canonical constrained Delaunay
+  /// triangulation, a function of the sets of points and of segments. Throws what triangulate throws;
+  /// Error(usage) for an index that is no point; Error(input) for segments that cross where no point is,
+  /// unless they are to be split, for a hole that is in no triangle or on a constraint, and for segments that
+  /// are no closed curves if the fill rule needs such. Expected O(n log n + s log^2 s) work for s segments,
+  /// besides the number of triangles that they cross.
+  ConstrainedTriangulation constrained(const double* coordinates, std::size_t n,
+                                       const Constraints& constraints);
+  /// Triangulates one set of n points with segments as edges.
+  ConstrainedTriangulation constrained(const double* coordinates, std::size_t n,
+                                       const Constraints& constraints, const ConstrainedOptions& options);
+  /// Triangulates many sets with segments at once. Set s has points [offsets[s], offsets[s + 1]). Throws
+  /// Error(usage) if the ends of a segment are in different sets, and otherwise what the call for one set
+  /// throws.
+  ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                       const Constraints& constraints);
+  /// Triangulates many sets with segments at once.
+  ConstrainedTriangulation constrained(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                       const Constraints& constraints, const ConstrainedOptions& options);
+  /// Triangulates the insides of polygons, all at once. Each polygon is a set of its own, or all are one
+  /// (PolygonOptions::map). Throws Error(usage) if the offsets do not fit each other, and otherwise what the
+  /// call for sets with segments throws; if segments cross, the message names the polygon, too.
+  ConstrainedTriangulation polygons(const Polygons& polygons);
+  /// Triangulates the insides of polygons, all at once.
+  ConstrainedTriangulation polygons(const Polygons& polygons, const PolygonOptions& options);
+
   /// Triangulates points in device memory into device memory. Points and results are not copied to the host;
   /// only sizes are, some bytes per block of 2,048 points, and the host waits 5 or 6 times for them, on
   /// devices with many lanes once or twice per round (Statistics::host_waits). The call returns when
@@ -275,6 +309,14 @@ class FLAUNAY_API Triangulator {
   void triangulate(const DevicePoints& points, DeviceTriangulation& result,
                    const Parts& parts = triangles_alone(), const Enqueue& enqueue = own_queue());
 
+  /// Triangulates points in device memory with segments as edges, into device memory. Segments that cross
+  /// where no point is are Error(input); no triangles are left out. The host waits about 8 times more than
+  /// triangulate does, once per round of segments; the work of rounds is done when the call returns.
+  /// Otherwise the work is enqueued like that of triangulate for device memory, with the same errors and
+  /// those of constrained for host memory.
+  void constrained(const DevicePoints& points, const DeviceSegments& segments,
+                   DeviceConstrainedTriangulation& result, const Enqueue& enqueue = own_queue());
+
   /// An upper bound of the device memory, in bytes, that a call on n points in `sets` sets needs besides
   /// points and results. Throws Error(input) or Error(device) if n is above the capacity.
   std::size_t workspace_bytes(std::size_t n, std::size_t sets = 1) const;
@@ -288,6 +330,9 @@ class FLAUNAY_API Triangulator {
   /// triangulation without neighbours or of another number of points. O(n) work; one work-item per point
   /// takes as many steps as the point has triangles.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
+  /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
+  Voronoi voronoi(const double* coordinates, std::size_t n,
+                  const ConstrainedTriangulation& triangulation) = delete;
   /// Computes the dual in device memory. The triangulation must have the parts triangles, neighbors, hull and
   /// representatives. The work is enqueued like that of triangulate for device memory, with the same errors.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
@@ -302,6 +347,10 @@ class FLAUNAY_API Triangulator {
   /// magnitudes. O(n log m) work for m corners, and O(m) for each Voronoi edge across the polygon's border.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation,
                                  const double* corners, std::size_t corner_count);
+  /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
+  ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n,
+                                 const ConstrainedTriangulation& triangulation, const double* corners,
+                                 std::size_t corner_count) = delete;
   /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors,
   /// hull and representatives; the corners are in host memory. The host waits twice; otherwise the work is
   /// enqueued like that of triangulate for device memory, with the same errors.
@@ -383,6 +432,12 @@ class FLAUNAY_API Locator {
   /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
+  /// These do not compile: in a constrained triangulation, walks to a query need not end, and the nearest
+  /// point need not be near.
+  Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
+          const ConstrainedTriangulation& triangulation) = delete;
+  Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
+          const ConstrainedTriangulation& triangulation) = delete;
   /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
   /// neighbors, hull and representatives. The work is enqueued like that of Triangulator::triangulate for
   /// device memory, with the same errors.

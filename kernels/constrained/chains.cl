@@ -1,0 +1,44 @@
+// The canonical constrained Delaunay triangulations of many polygons, each between a base and a chain of vertices left
+// of it (docs/constrained.md).
+//
+// Chain c has the vertices chain[offsets[c]] to chain[offsets[c + 1] - 1]. Its triangles are positions (i, j, k) in the
+// chain, ascending: j is the apex of the chord from i to k. They are in preorder, so those of a chord with d vertices
+// between its ends are at d places that follow each other: the triangle (i, j, k) at place p has the child on (i, j) at
+// p + 1 and the child on (j, k) at p + j - i. As a chain of k vertices has k - 2 triangles, its first place is
+// offsets[c] - 2c.
+//
+// gather_vertices copies the vertices' places, so that those of a chain follow each other. triangulate_chains has a
+// work-item per chain. Short chains are gift-wrapped; of longer ones it inserts the vertices in random order.
+
+#include "shared/chains.h"
+
+kernel void gather_vertices(int n, int count, global const int* restrict offsets, global const double2* restrict points,
+                            global const int* restrict chain, global double2* restrict places) {
+  const int i = get_global_id(0);
+  if (i < min(n, offsets[count])) places[i] = points[chain[i]];
+}
+
+kernel void triangulate_chains(int n, int wrapped_most, int inserted_most, double bound,
+                               global const int* restrict offsets, global const double2* restrict places,
+                               global int* restrict next, global int* restrict before, global int* restrict inside,
+                               global int* restrict order, global int* restrict corners, global int* restrict twins,
+                               global int* restrict triangles) {
+  const int c = get_global_id(0);
+  if (c >= n) return;
+  const int first = offsets[c], size = offsets[c + 1] - first;
+  if (size < 3 || size > max(wrapped_most, inserted_most)) return;
+  polygon g;
+  g.bound = bound;
+  g.last = size - 1;
+  g.places = places + first;
+  g.next = next + first;
+  g.inside = inside + first;
+  g.corners = corners + 3L * first;
+  g.twins = twins + 3L * first;
+  global int* const rows = triangles + 3L * (first - 2 * c);
+  if (size > wrapped_most && insert_all(&g, before + first, order + first)) {
+    write_rows(&g, rows);
+  } else {
+    wrap(&g, rows);
+  }
+}

@@ -1,0 +1,377 @@
+// Domains of a triangulation with constraints: regions, their depths, and what is left of the triangles. The elements
+// are triangles, segments, constraint edges or regions of all sets at once; no kernel but those of holes knows of sets.
+//
+// 1. Regions. start_regions and join_regions, one pass each over the triangles, join what is connected without crossing
+//    a constraint: a forest in which every parent has a smaller number, so that roots are the first triangles of their
+//    regions, whatever the order of joins (Jaiganesh and Burtscher, "A high-performance connected components
+//    implementation for GPUs", 2018). find_roots and, after a scan over roots, number_regions give each triangle its
+//    region's number.
+// 2. Weights of constraint edges, if the fill rule needs them: cover_edges writes where segments begin and end to
+//    cover edges; a scan of this gives each edge's sum. find_unbalanced finds points where segments are no closed
+//    curves. list_edges puts the edges into a hash table, by which triangles find them.
+// 3. Borders. count_borders counts for each triangle its constraints to another region with a smaller triangle there,
+//    or to the outside; after a scan write_borders lists them.
+// 4. Depths. Each pass of reach_regions over the borders goes one level further from outside. Where there are too many
+//    levels the host goes on, one region after the other (src/constrained/domain.cpp). finish_regions says which
+//    regions are left.
+// 5. Holes. find_holes, one pass over the triangles, finds those that contain seeds; drop_holes marks their regions.
+// 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets and
+//    write_depths do the rest.
+
+#include "shared/coordinates.h"
+#include "shared/domains.h"
+#include "shared/planar.h"
+#include "shared/records.h"
+#include "shared/search.h"
+
+// Other work-items may change what is read here. Atomic operations see all changes. Where caches are coherent, plain
+// ones do as well: an older parent is an ancestor, too, and what an old root is taken for is checked when it is joined.
+#ifndef FLAUNAY_NATIVE_KERNELS
+#if ATOMIC_READS
+#define read_shared(at) atomic_or(at, 0)
+#define write_shared(at, value) atomic_xchg(at, value)
+#else
+#define read_shared(at) (*(at))
+#define write_shared(at, value) (*(at) = (value))
+#endif
+#endif
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Regions
+
+// parents[t]: the first neighbour in t's region if that is smaller, otherwise t.
+kernel void start_regions(int n, global const int* restrict neighbors, global const uchar* restrict constrained,
+                          global int* restrict parents) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    int parent = t;
+    for (int k = 3 * t; k < 3 * t + 3; ++k) {
+      const int u = neighbors[k];
+      if (u >= 0 && u < parent && !constrained[k]) parent = u;
+    }
+    parents[t] = parent;
+  }
+}
+
+// Makes paths shorter on its way.
+static inline int root_of(int t, global volatile int* parents) {
+  int parent = read_shared(&parents[t]);
+  while (parent != t) {
+    const int above = read_shared(&parents[parent]);
+    if (above == parent) return parent;
+    write_shared(&parents[t], above);
+    t = above;
+    parent = read_shared(&parents[t]);
+  }
+  return t;
+}
+
+static inline void join(int t, int u, global volatile int* parents) {
+  int a = root_of(t, parents), b = root_of(u, parents);
+  while (a != b) {
+    const int high = max(a, b), low = min(a, b);
+    const int found = atomic_cmpxchg(&parents[high], high, low);
+    if (found == high) return;
+    a = root_of(found, parents);
+    b = root_of(low, parents);
+  }
+}
+
+// start_regions has joined each triangle to the smallest of its neighbours.
+kernel void join_regions(int n, global const int* restrict neighbors, global const uchar* restrict constrained,
+                         global volatile int* restrict parents) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    int smallest = t;
+    for (int k = 3 * t; k < 3 * t + 3; ++k) {
+      if (!constrained[k] && neighbors[k] >= 0) smallest = min(smallest, neighbors[k]);
+    }
+    for (int k = 3 * t; k < 3 * t + 3; ++k) {
+      const int u = neighbors[k];
+      if (!constrained[k] && u > smallest && u < t) join(t, u, parents);
+    }
+  }
+}
+
+// regions: the first triangle of each triangle's region. counts: 1 where that is the triangle itself, for a scan.
+kernel void find_roots(int n, global volatile int* restrict parents, global int* restrict regions,
+                       global uint* restrict counts) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    const int root = root_of(t, parents);
+    regions[t] = root;
+    counts[t] = root == t;
+  }
+}
+
+// numbers: the scan of find_roots' counts.
+kernel void number_regions(int n, global const uint* restrict numbers, global int* restrict regions) {
+  const int t = get_global_id(0);
+  if (t < n) regions[t] = (int)numbers[regions[t]];
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Weights
+
+// The pieces of a segment are on its way from the lexicographically smaller end to the other one. changes: 0
+// throughout; gets 1 where a piece's edges begin, and -1 where they end; with the winding rule the opposite if the
+// segment goes the other way than its edges. balances: 0 throughout; gets how many segments begin at a point, less
+// those that end there, or how many do either. Those of points that several have the same coordinates with are their
+// representative's.
+kernel void cover_edges(int n, int rule, global const double* restrict input, global const int* restrict segments,
+                        global const int* restrict representatives, global const int* restrict piece_offsets,
+                        global const int* restrict piece_edges, global const int* restrict edges,
+                        global volatile uint* restrict changes, global volatile uint* restrict balances) {
+  const int s = get_global_id(0);
+  if (s < n) {
+    const int a = representatives[segments[2 * s]], b = representatives[segments[2 * s + 1]];
+    const uint down = (uint)-1, at_end = rule == FILL_WINDING ? down : 1u;
+    if (a != b) {
+      atomic_add(&balances[a], 1u);
+      atomic_add(&balances[b], at_end);
+      const int is_turned = comes_before(vload2(b, input), vload2(a, input));
+      int from = is_turned ? b : a;
+      for (int p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
+        const int first = piece_edges[2 * p], end = piece_edges[2 * p + 1];
+        if (first == end) continue;
+        const int is_backward = edges[2 * first] != from;
+        from = is_backward ? edges[2 * first] : edges[2 * end - 1];
+        const uint amount = rule == FILL_WINDING && is_backward != is_turned ? down : 1u;
+        atomic_add(&changes[first], amount);
+        atomic_add(&changes[end], (uint)0 - amount);
+      }
+    }
+  }
+}
+
+// bad[0]: INT_MAX; gets the first point where segments are no closed curves.
+kernel void find_unbalanced(int n, int rule, global const uint* restrict balances, global volatile int* restrict bad) {
+  const int i = get_global_id(0);
+  if (i < n && (rule == FILL_WINDING ? balances[i] != 0 : balances[i] & 1)) atomic_min(&bad[0], i);
+}
+
+// Whether edges must be known: not if the rule is even-odd and every one is covered an odd number of times. needed[0]:
+// 0.
+kernel void find_even(int n, int rule, global const uint* restrict sums, global uint* restrict needed) {
+  const int e = get_global_id(0);
+  if (e < n && (rule == FILL_WINDING || (sums[e + 1] & 1) == 0)) needed[0] = 1;
+}
+
+// slots: mask + 1, a power of two, -1 throughout.
+kernel void list_edges(int n, int mask, global const uint* restrict needed, global const int* restrict edges,
+                       global volatile int* restrict slots) {
+  const int e = get_global_id(0);
+  if (e < n && needed[0]) {
+    int slot = (int)(edge_hash(edges[2 * e], edges[2 * e + 1]) & (uint)mask);
+    while (atomic_cmpxchg(&slots[slot], -1, e) != -1) slot = (slot + 1) & mask;
+  }
+}
+
+// The number of the edge in slots; -1 if it is not there, which cannot be.
+static inline int find_edge(int from, int to, int mask, global const int* edges, global const int* slots) {
+  int slot = (int)(edge_hash(from, to) & (uint)mask);
+  int e = slots[slot];
+  while (e >= 0 && (edges[2 * e] != from || edges[2 * e + 1] != to)) {
+    slot = (slot + 1) & mask;
+    e = slots[slot];
+  }
+  return e;
+}
+
+// What is crossed on a path over the edge from v to w from its right to its left. sums: by edge, one place further.
+static inline int crossed(int v, int w, int mask, global const double* input, global const uint* needed,
+                          global const uint* sums, global const int* edges, global const int* slots) {
+  if (!needed[0]) return 1;
+  const int is_turned = comes_before(vload2(w, input), vload2(v, input));
+  const int e = is_turned ? find_edge(w, v, mask, edges, slots) : find_edge(v, w, mask, edges, slots);
+  const int sum = e < 0 ? 0 : (int)sums[e + 1];
+  return is_turned ? -sum : sum;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Borders
+
+// Whether the edge opposite to corner k is a border that is listed with this triangle.
+static inline int is_border(int t, int k, global const int* neighbors, global const uchar* constrained,
+                            global const int* regions) {
+  const int u = neighbors[k];
+  return constrained[k] && (u < 0 || (t < u && regions[t] != regions[u]));
+}
+
+// levels: UNREACHED throughout; 0 for regions that are connected with the outside.
+kernel void count_borders(int n, global const int* restrict neighbors, global const uchar* restrict constrained,
+                          global const int* restrict regions, global uint* restrict counts,
+                          global int* restrict levels) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    uint count = 0;
+    for (int k = 3 * t; k < 3 * t + 3; ++k) {
+      count += is_border(t, k, neighbors, constrained, regions);
+      if (neighbors[k] < 0 && !constrained[k]) levels[regions[t]] = 0;
+    }
+    counts[t] = count;
+  }
+}
+
+// Each border has two regions, of which the first is -1 if it is the outside; steps: what is crossed from the first one
+// to the second one, if the rule is not nesting.
+kernel void write_borders(int n, int rule, int mask, global const int* restrict triangles,
+                          global const int* restrict neighbors, global const uchar* restrict constrained,
+                          global const int* restrict regions, global const uint* restrict places,
+                          global const double* restrict input, global const uint* restrict needed,
+                          global const uint* restrict sums, global const int* restrict edges,
+                          global const int* restrict slots, global int* restrict borders, global int* restrict steps) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    uint place = places[t];
+    for (int k = 0; k < 3 && place < places[t + 1]; ++k) {
+      if (!is_border(t, 3 * t + k, neighbors, constrained, regions)) continue;
+      const int u = neighbors[3 * t + k];
+      borders[2 * place] = u < 0 ? -1 : regions[u];
+      borders[2 * place + 1] = regions[t];
+      if (rule != FILL_NESTING) {
+        const int v = triangles[3 * t + (k + 1) % 3], w = triangles[3 * t + (k + 2) % 3];
+        steps[place] = crossed(v, w, mask, input, needed, sums, edges, slots);
+      }
+      ++place;
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Depths
+
+// Goes on from regions of a level. reached: 0 throughout; reached[level] gets 1 if there are regions of the next one.
+kernel void reach_regions(int n, int rule, int level, global const int* restrict borders,
+                          global const int* restrict steps, global volatile int* restrict levels,
+                          global int* restrict potentials, global int* restrict reached) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int a = borders[2 * i], b = borders[2 * i + 1];
+    const int at_a = a < 0 ? 0 : read_shared(&levels[a]), at_b = read_shared(&levels[b]);
+    const int is_forward = at_a == level && at_b == UNREACHED, is_backward = at_b == level && at_a == UNREACHED;
+    if (is_forward || is_backward) {
+      const int from = is_forward ? a : b, to = is_forward ? b : a;
+      // All that reach it find the same potential.
+      if (atomic_cmpxchg(&levels[to], UNREACHED, level + 1) == UNREACHED && rule != FILL_NESTING) {
+        const int before = from < 0 ? 0 : potentials[from];
+        potentials[to] = is_forward ? before + steps[i] : before - steps[i];
+      }
+      reached[level] = 1;
+    }
+  }
+}
+
+// depths: of regions; may be levels. left: 1 if the region is left.
+kernel void finish_regions(int n, int rule, int outside, global const int* levels, global const int* potentials,
+                           global int* depths, global uchar* restrict left) {
+  const int r = get_global_id(0);
+  if (r < n) {
+    const int depth = depth_of(levels[r], potentials[r], rule);
+    depths[r] = depth;
+    left[r] = (uchar)is_left(depth, rule, outside);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Holes
+
+// seeds: in each set by ascending x, scaled by frames. found: INT_MAX throughout; gets the first triangle that contains
+// the seed. barred: 0 throughout; gets 1 if the seed is on a constraint.
+kernel void find_holes(int n, int sets, global const int* restrict triangle_offsets,
+                       global const int* restrict hole_offsets, global const query_frame* restrict frames, double bound,
+                       global const double* restrict input, global const int* restrict triangles,
+                       global const uchar* restrict constrained, global const double2* restrict seeds,
+                       global volatile int* restrict found, global uchar* restrict barred) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    const int s = segment_of(t, sets, triangle_offsets);
+    const int last = hole_offsets[s + 1];
+    int low = hole_offsets[s];
+    if (low < last) {
+      double2 p[3];
+      for (int k = 0; k < 3; ++k) p[k] = scaled_point(triangles[3 * t + k], input, frames[s].scale);
+      const double2 least = VECTOR(double2, min(p[0].x, min(p[1].x, p[2].x)), min(p[0].y, min(p[1].y, p[2].y)));
+      const double2 most = VECTOR(double2, max(p[0].x, max(p[1].x, p[2].x)), max(p[0].y, max(p[1].y, p[2].y)));
+      int high = last;
+      while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (seeds[middle].x < least.x) {
+          low = middle + 1;
+        } else {
+          high = middle;
+        }
+      }
+      for (int h = low; h < last && seeds[h].x <= most.x; ++h) {
+        const double2 q = seeds[h];
+        if (q.y < least.y || q.y > most.y) continue;
+        const int ab = orient_sign(p[0], p[1], q, bound), bc = orient_sign(p[1], p[2], q, bound),
+                  ca = orient_sign(p[2], p[0], q, bound);
+        if (ab < 0 || bc < 0 || ca < 0) continue;
+        atomic_min(&found[h], t);
+        const int on_constraint = (ab == 0 && constrained[3 * t + 2]) || (bc == 0 && constrained[3 * t]) ||
+                                  (ca == 0 && constrained[3 * t + 1]);
+        if (on_constraint) barred[h] = 1;
+      }
+    }
+  }
+}
+
+kernel void drop_holes(int n, global const int* restrict found, global const int* restrict regions,
+                       global uchar* restrict left) {
+  const int h = get_global_id(0);
+  if (h < n) left[regions[found[h]]] = 0;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Result
+
+kernel void count_left(int n, global const int* restrict regions, global const uchar* restrict left,
+                       global uint* restrict counts) {
+  const int t = get_global_id(0);
+  if (t < n) counts[t] = left[regions[t]];
+}
+
+kernel void count_regions(int n, global const uchar* restrict left, global uint* restrict counts) {
+  const int r = get_global_id(0);
+  if (r < n) counts[r] = left[r];
+}
+
+// n: sets + 1.
+kernel void find_offsets(int n, global const int* restrict triangle_offsets, global const uint* restrict places,
+                         global uint* restrict offsets) {
+  const int s = get_global_id(0);
+  if (s < n) offsets[s] = places[triangle_offsets[s]];
+}
+
+// places: of triangles; numbers: of regions, both scans of what is left.
+kernel void write_left(int n, global const int* restrict triangles, global const int* restrict neighbors,
+                       global const uchar* restrict constrained, global const int* restrict regions,
+                       global const uint* restrict places, global const uint* restrict numbers,
+                       global int* restrict left_triangles, global int* restrict left_neighbors,
+                       global uchar* restrict left_constrained, global int* restrict left_regions) {
+  const int t = get_global_id(0);
+  if (t < n && places[t] != places[t + 1]) {
+    const uint to = places[t];
+    for (int k = 0; k < 3; ++k) {
+      const int u = neighbors[3 * t + k];
+      left_triangles[3 * to + k] = triangles[3 * t + k];
+      left_neighbors[3 * to + k] = u < 0 || places[u] == places[u + 1] ? -1 : (int)places[u];
+      left_constrained[3 * to + k] = constrained[3 * t + k];
+    }
+    left_regions[to] = (int)numbers[regions[t]];
+  }
+}
+
+kernel void number_depths(int n, global const uint* restrict numbers, global const int* restrict depths,
+                          global int* restrict left_depths) {
+  const int r = get_global_id(0);
+  if (r < n && numbers[r] != numbers[r + 1]) left_depths[numbers[r]] = depths[r];
+}
+
+// depths: by region.
+kernel void write_depths(int n, global const int* restrict regions, global const int* restrict depths,
+                         global int* restrict triangle_depths) {
+  const int t = get_global_id(0);
+  if (t < n) triangle_depths[t] = depths[regions[t]];
+}

@@ -1,0 +1,629 @@
+// Constraints become edges of a triangulation, all at once, in rounds. docs/constrained.md says why this is right.
+//
+// A row is a triangle; corner 3t + k stands for the vertex there and for the edge opposite to it. A constraint's rank
+// is a random number, which is always the same. Each kernel has a work-item per constraint unless it says otherwise.
+//
+// - walk_segments: how many edges each segment consists of, in the Delaunay triangulation, in which it walks from
+//   vertex to vertex. Those that are edges already are flagged as constraints; the others claim the rows that they
+//   cross. If any segment consists of several edges, write_pieces writes those, and walk_segments begins again with
+//   these as segments. The host scans what they need.
+// - In each round, keep_waiting makes a list of the constraints that are left. choose_constraints: those that hold all
+//   rows that they cross win. It writes what bounds these rows, two chains of vertices, to the entries of the
+//   constraint.
+//   fill_cavities: winners replace their rows by the canonical triangulations of both chains, which they gift-wrap.
+//   join_cavities: joins the new rows to what is beyond the chains. walk_constraints: the others walk and claim again.
+// - Winners with long walks: gather_long writes their chains, chain_vertices what triangulates them, fill_long has a
+//   work-item per triangle, and join_long one per entry.
+//
+// Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
+// rows are marked by the round, which anyone may claim again.
+
+// Exact predicates are rare, and compiling each where it may be called takes long.
+#ifndef __cplusplus
+#define OUT_OF_LINE __attribute__((noinline))
+#endif
+
+#include "shared/codes.h"
+#include "shared/halfedges.h"
+#include "shared/language.h"
+#include "shared/limits.h"
+#include "shared/planar.h"
+#include "shared/prefetch.h"
+#include "shared/records.h"
+#include "shared/search.h"
+#include "shared/segment_walks.h"
+
+// A random number below RANK_WON for each number below that, each once.
+static inline uint rank_of(int constraint) {
+  uint x = (uint)constraint;
+  x = (x ^ x >> 15) * 0x2c1b3c6du & 0x7fffffffu;
+  x = (x ^ x >> 12) * 0x297a2d39u & 0x7fffffffu;
+  return x ^ x >> 15;
+}
+
+static inline walked_mesh mesh_of(global const double* points, global const int* triangles, global const int* neighbors,
+                                  double bound) {
+  walked_mesh mesh;
+  mesh.points = points;
+  mesh.triangles = triangles;
+  mesh.neighbors = neighbors;
+  mesh.bound = bound;
+  return mesh;
+}
+
+// Follows a segment from a corner that it leaves by crossing, to the next vertex on it, of which it returns the corner
+// in the last row; -1 if it leaves the triangulation. Claims the rows if there is an array for that.
+static inline int follow(const walked_mesh* mesh, int corner, int goal, uint rank, global volatile uint* claims,
+                         constraint_walk* walk) {
+  const double2 from = vload2(mesh->triangles[corner], mesh->points), to = vload2(goal, mesh->points);
+  walk->origin = mesh->triangles[corner];
+  walk->corner = corner;
+  walk->rows = 1;
+  walk->turns = 0;
+  int row = corner / 3;
+  atomic_min(&claims[row], rank);
+  while (1) {
+    const int beyond = mesh->neighbors[corner];
+    if (beyond < 0) return -1;
+    const int facing = corner_with(beyond, row, mesh->neighbors);
+    const int v = mesh->triangles[facing];
+    row = beyond;
+    atomic_min(&claims[row], rank);
+    const int side = side_of_segment(mesh, from, to, goal, v);
+    if (side == 0) {
+      ++walk->rows;
+      walk->goal = v;
+      return facing;
+    }
+    if (side > 0) walk->turns |= 1UL << (walk->rows & 63);
+    ++walk->rows;
+    corner = side > 0 ? next_halfedge(facing) : previous_halfedge(facing);
+  }
+}
+
+// What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
+static inline uint2 size_of_walk(int rows) {
+  return VECTOR(uint2, rows > 0 && rows <= SHORT_WALK ? (uint)rows + 4u : 0u, 1u);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Segments
+
+// How many pieces a walk counts at a time.
+#define COUNTED_PIECES 64u
+
+// The next piece of what is left of a segment between two corners, which it moves. Returns at which end it was, see
+// find_departure. walk: of the piece; rows is 0 if it is an edge already.
+static inline int next_piece(const walked_mesh* mesh, int* first, int* second, uint rank, global volatile uint* claims,
+                             constraint_walk* walk) {
+  departure found;
+  const int end = find_departure(mesh, *first, *second, &found);
+  if (end == LEAVES_NONE) return end;
+  int* const here = end == LEAVES_FIRST ? first : second;
+  const int goal = mesh->triangles[end == LEAVES_FIRST ? *second : *first];
+  if (found.vertex >= 0) {
+    walk->origin = mesh->triangles[*here];
+    walk->goal = found.vertex;
+    walk->corner = found.corner;
+    walk->rows = 0;
+    walk->turns = 0;
+    // In the row of that edge.
+    *here = corner_with(found.corner / 3, found.vertex, mesh->triangles);
+    return end;
+  }
+  *here = follow(mesh, found.corner, goal, rank, claims, walk);
+  return *here < 0 ? LEAVES_NONE : end;
+}
+
+static inline void flag_edge(int corner, const walked_mesh* mesh, global volatile uint* flags) {
+  for (int twin = 0; twin < 2; ++twin) {
+    const int row = corner / 3;
+    atomic_or(&flags[row >> 2], edge_flag(corner) << 8 * (row & 3));
+    if (mesh->neighbors[corner] < 0) return;
+    corner = corner_with(mesh->neighbors[corner], row, mesh->neighbors);
+  }
+}
+
+// Segments whose first rows, and then points, are fetched.
+#define ROWS_AHEAD 16
+#define POINTS_AHEAD 8
+static inline void fetch_ends(ulong key, int with_points, const walked_mesh* mesh) {
+#if FETCH_AHEAD
+  for (int end = 0; end < 2; ++end) {
+    const uint place = (uint)(key >> 32 * end);
+    if (place >= PLACE_ON_LINE) return;
+    if (!with_points) {
+      fetch(&mesh->triangles[place]);
+      fetch(&mesh->neighbors[place]);
+    } else {
+      for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[place / 3 * 3 + k]]);
+    }
+  }
+#endif
+}
+
+// n keys of segments, see segments.cl. flags: bytes, four in each word. ends: of the first piece, the lexicographically
+// smaller one first. Stops counting pieces at the limit.
+kernel void walk_segments(int n, uint limit, double bound, global const double* restrict points,
+                          global const int* restrict triangles, global const int* restrict neighbors,
+                          global const int* restrict hull, global const ulong* restrict keys,
+                          global volatile uint* restrict claims, global volatile uint* restrict flags,
+                          global constraint_walk* restrict walks, global int* restrict ends,
+                          global uint* restrict pieces, global uint2* restrict sizes,
+                          global volatile uint* restrict status) {
+  const int s = get_global_id(0);
+  if (s < n) {
+    const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+    fetch_ends(keys[min(n - 1, s + ROWS_AHEAD)], 0, &mesh);
+    fetch_ends(keys[min(n - 1, s + POINTS_AHEAD)], 1, &mesh);
+    const uint first_place = (uint)(keys[s] >> 32), second_place = (uint)keys[s];
+    uint count = 0;
+    sizes[s] = VECTOR(uint2, 0u, 0u);
+    if (first_place == UNCLAIMED || second_place == UNCLAIMED || (first_place ^ second_place) >= PLACE_ON_LINE) {
+      atomic_or(&status[INSERTION_BROKEN], 1u);
+    } else if (first_place >= PLACE_ON_LINE) {
+      const int from = (int)(first_place - PLACE_ON_LINE);
+      count = second_place - first_place;
+      ends[2 * s] = hull[from];
+      ends[2 * s + 1] = hull[from + 1];
+      for (uint k = 1; k < count && status[INSERTION_PIECES] <= limit; k += COUNTED_PIECES)
+        atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
+    } else {
+      int first = (int)first_place, second = (int)second_place;
+      constraint_walk walk;
+      while (triangles[first] != triangles[second]) {
+        if (next_piece(&mesh, &first, &second, rank_of(s), claims, &walk) == LEAVES_NONE) {
+          atomic_or(&status[INSERTION_BROKEN], 1u);
+          break;
+        }
+        if (walk.rows == 0) flag_edge(walk.corner, &mesh, flags);
+        if (count % COUNTED_PIECES == 1) {
+          if (status[INSERTION_PIECES] > limit) break;
+          atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
+        }
+        ++count;
+      }
+      if (count == 1) {
+        walks[s] = walk;
+        const int in_order = comes_before(vload2(walk.origin, points), vload2(walk.goal, points));
+        ends[2 * s] = in_order ? walk.origin : walk.goal;
+        ends[2 * s + 1] = in_order ? walk.goal : walk.origin;
+        if (walk.rows > 0) sizes[s] = size_of_walk(walk.rows);
+        if (walk.rows > SHORT_WALK) atomic_inc(&status[INSERTION_LONG]);
+      }
+    }
+    pieces[s] = count;
+  }
+}
+
+// The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
+// claims: of which nothing is used any more.
+kernel void write_pieces(int n, double bound, global const double* restrict points,
+                         global const int* restrict triangles, global const int* restrict neighbors,
+                         global const int* restrict hull, global const ulong* restrict keys,
+                         global const uint* restrict offsets, global volatile uint* restrict claims,
+                         global int* restrict ends) {
+  const int s = get_global_id(0);
+  if (s < n) {
+    const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+    const uint first_place = (uint)(keys[s] >> 32), second_place = (uint)keys[s];
+    const int begin = (int)offsets[s], end = (int)offsets[s + 1];
+    if (first_place >= PLACE_ON_LINE) {
+      const int from = (int)(first_place - PLACE_ON_LINE);
+      for (int i = begin; i < end; ++i) {
+        ends[2 * i] = hull[from + i - begin];
+        ends[2 * i + 1] = hull[from + i - begin + 1];
+      }
+    } else {
+      int first = (int)first_place, second = (int)second_place, from_first = 0, from_second = 0;
+      const int in_order = comes_before(vload2(triangles[first], points), vload2(triangles[second], points));
+      constraint_walk walk = {-1, -1, -1, 0, 0};
+      while (from_first + from_second < end - begin) {
+        const int at = next_piece(&mesh, &first, &second, rank_of(s), claims, &walk);
+        const int place = at == LEAVES_FIRST ? from_first++ : end - begin - 1 - from_second++;
+        const int i = in_order ? begin + place : end - 1 - place;
+        ends[2 * i] = walk.origin;
+        ends[2 * i + 1] = walk.goal;
+      }
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Rounds
+
+// n elements of a list of constraints; of the first list, each is its own number. sizes: scanned. Writes the list of
+// those that are left, and where their entries begin.
+kernel void keep_waiting(int n, int is_first, global const int* restrict list, global const uint2* restrict sizes,
+                         global int* restrict waiting, global uint* restrict offsets) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const uint2 place = sizes[i], end = sizes[i + 1];
+    if (place.y != end.y) {
+      waiting[place.y] = is_first ? i : list[i];
+      offsets[place.y] = place.x;
+    }
+  }
+}
+
+// Writes the edge opposite to a corner as that from an entry to the next one.
+static inline void write_side(int corner, const walked_mesh* mesh, global const uchar* flags,
+                              global chain_entry* entry) {
+  const int row = corner / 3, beyond = mesh->neighbors[corner];
+  const uint twin = beyond < 0 ? 0u : (uint)corner_with(beyond, row, mesh->neighbors) + 1u;
+  entry->corner = corner;
+  entry->side = twin << 1 | ((flags[row] & edge_flag(corner)) != 0);
+}
+
+// Walks along a constraint as long as it holds the rows, and writes entries if there are any: the row in each, in the
+// order of the walk; what is on the left of the constraint, from its origin to its goal, and what is on its right, from
+// the goal to the origin. Returns the number of entries of the former, or 0 if the constraint does not hold all rows.
+static inline int gather_cavity(const constraint_walk* walk, uint rank, const walked_mesh* mesh,
+                                global const uint* claims, global const uchar* flags, global chain_entry* entries,
+                                int* crosses) {
+  int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
+  if (claims[row] != rank) return 0;
+  const int is_long = walk->rows > SHORT_WALK;
+  const double2 from = vload2(walk->origin, mesh->points), to = vload2(walk->goal, mesh->points);
+  const int next = next_halfedge(corner), previous = previous_halfedge(corner);
+  if (entries) {
+    entries[0].row = row;
+    entries[left].vertex = entries[right].vertex = walk->origin;
+    entries[right].corner = -1;
+    write_side(next, mesh, flags, &entries[left]);
+    entries[++left].vertex = mesh->triangles[previous];
+    entries[--right].vertex = mesh->triangles[next];
+    write_side(previous, mesh, flags, &entries[right]);
+  } else {
+    ++left;
+  }
+  for (int j = 1;; ++j) {
+    const int beyond = mesh->neighbors[corner];
+    *crosses |= flags[row] & edge_flag(corner);
+    if (claims[beyond] != rank) return 0;
+    const int facing = corner_with(beyond, row, mesh->neighbors), v = mesh->triangles[facing];
+    row = beyond;
+    const int side = v == walk->goal          ? 0
+                     : is_long                ? side_of_segment(mesh, from, to, walk->goal, v)
+                     : (walk->turns >> j & 1) ? 1
+                                              : -1;
+    if (entries) {
+      entries[j].row = row;
+      if (side >= 0) {
+        write_side(previous_halfedge(facing), mesh, flags, &entries[left]);
+        entries[left + 1].vertex = v;
+      }
+      if (side <= 0) {
+        entries[--right].vertex = v;
+        write_side(next_halfedge(facing), mesh, flags, &entries[right]);
+      }
+    }
+    left += side >= 0;
+    if (side == 0) break;
+    corner = side > 0 ? next_halfedge(facing) : previous_halfedge(facing);
+  }
+  if (entries) entries[left].corner = -1;
+  return left + 1;
+}
+
+// Whether a constraint that is an edge holds the rows beside it.
+static inline int holds_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
+  return claims[corner / 3] == rank && (neighbors[corner] < 0 || claims[neighbors[corner]] == rank);
+}
+
+// offsets: of the entries. lefts: how many of these are on the left.
+kernel void choose_constraints(int n, double bound, global const int* restrict list,
+                               global const uint* restrict offsets, global const constraint_walk* restrict walks,
+                               global const double* restrict points, global const int* restrict triangles,
+                               global const int* restrict neighbors, global const uint* restrict claims,
+                               global const uchar* restrict flags, global uchar* restrict outcomes,
+                               global int* restrict lefts, global chain_entry* restrict entries,
+                               global volatile uint* restrict status) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+    const uint rank = rank_of(list[i]);
+    const constraint_walk walk = walks[list[i]];
+    const int is_long = walk.rows > SHORT_WALK;
+    int outcome = CONSTRAINT_WAITS;
+    if (walk.rows == 0) {
+      if (holds_edge(walk.corner, rank, neighbors, claims)) outcome = CONSTRAINT_FITS;
+    } else {
+      int crosses = 0;
+      lefts[i] = gather_cavity(&walk, rank, &mesh, claims, flags, is_long ? 0 : entries + offsets[i], &crosses);
+      if (lefts[i] > 0) outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+      if (crosses) {
+        outcome = CONSTRAINT_WAITS;
+        atomic_or(&status[INSERTION_CROSSED], 1u);
+      }
+    }
+    outcomes[i] = outcome;
+  }
+}
+
+// The arrays of rows that are replaced. new_corners: per old corner opposite to a side, the new one.
+typedef struct {
+  global int* triangles;
+  global int* neighbors;
+  global uint* claims;
+  global uchar* flags;
+  global uchar* changed;
+  global int* new_corners;
+  uint mark;
+} replaced_rows;
+
+// Writes a new row, all but its neighbours.
+static inline void put_row(int row, int a, int b, int c, uint flags, const replaced_rows* rows) {
+  rows->triangles[3 * row] = a;
+  rows->triangles[3 * row + 1] = b;
+  rows->triangles[3 * row + 2] = c;
+  rows->flags[row] = (uchar)flags;
+  rows->changed[row] = 1;
+  rows->claims[row] = rows->mark;
+}
+
+// The edge opposite to a new corner is the side at an entry. Returns its flag.
+static inline uint put_side(int corner, global chain_entry* entry, const replaced_rows* rows) {
+  rows->new_corners[entry->corner] = corner;
+  entry->corner = corner;
+  return entry->side & 1u ? edge_flag(corner) : 0u;
+}
+
+static inline void join(int corner, int other, const replaced_rows* rows) {
+  rows->neighbors[corner] = other / 3;
+  rows->neighbors[other] = corner / 3;
+}
+
+// A new row (i, k, j) of a chain has the chord (j, k) opposite to its first corner, (i, j) opposite to its second, and
+// its base opposite to its third one.
+#define BASE_CORNER 2
+
+// The circles through the chord's ends and one of the vertices between are nested: the smallest.
+static inline int apex_of(int i, int k, global const chain_entry* chain, global const double* points, double bound) {
+  int best = i + 1;
+  for (int j = best + 1; j < k; ++j) {
+    if (circle_canonical(vload2(chain[i].vertex, points), vload2(chain[k].vertex, points),
+                         vload2(chain[best].vertex, points), vload2(chain[j].vertex, points), bound) > 0)
+      best = j;
+  }
+  return best;
+}
+
+// Gift-wraps a chain of `size` entries into the rows of the entries from row_entry on.
+static inline void fill_chain(int size, global chain_entry* chain, global const chain_entry* row_entry,
+                              global const double* points, double bound, const replaced_rows* rows) {
+  int chords[SHORT_CHAINS], beyond[SHORT_CHAINS];
+  int open = 1;
+  chords[0] = size - 1;
+  beyond[0] = -1;
+  while (open > 0) {
+    --open;
+    const int i = chords[open] >> 16, k = chords[open] & 0xffff, outer = beyond[open];
+    const int j = apex_of(i, k, chain, points, bound), row = row_entry++->row, corner = 3 * row;
+    uint flags = 0;
+    if (outer < 0) {
+      flags = edge_flag(corner + BASE_CORNER);
+    } else {
+      join(corner + BASE_CORNER, outer, rows);
+    }
+    if (k - j > 1) {
+      chords[open] = j << 16 | k;
+      beyond[open++] = corner;
+    } else {
+      flags |= put_side(corner, &chain[j], rows);
+    }
+    if (j - i > 1) {
+      chords[open] = i << 16 | j;
+      beyond[open++] = corner + 1;
+    } else {
+      flags |= put_side(corner + 1, &chain[i], rows);
+    }
+    put_row(row, chain[i].vertex, chain[k].vertex, chain[j].vertex, flags, rows);
+  }
+}
+
+kernel void fill_cavities(int n, uint mark, double bound, global const int* restrict list,
+                          global const uint* restrict offsets, global const uchar* restrict outcomes,
+                          global const int* restrict lefts, global const constraint_walk* restrict walks,
+                          global const double* restrict points, global int* restrict triangles,
+                          global int* restrict neighbors, global uint* restrict claims, global uchar* restrict flags,
+                          global uchar* restrict changed, global int* restrict new_corners,
+                          global chain_entry* restrict entries) {
+  const int i = get_global_id(0);
+  if (i < n && outcomes[i] == CONSTRAINT_FITS) {
+    const constraint_walk walk = walks[list[i]];
+    if (walk.rows == 0) {
+      const int row = walk.corner / 3, beyond = neighbors[walk.corner];
+      flags[row] |= (uchar)edge_flag(walk.corner);
+      claims[row] = UNCLAIMED;
+      if (beyond >= 0) {
+        flags[beyond] |= (uchar)edge_flag(corner_with(beyond, row, neighbors));
+        claims[beyond] = UNCLAIMED;
+      }
+    } else {
+      const replaced_rows rows = {triangles, neighbors, claims, flags, changed, new_corners, mark};
+      global chain_entry* const left = entries + offsets[i];
+      const int split = lefts[i];
+      const int base = 3 * left[0].row + BASE_CORNER, other_base = 3 * left[split - 2].row + BASE_CORNER;
+      fill_chain(split, left, left, points, bound, &rows);
+      fill_chain(walk.rows + 4 - split, left + split, left + split - 2, points, bound, &rows);
+      join(base, other_base, &rows);
+    }
+  }
+}
+
+// Joins a side to what is beyond it, and makes the place of its vertex a new one if its row was replaced.
+static inline void join_side(chain_entry entry, uint mark, global const uint* claims, global const uint* marks,
+                             global const int* new_corners, global int* neighbors, global volatile uint* places) {
+  const int row = entry.corner / 3, twin = (int)(entry.side >> 1) - 1;
+  int beyond = -1;
+  if (twin >= 0) {
+    beyond = twin / 3;
+    if (claims[beyond] == mark) {
+      beyond = new_corners[twin] / 3;
+    } else {
+      neighbors[twin] = row;
+    }
+  }
+  neighbors[entry.corner] = beyond;
+  const int v = entry.vertex;
+  if (marks[v >> 5] >> (v & 31) & 1) {
+    // The edge from i to j is opposite to the second corner, and i is at the first one; or j to k, and j at the third.
+    const int corner = 3 * row + (entry.corner - 3 * row == 1 ? 0 : BASE_CORNER);
+    if (claims[places[v] / 3] == mark) atomic_xchg(&places[v], (uint)corner);
+  }
+}
+
+kernel void join_cavities(int n, uint mark, global const int* restrict list, global const uint* restrict offsets,
+                          global const uchar* restrict outcomes, global const int* restrict lefts,
+                          global const constraint_walk* restrict walks, global const uint* restrict claims,
+                          global const uint* restrict marks, global const int* restrict new_corners,
+                          global const chain_entry* restrict entries, global int* restrict neighbors,
+                          global volatile uint* restrict places) {
+  const int i = get_global_id(0);
+  if (i < n && outcomes[i] == CONSTRAINT_FITS) {
+    const int rows = walks[list[i]].rows;
+    if (rows > 0) {
+      for (int p = 0; p < rows + 3; ++p) {
+        const chain_entry entry = entries[offsets[i] + p];
+        if (p != lefts[i] - 1) join_side(entry, mark, claims, marks, new_corners, neighbors, places);
+      }
+    }
+  }
+}
+
+// The constraints of the list that have not won walk and claim again. sizes: as those of walk_segments.
+kernel void walk_constraints(int n, double bound, global const int* restrict list,
+                             global const uchar* restrict outcomes, global const double* restrict points,
+                             global const int* restrict triangles, global const int* restrict neighbors,
+                             global const uint* restrict places, global volatile uint* restrict claims,
+                             global constraint_walk* restrict walks, global uint2* restrict sizes,
+                             global volatile uint* restrict status) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    if (outcomes[i] != CONSTRAINT_WAITS) {
+      sizes[i] = VECTOR(uint2, 0u, 0u);
+    } else {
+      const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+      const uint rank = rank_of(list[i]);
+      constraint_walk walk = walks[list[i]];
+      const int origin = walk.origin, goal = walk.goal;
+      int first = walk.corner, second;
+      departure found;
+      // As a rule it leaves through the same row.
+      int is_found = 0;
+      if (walk.rows > 0 && triangles[first] == origin) {
+        const star_search star = star_search_at(&mesh, first, goal);
+        is_found = star.next_side < 0 && star.previous_side > 0;
+        found.corner = first;
+        found.vertex = -1;
+      }
+      int end = LEAVES_FIRST;
+      if (!is_found) {
+        first = (int)places[origin];
+        second = (int)places[goal];
+        end = find_departure(&mesh, first, second, &found);
+      }
+      if (end != LEAVES_NONE && found.vertex >= 0) {
+        walk.corner = found.corner;
+        walk.rows = 0;
+        atomic_min(&claims[found.corner / 3], rank);
+        if (neighbors[found.corner] >= 0) atomic_min(&claims[neighbors[found.corner]], rank);
+      } else if (end == LEAVES_NONE ||
+                 follow(&mesh, found.corner, end == LEAVES_FIRST ? goal : origin, rank, claims, &walk) < 0) {
+        atomic_or(&status[INSERTION_BROKEN], 1u);
+      }
+      walks[list[i]] = walk;
+      sizes[i] = size_of_walk(walk.rows);
+      if (walk.rows > SHORT_WALK) atomic_inc(&status[INSERTION_LONG]);
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Winners with long walks
+
+// n elements of the list that have won: their numbers of entries.
+kernel void measure_long(int n, global const int* restrict winners, global const int* restrict list,
+                         global const constraint_walk* restrict walks, global uint* restrict counts) {
+  const int i = get_global_id(0);
+  if (i < n) counts[i] = (uint)walks[list[winners[i]]].rows + 4u;
+}
+
+// offsets: the scanned counts. chain_offsets: where the chains begin, two per winner, and their end.
+kernel void gather_long(int n, double bound, global const int* restrict winners, global const int* restrict list,
+                        global const uint* restrict offsets, global const constraint_walk* restrict walks,
+                        global const double* restrict points, global const int* restrict triangles,
+                        global const int* restrict neighbors, global const uint* restrict claims,
+                        global const uchar* restrict flags, global chain_entry* restrict entries,
+                        global int* restrict chain_offsets) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+    const int constraint = list[winners[i]];
+    const constraint_walk walk = walks[constraint];
+    int crosses = 0;
+    const int left = gather_cavity(&walk, rank_of(constraint), &mesh, claims, flags, entries + offsets[i], &crosses);
+    chain_offsets[2 * i] = (int)offsets[i];
+    chain_offsets[2 * i + 1] = (int)offsets[i] + left;
+    if (i + 1 == n) chain_offsets[2 * n] = (int)offsets[n];
+  }
+}
+
+// n entries.
+kernel void chain_vertices(int n, global const chain_entry* restrict entries, global int* restrict chain) {
+  const int i = get_global_id(0);
+  if (i < n) chain[i] = entries[i].vertex;
+}
+
+// n triangles of all chains, three positions in the chain each.
+kernel void fill_long(int n, uint mark, int chains, global const int* restrict chain_offsets,
+                      global const int* restrict chain_triangles, global int* restrict triangles,
+                      global int* restrict neighbors, global uint* restrict claims, global uchar* restrict flags,
+                      global uchar* restrict changed, global int* restrict new_corners,
+                      global chain_entry* restrict entries) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    // The last chain whose triangles begin here or before.
+    int low = 0, high = chains;
+    while (high - low > 1) {
+      const int middle = low + (high - low) / 2;
+      if (chain_offsets[middle] - 2 * middle <= t) {
+        low = middle;
+      } else {
+        high = middle;
+      }
+    }
+    const replaced_rows rows = {triangles, neighbors, claims, flags, changed, new_corners, mark};
+    global chain_entry* const chain = entries + chain_offsets[low];
+    // Each pair of chains before has as many rows as triangles, and 4 entries more.
+    global const chain_entry* const row_of = entries + 4 * (low / 2);
+    const int i = chain_triangles[3 * t], j = chain_triangles[3 * t + 1], k = chain_triangles[3 * t + 2];
+    const int row = row_of[t].row, corner = 3 * row;
+    uint flag = 0;
+    if (k - i == chain_offsets[low + 1] - chain_offsets[low] - 1) {
+      const int other = chain_offsets[low ^ 1] - 2 * (low ^ 1);
+      neighbors[corner + BASE_CORNER] = row_of[other].row;
+      flag = edge_flag(corner + BASE_CORNER);
+    }
+    if (k - j > 1) {
+      join(corner, 3 * row_of[t + j - i].row + BASE_CORNER, &rows);
+    } else {
+      flag |= put_side(corner, &chain[j], &rows);
+    }
+    if (j - i > 1) {
+      join(corner + 1, 3 * row_of[t + 1].row + BASE_CORNER, &rows);
+    } else {
+      flag |= put_side(corner + 1, &chain[i], &rows);
+    }
+    put_row(row, chain[i].vertex, chain[k].vertex, chain[j].vertex, flag, &rows);
+  }
+}
+
+// n entries.
+kernel void join_long(int n, uint mark, global const uint* restrict claims, global const uint* restrict marks,
+                      global const int* restrict new_corners, global const chain_entry* restrict entries,
+                      global int* restrict neighbors, global volatile uint* restrict places) {
+  const int i = get_global_id(0);
+  if (i < n && entries[i].corner >= 0) join_side(entries[i], mark, claims, marks, new_corners, neighbors, places);
+}

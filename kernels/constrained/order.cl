@@ -1,0 +1,99 @@
+// The order of rows after constraints were inserted: new rows are sorted, and put to the places of those that changed.
+//
+// The host packs the numbers of changed rows. row_keys, over these: a key of the first two corners of each, by which
+// the host sorts them. take_rows, over the sorted rows: copies each, from its smallest corner on, and notes where it
+// goes and where its neighbours refer to it. put_rows: writes the copies to their places. write_row_halfedges and
+// write_constrained, over all rows.
+
+#include "shared/halfedges.h"
+#include "shared/language.h"
+#include "shared/segment_walks.h"
+
+// The corner of a row with the smallest vertex.
+static inline int first_corner(int row, global const int* triangles) {
+  const int a = triangles[3 * row], b = triangles[3 * row + 1], c = triangles[3 * row + 2];
+  return 3 * row + (b < a && b < c ? 1 : c < a && c < b ? 2 : 0);
+}
+
+kernel void row_keys(int n, global const int* restrict rows, global const int* restrict triangles,
+                     global ulong* restrict keys, global int* restrict payloads) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int corner = first_corner(rows[i], triangles);
+    keys[i] = (ulong)triangles[corner] << 32 | (ulong)triangles[next_halfedge(corner)];
+    payloads[i] = rows[i];
+  }
+}
+
+// What a copied row has for a neighbour: a row that changed, the corner of one that did not which is to refer to it
+// (with this bit), or all bits beyond the hull.
+#define UNCHANGED 0x80000000u
+#define OUTSIDE 0xffffffffu
+
+// rows: ascending; sorted: in the order of their new contents. places: per changed row where that goes.
+kernel void take_rows(int n, global const int* restrict rows, global const int* restrict sorted,
+                      global const int* restrict triangles, global const int* restrict neighbors,
+                      global const uchar* restrict flags, global const uchar* restrict changed,
+                      global int* restrict copied_triangles, global uint* restrict copied_neighbors,
+                      global uchar* restrict copied_flags, global uint* restrict places) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int row = sorted[i];
+    int corner = first_corner(row, triangles);
+    const int turn = corner - 3 * row;
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = neighbors[corner];
+      copied_triangles[3 * i + k] = triangles[corner];
+      copied_neighbors[3 * i + k] = beyond < 0        ? OUTSIDE
+                                    : changed[beyond] ? (uint)beyond
+                                                      : UNCHANGED | (uint)corner_with(beyond, row, neighbors);
+      corner = next_halfedge(corner);
+    }
+    const uint flag = flags[row];
+    copied_flags[i] = (uchar)((flag >> turn | flag << (3 - turn)) & 7u);
+    places[row] = (uint)rows[i];
+  }
+}
+
+kernel void put_rows(int n, global const int* restrict rows, global const int* restrict copied_triangles,
+                     global const uint* restrict copied_neighbors, global const uchar* restrict copied_flags,
+                     global const uint* restrict places, global int* restrict triangles, global int* restrict neighbors,
+                     global uchar* restrict flags) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int row = rows[i];
+    for (int k = 0; k < 3; ++k) {
+      const uint beyond = copied_neighbors[3 * i + k];
+      triangles[3 * row + k] = copied_triangles[3 * i + k];
+      if (beyond == OUTSIDE) {
+        neighbors[3 * row + k] = -1;
+      } else if (beyond >= UNCHANGED) {
+        const int corner = (int)(beyond - UNCHANGED);
+        neighbors[3 * row + k] = corner / 3;
+        neighbors[corner] = row;
+      } else {
+        neighbors[3 * row + k] = (int)places[beyond];
+      }
+    }
+    flags[row] = copied_flags[i];
+  }
+}
+
+// n triangles.
+kernel void write_row_halfedges(int n, global const int* restrict neighbors, global int* restrict halfedges) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = neighbors[3 * t + k];
+      halfedges[3 * t + next_corner(k)] = beyond < 0 ? -1 : next_halfedge(corner_with(beyond, t, neighbors));
+    }
+  }
+}
+
+// n triangles. constrained: a byte per corner, whether the edge opposite is a constraint.
+kernel void write_constrained(int n, global const uchar* restrict flags, global uchar* restrict constrained) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    for (int k = 0; k < 3; ++k) constrained[3 * t + k] = flags[t] >> k & 1;
+  }
+}

@@ -1,0 +1,143 @@
+// The public calls for triangulations with constraints.
+#include "call/constrained.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "call/device_mesh.hpp"
+#include "call/domains.hpp"
+#include "call/host_call.hpp"
+#include "call/implementation.hpp"
+#include "call/insert_segments.hpp"
+#include "constrained/constrained.hpp"
+#include "geometry/halfedges.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/clock.hpp"
+
+namespace flaunay {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+Ids checked_segments(const Constraints& constraints) {
+  call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
+  call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
+  return {constraints.segments, constraints.segments + 2 * constraints.segment_count};
+}
+
+// Per edge the smallest index of a segment that has it. Segments come in ascending order and skip edges that
+// earlier ones have, by shortcuts to the next edge without a segment.
+Ids segments_of_edges(std::size_t edges, const Ids& piece_offsets, const Ids& piece_edges) {
+  Ids owner(edges, -1), next(edges + 1);
+  std::iota(next.begin(), next.end(), 0);
+  const auto next_free = [&next](std::int32_t e) {
+    while (next[e] != e) e = next[e] = next[next[e]];
+    return e;
+  };
+  for (std::size_t s = 0; s + 1 < piece_offsets.size(); ++s) {
+    for (std::int32_t p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
+      const std::int32_t end = piece_edges[2 * p + 1];
+      for (std::int32_t e = next_free(piece_edges[2 * p]); e < end; e = next_free(e)) {
+        owner[e] = static_cast<std::int32_t>(s);
+        next[e] = e + 1;
+      }
+    }
+  }
+  return owner;
+}
+
+// The coordinates of all points, those that splitting added too. Empty if there are none of these.
+std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added) {
+  std::vector<double> all;
+  if (added.empty()) return all;
+  all.assign(coordinates, coordinates + 2 * n);
+  all.insert(all.end(), added.begin(), added.end());
+  return all;
+}
+
+}  // namespace
+
+ConstrainedTriangulation call::constrain(Implementation& self, const double* coordinates,
+                                         const std::vector<std::size_t>& offsets,
+                                         const Constraints& constraints, const ConstrainedOptions& options) {
+  geometry::check_offsets(offsets);
+  geometry::check_coordinates(coordinates, offsets.back());
+  const Ids segments = checked_segments(constraints);
+  Options plain = options;
+  plain.neighbors = true;
+  plain.halfedges = false;
+  ConstrainedTriangulation result;
+  static_cast<Triangulation&>(result) = call::triangulate(self, {coordinates, nullptr}, offsets, plain);
+
+  const double begin = host::now();
+  constrained::Result edges = call::insert_segments(self, coordinates, offsets, result, segments, options);
+  result.triangles = std::move(edges.triangles);
+  result.neighbors = std::move(edges.neighbors);
+  result.constrained = std::move(edges.constrained);
+  result.constraint_edges = std::move(edges.constraint_edges);
+  result.piece_edges = std::move(edges.segment_edges);
+  result.piece_offsets.resize(segments.size() / 2 + 1);
+  std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
+  result.edge_segments =
+      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
+  result.added_offsets.assign(offsets.size(), 0);
+  result.halfedges = std::move(edges.halfedges);
+  end_phase("constrain", begin, result.statistics);
+  return result;
+}
+
+void call::end_phase(const char* name, double begin, Statistics& statistics) {
+  const double seconds = host::now() - begin;
+  statistics.seconds += seconds;
+  statistics.phases.push_back({name, seconds});
+}
+
+void call::finish(const Options& options, ConstrainedTriangulation& result) {
+  // Otherwise all triangles were kept.
+  if (result.halfedges.size() != result.triangles.size()) geometry::write_halfedges(options, result);
+  if (!options.neighbors) result.neighbors.clear();
+  result.statistics.triangles = result.triangles.size() / 3;
+}
+
+ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options, bool are_closed) {
+  ConstrainedTriangulation result = constrain(self, coordinates, offsets, constraints, options);
+  const double begin = host::now();
+  const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
+  apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints,
+                request_of(options, are_closed), result);
+  finish(options, result);
+  end_phase("domains", begin, result.statistics);
+  return result;
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options) {
+  return call::take_turn(*implementation_, [&] {
+    return call::constrain_and_leave(*implementation_, coordinates, offsets, constraints, options, false);
+  });
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints) {
+  return constrained(coordinates, offsets, constraints, {});
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates, std::size_t n,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options) {
+  return constrained(coordinates, std::vector<std::size_t>{0, n}, constraints, options);
+}
+
+ConstrainedTriangulation Triangulator::constrained(const double* coordinates, std::size_t n,
+                                                   const Constraints& constraints) {
+  return constrained(coordinates, n, constraints, {});
+}
+
+}  // namespace flaunay

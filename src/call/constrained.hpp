@@ -1,0 +1,30 @@
+// Constrained triangulations of points in host memory, in steps.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "call/implementation.hpp"
+#include "flaunay/constrained.hpp"
+
+namespace flaunay::call {
+
+/// Triangulates sets with segments. All triangles are kept, without labels; there are neighbours, but no
+/// half-edges.
+ConstrainedTriangulation constrain(Implementation& self, const double* coordinates,
+                                   const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                                   const ConstrainedOptions& options);
+
+/// Implements Triangulator::constrained. are_closed: whether segments are known to be closed curves.
+ConstrainedTriangulation constrain_and_leave(Implementation& self, const double* coordinates,
+                                             const std::vector<std::size_t>& offsets,
+                                             const Constraints& constraints,
+                                             const ConstrainedOptions& options, bool are_closed);
+
+/// Makes half-edges, or leaves out neighbours, as the options say, and counts the triangles.
+void finish(const Options& options, ConstrainedTriangulation& result);
+
+/// Adds a phase that began at this time to the statistics.
+void end_phase(const char* name, double begin, Statistics& statistics);
+
+}  // namespace flaunay::call

@@ -1,0 +1,66 @@
+#include "call/insert_segments.hpp"
+
+#include <algorithm>
+
+#include "call/device_mesh.hpp"
+#include "constrained/device.hpp"
+#include "statistics/phases.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::call {
+namespace {
+
+// Adds what one step of a call did to what others did.
+void add(const Statistics& step, Statistics& all) {
+  all.build_seconds += step.build_seconds;
+  all.kernel_launches += step.kernel_launches;
+  all.host_waits += step.host_waits;
+  all.bytes_to_device += step.bytes_to_device;
+  all.bytes_to_host += step.bytes_to_host;
+  all.device_allocations += step.device_allocations;
+  all.device_bytes_peak = std::max(all.device_bytes_peak, step.device_bytes_peak);
+  for (const KernelStatistics& kernel : step.kernels) {
+    const auto same = std::find_if(all.kernels.begin(), all.kernels.end(),
+                                   [&kernel](const KernelStatistics& k) { return k.name == kernel.name; });
+    if (same == all.kernels.end()) {
+      all.kernels.push_back(kernel);
+    } else {
+      same->launches += kernel.launches;
+      same->seconds += kernel.seconds;
+    }
+  }
+  std::stable_sort(
+      all.kernels.begin(), all.kernels.end(),
+      [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
+}
+
+constrained::Result insert_on(Engine& engine, const double* coordinates,
+                              const std::vector<std::size_t>& offsets, Triangulation& delaunay,
+                              const std::vector<std::int32_t>& segments, const Options& options) {
+  const statistics::Phases phases(options);
+  const host::Runtime::BeforeCompiling announce(engine.runtime,
+                                                [&] { phases.interrupt("compiling kernels"); });
+  engine.begin_call(options.profile);
+  Triangulation used = delaunay;
+  constrained::Result result = constrained::constrain(engine.runtime, coordinates, offsets, std::move(used),
+                                                      segments, options.halfedges);
+  Statistics step;
+  engine.write_accounts(step);
+  add(step, delaunay.statistics);
+  return result;
+}
+
+}  // namespace
+
+constrained::Result insert_segments(Implementation& self, const double* coordinates,
+                                    const std::vector<std::size_t>& offsets, Triangulation& delaunay,
+                                    const std::vector<std::int32_t>& segments, const Options& options) {
+  const bool may_stay = !self.is_named() && !options.profile;
+  const std::size_t size = offsets.back() + segments.size() / 2;
+  if (may_stay && size <= self.host_tuning().host_points) {
+    return constrained::constrain(coordinates, offsets, delaunay, segments);
+  }
+  return insert_on(self.for_host_memory(), coordinates, offsets, delaunay, segments, options);
+}
+
+}  // namespace flaunay::call

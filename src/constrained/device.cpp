@@ -1,0 +1,675 @@
+#include "constrained/device.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "constrained/chains.hpp"
+#include "flaunay/research.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/vector_operations.hpp"
+#include "launchers/constrained/insert.cl.hpp"
+#include "launchers/constrained/order.cl.hpp"
+#include "launchers/constrained/segments.cl.hpp"
+#include "launchers/points/inspect.cl.hpp"
+#include "points/inspect.hpp"
+#include "shared/codes.h"
+#include "shared/limits.h"
+
+namespace flaunay::constrained {
+namespace {
+
+using host::Arena;
+using points::DeviceMesh;
+
+// Segments with more pieces in all, per point and segment, are left to the twin.
+constexpr std::size_t kPieces = 16;
+constexpr std::size_t kMostPieces = std::size_t{1} << 30;
+
+template <typename T>
+std::vector<T> download(host::Runtime& runtime, const Buffer<T>& from, std::size_t count) {
+  std::vector<T> values(count);
+  // Copied first, because the caller's buffer may not permit the host to read it.
+  const Buffer<T> copy(host::allocate_memory(runtime.memory(), std::max<std::size_t>(1, count) * sizeof(T)),
+                       count);
+  runtime.copy(from, 0, copy, 0, count);
+  runtime.read(copy, 0, count, values.data());
+  return values;
+}
+
+// Points as predicates need them.
+struct ScaledPoints {
+  Buffer<cl_double> coordinates{};
+  geometry::Bounds bounds{};
+};
+
+ScaledPoints scale_points(host::Runtime& runtime, const DeviceMesh& mesh) {
+  const points::UniformPoints uniform = points::make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
+  ScaledPoints scaled{uniform.coordinates, uniform.scaling.bounds};
+  if (uniform.scaling.shift == 0) return scaled;
+  const std::size_t n = mesh.points();
+  scaled.coordinates = runtime.arena().allocate<cl_double>(2 * n);
+  runtime.map(n, kernels::scale_sets{
+                     .sets = 1,
+                     .offsets = runtime.upload(runtime.arena(), std::vector<cl_int>{0, cl_int(n)}),
+                     .shifts = runtime.upload(runtime.arena(), std::vector<cl_int>{uniform.scaling.shift}),
+                     .input = uniform.coordinates,
+                     .scaled_input = scaled.coordinates});
+  return scaled;
+}
+
+// Pairs of ends, each pair once, in the order of their places.
+struct UniquePairs {
+  Buffer<cl_int> of{};  // per pair that was given its number, or -1
+  Buffer<cl_ulong> keys{};
+  std::size_t count = 0;
+};
+
+// What walk_segments writes.
+struct Walks {
+  Buffer<kernel::constraint_walk> walks{};
+  Buffer<cl_int> ends{};
+  Buffer<cl_uint> pieces{};
+  Buffer<cl_uint2> sizes{};  // scanned
+};
+
+class Insertion {
+ public:
+  Insertion(host::Runtime& runtime, const DeviceMesh& delaunay, const Buffer<cl_int>& segments,
+            std::size_t segment_count, const ConstrainedBuffers& result)
+      : runtime_(runtime),
+        arena_(runtime.arena()),
+        delaunay_(delaunay),
+        segments_(segments),
+        segment_count_(segment_count),
+        result_(result),
+        n_(delaunay.points()),
+        rows_(delaunay.triangle_count()) {
+    status_ = arena_.allocate<cl_uint>(kernel::INSERTION_NUMBERS);
+    marks_ = arena_.allocate<cl_uint>(n_ / 32 + 1);
+    places_ = arena_.allocate<cl_uint>(n_);
+    claims_ = arena_.allocate<cl_uint>(rows_);
+    // Whole words.
+    flags_ = arena_.allocate<cl_uchar>((rows_ + 3) / 4 * 4);
+    changed_ = arena_.allocate<cl_uchar>(rows_);
+  }
+
+  void run(const ProvideEdges& provide) {
+    points_ = scale_points(runtime_, delaunay_);
+    copy_rows();
+    clear_status();
+    const auto ends = arena_.allocate<cl_int>(2 * segment_count_);
+    clear_vertices(false);
+    mark_ends(ends);
+    place_vertices();
+    const UniquePairs segments = unique_pairs(ends, segment_count_);
+    if (status(kernel::INSERTION_WRONG) != 0) throw_wrong();
+    Walks walks = walk(segments);
+    if (status(kernel::INSERTION_PIECES) == 0) {
+      insert(walks, segments.count);
+      number_edges(segments, walks.ends, provide);
+      return finish_rows();
+    }
+    if (status(kernel::INSERTION_PIECES) > most_pieces()) return by_twin(provide);
+    host::exclusive_scan(runtime_, walks.pieces, segments.count, walks.pieces);
+    const std::size_t all = runtime_.read_one(walks.pieces, segments.count);
+    const auto piece_ends = arena_.allocate<cl_int>(2 * all);
+    runtime_.map_in_small_groups(segments.count, kernels::write_pieces{.bound = points_.bounds.orient,
+                                                                       .points = points_.coordinates,
+                                                                       .triangles = result_.triangles,
+                                                                       .neighbors = result_.neighbors,
+                                                                       .hull = delaunay_.hull,
+                                                                       .keys = segments.keys,
+                                                                       .offsets = walks.pieces,
+                                                                       .claims = claims_,
+                                                                       .ends = piece_ends});
+    clear_status();
+    clear_vertices(true);
+    place_vertices();
+    const UniquePairs pieces = unique_pairs(piece_ends, all);
+    const Walks piece_walks = walk(pieces);
+    insert(piece_walks, pieces.count);
+    number_chained(segments, walks.pieces, pieces, piece_walks.ends, provide);
+    finish_rows();
+  }
+
+ private:
+  void copy_rows() {
+    if (result_.triangles.memory() != delaunay_.triangles.memory()) {
+      runtime_.copy(delaunay_.triangles, 0, result_.triangles, 0, 3 * rows_);
+    }
+    if (result_.neighbors.memory() != delaunay_.neighbors.memory()) {
+      runtime_.copy(delaunay_.neighbors, 0, result_.neighbors, 0, 3 * rows_);
+    }
+  }
+
+  std::size_t most_pieces() const { return std::min(kMostPieces, kPieces * (n_ + segment_count_)); }
+
+  // The numbers as of the last wait.
+  cl_uint status(int which) const { return last_status_[which]; }
+  void clear_status() {
+    runtime_.fill(status_, kernel::INSERTION_NUMBERS, cl_uint{0});
+    std::fill_n(last_status_, kernel::INSERTION_NUMBERS, 0);
+  }
+  void read_status() {
+    runtime_.read(status_, 0, kernel::INSERTION_NUMBERS, last_status_);
+    if (status(kernel::INSERTION_BROKEN) != 0) throw_broken();
+  }
+
+  [[noreturn]] static void throw_broken() {
+    throw Error(ErrorKind::internal, "a segment leaves the triangulation; please report the input");
+  }
+  [[noreturn]] void throw_wrong() {
+    check_segments(delaunay_.point_offsets, download(runtime_, segments_, 2 * segment_count_));
+    throw Error(ErrorKind::internal, "a device finds wrong segments, the host does not");
+  }
+  // The twin names the segments. What was the Delaunay triangulation may have changed already.
+  [[noreturn]] void throw_crossing() {
+    const std::vector<double> coordinates = download(runtime_, delaunay_.coordinates, 2 * n_);
+    research::Options options;
+    options.mode = research::Mode::dwyer;
+    options.neighbors = true;
+    constrained::constrain(
+        coordinates.data(), delaunay_.point_offsets,
+        research::triangulate_on_host(coordinates.data(), delaunay_.point_offsets, options),
+        download(runtime_, segments_, 2 * segment_count_));
+    throw Error(ErrorKind::internal, "segments cross on a device only; please report the input");
+  }
+
+  void by_twin(const ProvideEdges& provide) {
+    Triangulation delaunay;
+    const std::vector<double> coordinates = download(runtime_, delaunay_.coordinates, 2 * n_);
+    delaunay.triangles = download(runtime_, result_.triangles, 3 * rows_);
+    delaunay.neighbors = download(runtime_, result_.neighbors, 3 * rows_);
+    delaunay.hull = download(runtime_, delaunay_.hull, delaunay_.hull_offsets.back());
+    delaunay.representatives = download(runtime_, delaunay_.representatives, n_);
+    delaunay.triangle_offsets = delaunay_.triangle_offsets;
+    delaunay.hull_offsets = delaunay_.hull_offsets;
+    const Result made = constrained::constrain(coordinates.data(), delaunay_.point_offsets, delaunay,
+                                               download(runtime_, segments_, 2 * segment_count_));
+    const auto write = [this](const auto& to, const auto& values) {
+      runtime_.write(to, 0, values.size(), values.data());
+    };
+    write(result_.triangles, made.triangles);
+    write(result_.neighbors, made.neighbors);
+    write(result_.constrained, made.constrained);
+    write(result_.segment_edges, made.segment_edges);
+    write(provide(made.constraint_edges.size() / 2), made.constraint_edges);
+    write_halfedges();
+  }
+
+  void clear_vertices(bool all) {
+    runtime_.map(n_, kernels::clear_vertices{.all = all, .marks = marks_, .places = places_});
+  }
+  void mark_ends(const Buffer<cl_int>& ends) {
+    runtime_.map(segment_count_, kernels::mark_ends{.points = n_,
+                                                    .sets = delaunay_.sets(),
+                                                    .offsets = runtime_.upload(
+                                                        arena_, points::integers(delaunay_.point_offsets)),
+                                                    .segments = segments_,
+                                                    .representatives = delaunay_.representatives,
+                                                    .ends = ends,
+                                                    .marks = marks_,
+                                                    .status = status_});
+  }
+  void place_vertices() {
+    runtime_.map(rows_, kernels::start_rows{.triangles = result_.triangles,
+                                            .marks = marks_,
+                                            .places = places_,
+                                            .claims = claims_,
+                                            .flags = flags_,
+                                            .changed = changed_});
+    const auto& triangle_offsets = delaunay_.triangle_offsets;
+    if (std::adjacent_find(triangle_offsets.begin(), triangle_offsets.end()) == triangle_offsets.end())
+      return;
+    runtime_.map(delaunay_.hull_offsets.back(),
+                 kernels::line_places{
+                     .sets = delaunay_.sets(),
+                     .triangle_offsets = runtime_.upload(arena_, points::integers(triangle_offsets)),
+                     .hull_offsets = runtime_.upload(arena_, points::integers(delaunay_.hull_offsets)),
+                     .hull = delaunay_.hull,
+                     .places = places_});
+  }
+
+  UniquePairs unique_pairs(const Buffer<cl_int>& ends, std::size_t count) {
+    UniquePairs unique{arena_.allocate<cl_int>(count), arena_.allocate<cl_ulong>(count)};
+    Arena::Scope scope(arena_);
+    const auto keys = arena_.allocate<cl_ulong>(count);
+    const auto payloads = arena_.allocate<cl_int>(count);
+    const auto ranks = arena_.allocate<cl_uint>(count + 1);
+    runtime_.map(count,
+                 kernels::segment_keys{.ends = ends, .places = places_, .keys = keys, .payloads = payloads});
+    host::sort_by_key(runtime_, keys, payloads, count);
+    runtime_.map(count, kernels::find_runs{.keys = keys, .counts = ranks});
+    host::exclusive_scan(runtime_, ranks, count, ranks);
+    runtime_.map(count, kernels::write_unique{.keys = keys,
+                                              .payloads = payloads,
+                                              .ranks = ranks,
+                                              .unique_of = unique.of,
+                                              .unique = unique.keys});
+    cl_uint total = 0;
+    runtime_.read_later(ranks, count, 1, &total);
+    read_status();
+    unique.count = total;
+    return unique;
+  }
+
+  Walks walk(const UniquePairs& pairs) {
+    const std::size_t count = pairs.count;
+    const Walks made{arena_.allocate<kernel::constraint_walk>(count), arena_.allocate<cl_int>(2 * count),
+                     arena_.allocate<cl_uint>(count + 1), arena_.allocate<cl_uint2>(count + 1)};
+    runtime_.map_in_small_groups(count, kernels::walk_segments{.limit = most_pieces(),
+                                                               .bound = points_.bounds.orient,
+                                                               .points = points_.coordinates,
+                                                               .triangles = result_.triangles,
+                                                               .neighbors = result_.neighbors,
+                                                               .hull = delaunay_.hull,
+                                                               .keys = pairs.keys,
+                                                               .claims = claims_,
+                                                               .flags = flags_.as<cl_uint>(),
+                                                               .walks = made.walks,
+                                                               .ends = made.ends,
+                                                               .pieces = made.pieces,
+                                                               .sizes = made.sizes,
+                                                               .status = status_});
+    read_status();
+    host::exclusive_scan(runtime_, made.sizes, count, made.sizes);
+    return made;
+  }
+
+  // -------------------------------------------------------------------------------------------------------
+  // Rounds
+
+  // The constraints that are left in a round, and what became of them.
+  struct Waiting {
+    Buffer<cl_int> list{};
+    Buffer<cl_uint> offsets{};
+    Buffer<cl_uchar> outcomes{};
+    Buffer<cl_int> lefts{};
+    std::size_t count = 0;
+    cl_uint mark = 0;
+  };
+
+  void insert(const Walks& walks, std::size_t constraints) {
+    Arena::Scope scope(arena_);
+    Waiting waiting{arena_.allocate<cl_int>(constraints), arena_.allocate<cl_uint>(constraints),
+                    arena_.allocate<cl_uchar>(constraints), arena_.allocate<cl_int>(constraints)};
+    auto next_list = arena_.allocate<cl_int>(constraints);
+    new_corners_ = arena_.allocate<cl_int>(3 * rows_);
+    cl_uint long_before = 0;
+    std::size_t before = constraints;
+    for (cl_uint round = 0;; ++round) {
+      cl_uint2 total{};
+      runtime_.read_later(walks.sizes, before, 1, &total);
+      read_status();
+      if (status(kernel::INSERTION_CROSSED) != 0) throw_crossing();
+      waiting.count = total.s[1];
+      if (waiting.count == 0) return;
+      // The constraint with the smallest rank always wins.
+      if (round > 0 && waiting.count == before) throw_broken();
+      runtime_.map(before, kernels::keep_waiting{.is_first = round == 0,
+                                                 .list = waiting.list,
+                                                 .sizes = walks.sizes,
+                                                 .waiting = next_list,
+                                                 .offsets = waiting.offsets});
+      std::swap(waiting.list, next_list);
+      waiting.mark = kernel_won(round);
+      const bool any_long = status(kernel::INSERTION_LONG) != long_before;
+      long_before = status(kernel::INSERTION_LONG);
+      insert_winners(walks, waiting, total.s[0], any_long);
+      walk_again(walks, waiting);
+      before = waiting.count;
+    }
+  }
+
+  static cl_uint kernel_won(cl_uint round) { return RANK_WON | round; }
+
+  void insert_winners(const Walks& walks, const Waiting& waiting, std::size_t entry_count, bool any_long) {
+    Arena::Scope scope(arena_);
+    const auto entries = arena_.allocate<kernel::chain_entry>(entry_count);
+    runtime_.map(waiting.count, kernels::choose_constraints{.bound = points_.bounds.orient,
+                                                            .list = waiting.list,
+                                                            .offsets = waiting.offsets,
+                                                            .walks = walks.walks,
+                                                            .points = points_.coordinates,
+                                                            .triangles = result_.triangles,
+                                                            .neighbors = result_.neighbors,
+                                                            .claims = claims_,
+                                                            .flags = flags_,
+                                                            .outcomes = waiting.outcomes,
+                                                            .lefts = waiting.lefts,
+                                                            .entries = entries,
+                                                            .status = status_});
+    LongWinners winners;
+    if (any_long) winners = gather_long(walks, waiting);
+    runtime_.map_in_small_groups(waiting.count, kernels::fill_cavities{.mark = waiting.mark,
+                                                                       .bound = points_.bounds.circle,
+                                                                       .list = waiting.list,
+                                                                       .offsets = waiting.offsets,
+                                                                       .outcomes = waiting.outcomes,
+                                                                       .lefts = waiting.lefts,
+                                                                       .walks = walks.walks,
+                                                                       .points = points_.coordinates,
+                                                                       .triangles = result_.triangles,
+                                                                       .neighbors = result_.neighbors,
+                                                                       .claims = claims_,
+                                                                       .flags = flags_,
+                                                                       .changed = changed_,
+                                                                       .new_corners = new_corners_,
+                                                                       .entries = entries});
+    if (winners.count > 0) fill_long(waiting, winners);
+    runtime_.map(waiting.count, kernels::join_cavities{.mark = waiting.mark,
+                                                       .list = waiting.list,
+                                                       .offsets = waiting.offsets,
+                                                       .outcomes = waiting.outcomes,
+                                                       .lefts = waiting.lefts,
+                                                       .walks = walks.walks,
+                                                       .claims = claims_,
+                                                       .marks = marks_,
+                                                       .new_corners = new_corners_,
+                                                       .entries = entries,
+                                                       .neighbors = result_.neighbors,
+                                                       .places = places_});
+    if (winners.count > 0) {
+      runtime_.map(winners.entry_count, kernels::join_long{.mark = waiting.mark,
+                                                           .claims = claims_,
+                                                           .marks = marks_,
+                                                           .new_corners = new_corners_,
+                                                           .entries = winners.entries,
+                                                           .neighbors = result_.neighbors,
+                                                           .places = places_});
+    }
+  }
+
+  void walk_again(const Walks& walks, const Waiting& waiting) {
+    runtime_.map_in_small_groups(waiting.count, kernels::walk_constraints{.bound = points_.bounds.orient,
+                                                                          .list = waiting.list,
+                                                                          .outcomes = waiting.outcomes,
+                                                                          .points = points_.coordinates,
+                                                                          .triangles = result_.triangles,
+                                                                          .neighbors = result_.neighbors,
+                                                                          .places = places_,
+                                                                          .claims = claims_,
+                                                                          .walks = walks.walks,
+                                                                          .sizes = walks.sizes,
+                                                                          .status = status_});
+    host::exclusive_scan(runtime_, walks.sizes, waiting.count, walks.sizes);
+  }
+
+  // Winners with long walks.
+  struct LongWinners {
+    std::size_t count = 0, entry_count = 0;
+    Buffer<kernel::chain_entry> entries{};
+    Buffer<cl_int> chain_offsets{}, triangles{};
+  };
+
+  LongWinners gather_long(const Walks& walks, const Waiting& waiting) {
+    const auto [list, count] =
+        host::pack_positions(runtime_, waiting.outcomes, waiting.count, kernel::CONSTRAINT_FITS_LONG);
+    LongWinners winners;
+    if (count == 0) return winners;
+    winners.count = count;
+    const auto offsets = arena_.allocate<cl_uint>(count + 1);
+    runtime_.map(count, kernels::measure_long{
+                            .winners = list, .list = waiting.list, .walks = walks.walks, .counts = offsets});
+    host::exclusive_scan(runtime_, offsets, count, offsets);
+    winners.entry_count = runtime_.read_one(offsets, count);
+    winners.entries = arena_.allocate<kernel::chain_entry>(winners.entry_count);
+    winners.chain_offsets = arena_.allocate<cl_int>(2 * count + 1);
+    winners.triangles = arena_.allocate<cl_int>(3 * (winners.entry_count - 4 * count));
+    runtime_.map(count, kernels::gather_long{.bound = points_.bounds.orient,
+                                             .winners = list,
+                                             .list = waiting.list,
+                                             .offsets = offsets,
+                                             .walks = walks.walks,
+                                             .points = points_.coordinates,
+                                             .triangles = result_.triangles,
+                                             .neighbors = result_.neighbors,
+                                             .claims = claims_,
+                                             .flags = flags_,
+                                             .entries = winners.entries,
+                                             .chain_offsets = winners.chain_offsets});
+    Arena::Scope scope(arena_);
+    const auto chain = arena_.allocate<cl_int>(winners.entry_count);
+    runtime_.map(winners.entry_count, kernels::chain_vertices{.entries = winners.entries, .chain = chain});
+    triangulate_chains(runtime_,
+                       {.count = 2 * count,
+                        .vertices = winners.entry_count,
+                        .circle_bound = points_.bounds.circle,
+                        .points = aligned_points(),
+                        .offsets = winners.chain_offsets,
+                        .chain = chain},
+                       winners.triangles);
+    return winners;
+  }
+
+  // The caller's points may be aligned to single coordinates only.
+  Buffer<cl_double2> aligned_points() {
+    if (runtime_.is_native()) return points_.coordinates.as<cl_double2>();
+    const auto aligned = arena_.allocate<cl_double>(2 * n_);
+    runtime_.copy(points_.coordinates, 0, aligned, 0, 2 * n_);
+    return aligned.as<cl_double2>();
+  }
+
+  void fill_long(const Waiting& waiting, const LongWinners& winners) {
+    runtime_.map(winners.entry_count - 4 * winners.count,
+                 kernels::fill_long{.mark = waiting.mark,
+                                    .chains = 2 * winners.count,
+                                    .chain_offsets = winners.chain_offsets,
+                                    .chain_triangles = winners.triangles,
+                                    .triangles = result_.triangles,
+                                    .neighbors = result_.neighbors,
+                                    .claims = claims_,
+                                    .flags = flags_,
+                                    .changed = changed_,
+                                    .new_corners = new_corners_,
+                                    .entries = winners.entries});
+  }
+
+  // -------------------------------------------------------------------------------------------------------
+  // Results
+
+  void number_edges(const UniquePairs& edges, const Buffer<cl_int>& ends, const ProvideEdges& provide) {
+    const Buffer<cl_int> made = provide(edges.count);
+    Arena::Scope scope(arena_);
+    const auto keys = arena_.allocate<cl_ulong>(edges.count);
+    const auto payloads = arena_.allocate<cl_int>(edges.count);
+    const auto numbers = arena_.allocate<cl_int>(edges.count);
+    runtime_.map(
+        edges.count,
+        kernels::edge_keys{
+            .with_chains = false, .ends = ends, .heads = payloads, .keys = keys, .payloads = payloads});
+    host::sort_by_key(runtime_, keys, payloads, edges.count);
+    runtime_.map(edges.count, kernels::number_edges{
+                                  .keys = keys, .payloads = payloads, .numbers = numbers, .edges = made});
+    runtime_.map(segment_count_, kernels::write_segments{.with_pieces = false,
+                                                         .unique_of = edges.of,
+                                                         .offsets = Buffer<cl_uint>(),
+                                                         .piece_of = edges.of,
+                                                         .numbers = numbers,
+                                                         .segment_edges = result_.segment_edges});
+  }
+
+  void number_chained(const UniquePairs& segments, const Buffer<cl_uint>& offsets, const UniquePairs& edges,
+                      const Buffer<cl_int>& ends, const ProvideEdges& provide) {
+    const Buffer<cl_int> made = provide(edges.count);
+    Arena::Scope scope(arena_);
+    const std::size_t count = edges.count;
+    const auto next = arena_.allocate<cl_int>(count), previous = arena_.allocate<cl_int>(count);
+    runtime_.fill(next, count, cl_int{-1});
+    runtime_.fill(previous, count, cl_int{-1});
+    runtime_.map(
+        segments.count,
+        kernels::link_pieces{.offsets = offsets, .piece_of = edges.of, .next = next, .previous = previous});
+    auto heads = arena_.allocate<cl_int>(count), distances = arena_.allocate<cl_int>(count);
+    auto next_heads = arena_.allocate<cl_int>(count), next_distances = arena_.allocate<cl_int>(count);
+    runtime_.map(count, kernels::start_chains{.previous = previous, .heads = heads, .distances = distances});
+    for (std::size_t reach = 1; reach < count; reach *= 2) {
+      runtime_.map(count, kernels::jump{.heads = heads,
+                                        .distances = distances,
+                                        .next_heads = next_heads,
+                                        .next_distances = next_distances});
+      std::swap(heads, next_heads);
+      std::swap(distances, next_distances);
+    }
+    const auto keys = arena_.allocate<cl_ulong>(count);
+    const auto payloads = arena_.allocate<cl_int>(count), numbers = arena_.allocate<cl_int>(count);
+    const auto lengths = arena_.allocate<cl_uint>(count), counts = arena_.allocate<cl_uint>(count + 1);
+    runtime_.map(count, kernels::measure_chains{
+                            .next = next, .heads = heads, .distances = distances, .lengths = lengths});
+    runtime_.map(count,
+                 kernels::edge_keys{
+                     .with_chains = true, .ends = ends, .heads = heads, .keys = keys, .payloads = payloads});
+    host::sort_by_key(runtime_, keys, payloads, count);
+    runtime_.map(count, kernels::sorted_lengths{
+                            .keys = keys, .payloads = payloads, .lengths = lengths, .counts = counts});
+    host::exclusive_scan(runtime_, counts, count, counts);
+    runtime_.map(count, kernels::start_numbers{
+                            .keys = keys, .payloads = payloads, .counts = counts, .starts = lengths});
+    runtime_.map(count, kernels::number_chained{.heads = heads,
+                                                .distances = distances,
+                                                .starts = lengths,
+                                                .ends = ends,
+                                                .numbers = numbers,
+                                                .edges = made});
+    runtime_.map(segment_count_, kernels::write_segments{.with_pieces = true,
+                                                         .unique_of = segments.of,
+                                                         .offsets = offsets,
+                                                         .piece_of = edges.of,
+                                                         .numbers = numbers,
+                                                         .segment_edges = result_.segment_edges});
+  }
+
+  void finish_rows() {
+    sort_rows();
+    runtime_.map(rows_, kernels::write_constrained{.flags = flags_, .constrained = result_.constrained});
+    write_halfedges();
+  }
+
+  void sort_rows() {
+    Arena::Scope scope(arena_);
+    const auto [changed, count] = host::pack_positions(runtime_, changed_, rows_, 1);
+    if (count == 0) return;
+    const auto keys = arena_.allocate<cl_ulong>(count);
+    const auto sorted = arena_.allocate<cl_int>(count);
+    runtime_.map(
+        count,
+        kernels::row_keys{.rows = changed, .triangles = result_.triangles, .keys = keys, .payloads = sorted});
+    host::sort_by_key(runtime_, keys, sorted, count);
+    const auto triangles = arena_.allocate<cl_int>(3 * count);
+    const auto neighbors = arena_.allocate<cl_uint>(3 * count);
+    const auto flags = arena_.allocate<cl_uchar>(count);
+    // Claims are not needed any more.
+    runtime_.map(count, kernels::take_rows{.rows = changed,
+                                           .sorted = sorted,
+                                           .triangles = result_.triangles,
+                                           .neighbors = result_.neighbors,
+                                           .flags = flags_,
+                                           .changed = changed_,
+                                           .copied_triangles = triangles,
+                                           .copied_neighbors = neighbors,
+                                           .copied_flags = flags,
+                                           .places = claims_});
+    runtime_.map(count, kernels::put_rows{.rows = changed,
+                                          .copied_triangles = triangles,
+                                          .copied_neighbors = neighbors,
+                                          .copied_flags = flags,
+                                          .places = claims_,
+                                          .triangles = result_.triangles,
+                                          .neighbors = result_.neighbors,
+                                          .flags = flags_});
+  }
+
+  void write_halfedges() {
+    if (result_.halfedges.memory() == nullptr) return;
+    runtime_.map(
+        rows_, kernels::write_row_halfedges{.neighbors = result_.neighbors, .halfedges = result_.halfedges});
+  }
+
+  host::Runtime& runtime_;
+  Arena& arena_;
+  const DeviceMesh& delaunay_;
+  const Buffer<cl_int>& segments_;
+  std::size_t segment_count_;
+  const ConstrainedBuffers& result_;
+  std::size_t n_, rows_;
+
+  ScaledPoints points_;
+  Buffer<cl_uint> status_{};
+  cl_uint last_status_[kernel::INSERTION_NUMBERS] = {};
+  Buffer<cl_uint> marks_{};       // a bit per vertex: whether it is an end of a constraint
+  Buffer<cl_uint> places_{};      // per marked vertex: a corner at which it is, or its place on the line
+  Buffer<cl_uint> claims_{};      // per row: the smallest rank of the constraints that cross it
+  Buffer<cl_uchar> flags_{};      // per row: see edge_flag
+  Buffer<cl_uchar> changed_{};    // per row: whether it is new
+  Buffer<cl_int> new_corners_{};  // see replaced_rows
+};
+
+}  // namespace
+
+void constrain(host::Runtime& runtime, const DeviceMesh& delaunay, const Buffer<cl_int>& segments,
+               std::size_t segment_count, const ConstrainedBuffers& result, const ProvideEdges& provide) {
+  Arena::Scope scope(runtime.arena());
+  Insertion(runtime, delaunay, segments, segment_count, result).run(provide);
+}
+
+namespace {
+
+// A buffer with the values, which kernels change.
+template <typename T>
+Buffer<T> in_place(host::Runtime& runtime, std::vector<T>& values) {
+  const Buffer<T> buffer = runtime.output(values);
+  if (runtime.sizes().in_host_memory == 0) runtime.write_later(buffer, 0, values.size(), values.data());
+  return buffer;
+}
+
+}  // namespace
+
+Result constrain(host::Runtime& runtime, const double* coordinates, const std::vector<std::size_t>& offsets,
+                 Triangulation delaunay, const std::vector<std::int32_t>& segments, bool with_halfedges) {
+  geometry::check_offsets(offsets);
+  geometry::check_coordinates(coordinates, offsets.back());
+  if (delaunay.neighbors.size() != delaunay.triangles.size()) {
+    throw Error(ErrorKind::usage, "a triangulation without neighbours cannot be constrained");
+  }
+  if (segments.size() % 2 != 0) check_segments(offsets, segments);
+  Arena::Scope scope(runtime.arena());
+  Result result;
+  result.triangles = std::move(delaunay.triangles);
+  result.neighbors = std::move(delaunay.neighbors);
+  runtime.resize(result.constrained, result.triangles.size());
+  runtime.resize(result.segment_edges, segments.size());
+  if (with_halfedges) runtime.resize(result.halfedges, result.triangles.size());
+  const host::Runtime::Settled settled(runtime);
+
+  DeviceMesh mesh;
+  mesh.point_offsets = offsets;
+  mesh.triangle_offsets = delaunay.triangle_offsets;
+  mesh.hull_offsets = delaunay.hull_offsets;
+  mesh.coordinates = runtime.view_later(coordinates, 2 * mesh.points());
+  mesh.hull = runtime.view_later(delaunay.hull.data(), delaunay.hull.size());
+  mesh.representatives = runtime.view_later(delaunay.representatives.data(), delaunay.representatives.size());
+  mesh.triangles = in_place(runtime, result.triangles);
+  mesh.neighbors = in_place(runtime, result.neighbors);
+  const ConstrainedBuffers buffers{
+      .triangles = mesh.triangles,
+      .neighbors = mesh.neighbors,
+      .halfedges = with_halfedges ? runtime.output(result.halfedges) : Buffer<cl_int>(),
+      .constrained = runtime.output(result.constrained),
+      .segment_edges = runtime.output(result.segment_edges)};
+  Buffer<cl_int> edges;
+  constrain(runtime, mesh, runtime.view_later(segments.data(), segments.size()), segments.size() / 2, buffers,
+            [&](std::size_t count) {
+              runtime.resize(result.constraint_edges, 2 * count);
+              return edges = runtime.output(result.constraint_edges);
+            });
+  runtime.fetch_later(buffers.triangles, result.triangles);
+  runtime.fetch_later(buffers.neighbors, result.neighbors);
+  if (with_halfedges) runtime.fetch_later(buffers.halfedges, result.halfedges);
+  runtime.fetch_later(buffers.constrained, result.constrained);
+  runtime.fetch_later(buffers.segment_edges, result.segment_edges);
+  runtime.fetch_later(edges, result.constraint_edges);
+  runtime.finish();
+  return result;
+}
+
+}  // namespace flaunay::constrained

@@ -1,0 +1,380 @@
+#include "constrained/domain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "constrained/borders.hpp"
+#include "host/vector_operations.hpp"
+#include "launchers/constrained/domain.cl.hpp"
+#include "locate/query_range.hpp"
+#include "points/device_mesh.hpp"
+#include "shared/domains.h"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::constrained {
+
+static_assert(static_cast<int>(FillRule::nesting) == kernel::FILL_NESTING);
+static_assert(static_cast<int>(FillRule::even_odd) == kernel::FILL_EVEN_ODD);
+static_assert(static_cast<int>(FillRule::winding) == kernel::FILL_WINDING);
+static_assert(static_cast<int>(Outside::keep) == kernel::OUTSIDE_KEEP);
+static_assert(static_cast<int>(Outside::hull) == kernel::OUTSIDE_HULL);
+static_assert(static_cast<int>(Outside::holes) == kernel::OUTSIDE_HOLES);
+
+namespace {
+
+// After so many times Tuning::depth_rounds levels the host goes on: a pass over all borders for each of very
+// many levels would take longer.
+constexpr std::size_t kMostBatches = 4;
+
+constexpr cl_int kNone = std::numeric_limits<cl_int>::max();
+
+template <typename T>
+Buffer<T> filled(host::Runtime& runtime, std::size_t count, T value) {
+  const auto buffer = runtime.arena().allocate<T>(count);
+  runtime.fill(buffer, count, value);
+  return buffer;
+}
+
+// What is crossed at each constraint edge.
+struct Weights {
+  cl_int mask = 0;  ///< of the slots
+  Buffer<cl_uint> needed{}, sums{};
+  Buffer<cl_int> slots{};
+};
+
+// Throws if segments are no closed curves.
+void check_closed(host::Runtime& runtime, const DomainMesh& mesh, FillRule rule,
+                  const Buffer<cl_uint>& balances) {
+  const auto bad = filled(runtime, 1, kNone);
+  runtime.map(mesh.points, kernels::find_unbalanced{.rule = rule, .balances = balances, .bad = bad});
+  const cl_int point = runtime.read_one(bad, 0);
+  if (point == kNone) return;
+  double place[2];
+  runtime.read(mesh.coordinates, 2 * static_cast<std::size_t>(point), 2, place);
+  throw_not_closed(rule, static_cast<std::size_t>(point), place[0], place[1]);
+}
+
+Weights weigh_edges(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules) {
+  Weights weights;
+  weights.needed = filled(runtime, 1, cl_uint{0});
+  if (rules.fill == FillRule::nesting) return weights;
+  // One place more at the end, where segments along the last edge end.
+  weights.sums = filled(runtime, mesh.edges + 2, cl_uint{0});
+  const auto balances = filled(runtime, mesh.points, cl_uint{0});
+  runtime.map(mesh.segments, kernels::cover_edges{.rule = rules.fill,
+                                                  .input = mesh.coordinates,
+                                                  .segments = mesh.segment_ends,
+                                                  .representatives = mesh.representatives,
+                                                  .piece_offsets = mesh.piece_offsets,
+                                                  .piece_edges = mesh.piece_edges,
+                                                  .edges = mesh.constraint_edges,
+                                                  .changes = weights.sums,
+                                                  .balances = balances});
+  if (!rules.are_closed) check_closed(runtime, mesh, rules.fill, balances);
+  host::exclusive_scan(runtime, weights.sums, mesh.edges + 1, weights.sums);
+  runtime.map(mesh.edges,
+              kernels::find_even{.rule = rules.fill, .sums = weights.sums, .needed = weights.needed});
+  std::size_t size = 2;
+  while (size < 2 * mesh.edges) size *= 2;
+  weights.mask = static_cast<cl_int>(size - 1);
+  weights.slots = filled(runtime, size, cl_int{-1});
+  runtime.map(mesh.edges, kernels::list_edges{.mask = weights.mask,
+                                              .needed = weights.needed,
+                                              .edges = mesh.constraint_edges,
+                                              .slots = weights.slots});
+  return weights;
+}
+
+// The borders between regions, and how far these are from the outside.
+struct Borders {
+  std::size_t count = 0;
+  Buffer<cl_int> regions{}, steps{};
+  Buffer<cl_int> levels{}, potentials{};  ///< by region
+};
+
+Borders find_borders(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules,
+                     const Regions& regions) {
+  const std::size_t triangles = mesh.triangle_count();
+  Borders borders;
+  borders.levels = filled(runtime, regions.count, cl_int{kernel::UNREACHED});
+  borders.potentials = filled(runtime, regions.count, cl_int{0});
+  const auto places = runtime.arena().allocate<cl_uint>(triangles + 1);
+  runtime.map(triangles, kernels::count_borders{.neighbors = mesh.neighbors,
+                                                .constrained = mesh.constrained,
+                                                .regions = regions.of_triangles,
+                                                .counts = places,
+                                                .levels = borders.levels});
+  host::exclusive_scan(runtime, places, triangles, places);
+  const Weights weights = weigh_edges(runtime, mesh, rules);
+  borders.count = runtime.read_one(places, triangles);
+  borders.regions = runtime.arena().allocate<cl_int>(2 * borders.count);
+  borders.steps = runtime.arena().allocate<cl_int>(borders.count);
+  if (borders.count == 0) return borders;
+  runtime.map(triangles, kernels::write_borders{.rule = rules.fill,
+                                                .mask = weights.mask,
+                                                .triangles = mesh.triangles,
+                                                .neighbors = mesh.neighbors,
+                                                .constrained = mesh.constrained,
+                                                .regions = regions.of_triangles,
+                                                .places = places,
+                                                .input = mesh.coordinates,
+                                                .needed = weights.needed,
+                                                .sums = weights.sums,
+                                                .edges = mesh.constraint_edges,
+                                                .slots = weights.slots,
+                                                .borders = borders.regions,
+                                                .steps = borders.steps});
+  return borders;
+}
+
+// Reaches what is deep, on the host.
+void reach_on_host(host::Runtime& runtime, FillRule rule, const Borders& borders, std::size_t regions) {
+  std::vector<cl_int> between(2 * borders.count), steps(borders.count), levels(regions), potentials(regions);
+  runtime.read_later(borders.regions, 0, between.size(), between.data());
+  runtime.read_later(borders.levels, 0, regions, levels.data());
+  if (rule != FillRule::nesting) {
+    runtime.read_later(borders.steps, 0, steps.size(), steps.data());
+    runtime.read_later(borders.potentials, 0, regions, potentials.data());
+  }
+  runtime.finish();
+  walk_borders(between, steps, levels, potentials);
+  runtime.write_kept(borders.levels, std::move(levels));
+  if (rule != FillRule::nesting) runtime.write_kept(borders.potentials, std::move(potentials));
+}
+
+void reach_all(host::Runtime& runtime, FillRule rule, const Borders& borders, std::size_t regions) {
+  const std::size_t rounds = tuning_of(runtime).depth_rounds, most = kMostBatches * rounds;
+  const auto reached = filled(runtime, most, cl_int{0});
+  for (std::size_t level = 0; level < most; ++level) {
+    runtime.map(borders.count, kernels::reach_regions{.rule = rule,
+                                                      .level = level,
+                                                      .borders = borders.regions,
+                                                      .steps = borders.steps,
+                                                      .levels = borders.levels,
+                                                      .potentials = borders.potentials,
+                                                      .reached = reached});
+    if ((level + 1) % rounds == 0 && runtime.read_one(reached, level) == 0) return;
+  }
+  reach_on_host(runtime, rule, borders, regions);
+}
+
+std::string place_of(const Constraints& constraints, std::size_t hole) {
+  return fmt::format("({:.17g}, {:.17g})", constraints.holes[2 * hole], constraints.holes[2 * hole + 1]);
+}
+
+// The first hole of a set that is too far from its points, or too fine.
+[[noreturn]] void throw_range(const Constraints& constraints, std::size_t first, std::size_t last,
+                              const geometry::Magnitudes& points) {
+  std::size_t hole = first;
+  const auto fits = [&](std::size_t h) {
+    const auto both = geometry::joined(points, geometry::inspect(constraints.holes, h, h + 1));
+    return geometry::bits_of(both) <= locate::kOrientLimits.most_bits();
+  };
+  while (hole + 1 < last && fits(hole)) ++hole;
+  throw Error(ErrorKind::input, fmt::format("hole {} at {} is too fine or too far away to be exact", hole,
+                                            place_of(constraints, hole)));
+}
+
+}  // namespace
+
+void throw_not_closed(FillRule rule, std::size_t point, double x, double y) {
+  throw Error(ErrorKind::input,
+              fmt::format("segments are no closed curves at point {} ({:.17g}, {:.17g}): {}", point, x, y,
+                          rule == FillRule::winding ? "not as many begin there as end"
+                                                    : "an odd number of them ends there"));
+}
+
+Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
+  const std::size_t triangles = mesh.triangle_count();
+  Regions regions;
+  regions.of_triangles = runtime.arena().allocate<cl_int>(triangles);
+  {
+    Arena::Scope scope(runtime.arena());
+    const auto parents = runtime.arena().allocate<cl_int>(triangles);
+    const auto numbers = runtime.arena().allocate<cl_uint>(triangles + 1);
+    runtime.map(triangles,
+                kernels::start_regions{
+                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    runtime.map(triangles,
+                kernels::join_regions{
+                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    runtime.map(triangles,
+                kernels::find_roots{.parents = parents, .regions = regions.of_triangles, .counts = numbers});
+    host::exclusive_scan(runtime, numbers, triangles, numbers);
+    runtime.map(triangles, kernels::number_regions{.numbers = numbers, .regions = regions.of_triangles});
+    regions.count = runtime.read_one(numbers, triangles);
+  }
+  regions.left = filled(runtime, regions.count, cl_uchar{1});
+  return regions;
+}
+
+void find_depths(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules, Regions& regions) {
+  regions.depths = runtime.arena().allocate<cl_int>(regions.count);
+  Arena::Scope scope(runtime.arena());
+  const Borders borders = find_borders(runtime, mesh, rules, regions);
+  if (borders.count > 0) reach_all(runtime, rules.fill, borders, regions.count);
+  runtime.map(regions.count, kernels::finish_regions{.rule = rules.fill,
+                                                     .outside = rules.outside,
+                                                     .levels = borders.levels,
+                                                     .potentials = borders.potentials,
+                                                     .depths = regions.depths,
+                                                     .left = regions.left});
+}
+
+std::vector<std::size_t> hole_offsets(const Constraints& constraints, std::size_t sets) {
+  std::vector<std::size_t> offsets = constraints.hole_offsets;
+  if (offsets.empty() && sets == 1) offsets = {0, constraints.hole_count};
+  if (offsets.size() != sets + 1 || offsets.back() != constraints.hole_count) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the offsets of {} holes do not fit {} sets", constraints.hole_count, sets));
+  }
+  geometry::check_offsets(offsets);
+  return offsets;
+}
+
+Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Magnitudes>& points) {
+  Seeds seeds;
+  const std::size_t sets = points.size(), count = constraints.hole_count;
+  seeds.offsets = hole_offsets(constraints, sets);
+  seeds.frames.resize(sets);
+  seeds.places.reserve(count);
+  seeds.numbers.resize(count);
+  std::iota(seeds.numbers.begin(), seeds.numbers.end(), 0);
+  for (std::size_t s = 0; s < sets; ++s) {
+    const std::size_t first = seeds.offsets[s], last = seeds.offsets[s + 1];
+    if (first == last) continue;
+    const geometry::Magnitudes own = geometry::inspect(constraints.holes, first, last);
+    if (own.bad != kernel::NO_BAD) {
+      const auto bad = static_cast<std::size_t>(own.bad);
+      throw Error(ErrorKind::input,
+                  fmt::format("hole {} is not finite: {}", bad, place_of(constraints, bad)));
+    }
+    const geometry::Magnitudes both = geometry::joined(points[s], own);
+    if (geometry::bits_of(both) > locate::kOrientLimits.most_bits()) {
+      throw_range(constraints, first, last, points[s]);
+    }
+    const locate::QueryScaling scaling = locate::query_scaling(both, 0);
+    seeds.frames[s] = scaling.frames[0];
+    seeds.bound = std::max(seeds.bound, scaling.orient_bound);
+    const auto numbers = seeds.numbers.begin();
+    std::sort(numbers + static_cast<std::ptrdiff_t>(first), numbers + static_cast<std::ptrdiff_t>(last),
+              [&](std::int32_t a, std::int32_t b) {
+                const double x = constraints.holes[2 * static_cast<std::size_t>(a)],
+                             other = constraints.holes[2 * static_cast<std::size_t>(b)];
+                return x != other ? x < other : a < b;
+              });
+    for (std::size_t h = first; h < last; ++h) {
+      seeds.places.push_back(
+          kernel::scaled_point(seeds.numbers[h], constraints.holes, seeds.frames[s].scale));
+    }
+  }
+  return seeds;
+}
+
+void check_seeds(const Seeds& seeds, const Constraints& constraints, const std::vector<std::int32_t>& found,
+                 const std::vector<std::uint8_t>& barred) {
+  std::int32_t first = kNone;
+  bool is_on_constraint = false;
+  for (std::size_t h = 0; h < found.size(); ++h) {
+    const bool is_nowhere = found[h] < 0 || found[h] == kNone;
+    if ((!is_nowhere && barred[h] == 0) || seeds.numbers[h] > first) continue;
+    first = seeds.numbers[h];
+    is_on_constraint = !is_nowhere;
+  }
+  if (first == kNone) return;
+  const auto hole = static_cast<std::size_t>(first);
+  throw Error(ErrorKind::input, fmt::format("hole {} at {} is {}", hole, place_of(constraints, hole),
+                                            is_on_constraint ? "on a constraint" : "in no triangle"));
+}
+
+void drop_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
+                const Constraints& constraints, Regions& regions) {
+  const std::size_t count = seeds.places.size();
+  if (count == 0) return;
+  Arena::Scope scope(runtime.arena());
+  const auto found = filled(runtime, count, kNone);
+  const auto barred = filled(runtime, count, cl_uchar{0});
+  std::vector<cl_double2> places;
+  for (const kernel::double2& place : seeds.places) places.push_back({{place.x, place.y}});
+  const auto offsets_of = [&](const std::vector<std::size_t>& offsets) {
+    return runtime.upload(runtime.arena(), points::integers(offsets));
+  };
+  runtime.map(mesh.triangle_count(),
+              kernels::find_holes{.sets = mesh.triangle_offsets.size() - 1,
+                                  .triangle_offsets = offsets_of(mesh.triangle_offsets),
+                                  .hole_offsets = offsets_of(seeds.offsets),
+                                  .frames = runtime.upload(runtime.arena(), seeds.frames),
+                                  .bound = seeds.bound,
+                                  .input = mesh.coordinates,
+                                  .triangles = mesh.triangles,
+                                  .constrained = mesh.constrained,
+                                  .seeds = runtime.upload(runtime.arena(), std::move(places)),
+                                  .found = found,
+                                  .barred = barred});
+  std::vector<std::int32_t> triangles(count);
+  std::vector<std::uint8_t> on_constraint(count);
+  runtime.read_later(found, 0, count, triangles.data());
+  runtime.read_later(barred, 0, count, on_constraint.data());
+  runtime.finish();
+  check_seeds(seeds, constraints, triangles, on_constraint);
+  runtime.map(count,
+              kernels::drop_holes{.found = found, .regions = regions.of_triangles, .left = regions.left});
+}
+
+LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regions& regions) {
+  const std::size_t triangles = mesh.triangle_count(), ends = mesh.triangle_offsets.size();
+  LeftPlaces places;
+  places.triangles = runtime.arena().allocate<cl_uint>(triangles + 1);
+  places.numbers = runtime.arena().allocate<cl_uint>(regions.count + 1);
+  Arena::Scope scope(runtime.arena());
+  const auto offsets = runtime.arena().allocate<cl_uint>(ends);
+  runtime.map(
+      triangles,
+      kernels::count_left{.regions = regions.of_triangles, .left = regions.left, .counts = places.triangles});
+  host::exclusive_scan(runtime, places.triangles, triangles, places.triangles);
+  runtime.map(regions.count, kernels::count_regions{.left = regions.left, .counts = places.numbers});
+  host::exclusive_scan(runtime, places.numbers, regions.count, places.numbers);
+  runtime.map(ends, kernels::find_offsets{.triangle_offsets = runtime.upload(
+                                              runtime.arena(), points::integers(mesh.triangle_offsets)),
+                                          .places = places.triangles,
+                                          .offsets = offsets});
+  std::vector<cl_uint> found(ends);
+  cl_uint left = 0;
+  runtime.read_later(offsets, 0, ends, found.data());
+  runtime.read_later(places.numbers, regions.count, 1, &left);
+  runtime.finish();
+  places.triangle_offsets.assign(found.begin(), found.end());
+  places.regions = left;
+  return places;
+}
+
+void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces& places,
+                const LeftBuffers& left, Regions& regions) {
+  runtime.map(mesh.triangle_count(), kernels::write_left{.triangles = mesh.triangles,
+                                                         .neighbors = mesh.neighbors,
+                                                         .constrained = mesh.constrained,
+                                                         .regions = regions.of_triangles,
+                                                         .places = places.triangles,
+                                                         .numbers = places.numbers,
+                                                         .left_triangles = left.triangles,
+                                                         .left_neighbors = left.neighbors,
+                                                         .left_constrained = left.constrained,
+                                                         .left_regions = left.regions});
+  if (regions.depths.size() == 0) return;
+  const auto depths = runtime.arena().allocate<cl_int>(places.regions);
+  runtime.map(regions.count, kernels::number_depths{
+                                 .numbers = places.numbers, .depths = regions.depths, .left_depths = depths});
+  regions.depths = depths;
+}
+
+void write_depths(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
+                  const Buffer<cl_int>& depths, const Buffer<cl_int>& triangle_depths) {
+  runtime.map(
+      n, kernels::write_depths{.regions = regions, .depths = depths, .triangle_depths = triangle_depths});
+}
+
+}  // namespace flaunay::constrained

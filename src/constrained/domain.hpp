@@ -1,0 +1,105 @@
+// Regions of a triangulation with constraints, their depths, and what is left without the outside and the
+// holes. docs/constrained.md defines them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flaunay/constrained.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/runtime.hpp"
+#include "shared/records.h"
+
+namespace flaunay::constrained {
+
+using host::Arena;
+using host::Buffer;
+
+/// Triangulations of sets with constraints, in device memory. The arrays are those of
+/// ConstrainedTriangulation. What concerns segments is read only for fill rules that need it.
+struct DomainMesh {
+  std::vector<std::size_t> triangle_offsets;  ///< sets + 1
+  std::size_t points = 0;                     ///< of the input, without those that splitting added
+  std::size_t segments = 0, edges = 0;
+  Buffer<cl_double> coordinates{};  ///< of all points; aligned to 8 bytes only
+  Buffer<cl_int> triangles{}, neighbors{};
+  Buffer<cl_uchar> constrained{};
+  Buffer<cl_int> representatives{}, segment_ends{}, piece_offsets{}, piece_edges{}, constraint_edges{};
+
+  std::size_t triangle_count() const { return triangle_offsets.back(); }
+};
+
+/// The regions of all sets, in the arena of the runtime.
+struct Regions {
+  std::size_t count = 0;
+  Buffer<cl_int> of_triangles{};
+  Buffer<cl_int> depths{};  ///< by region; empty until find_depths
+  Buffer<cl_uchar> left{};  ///< by region: 1 if it is left
+};
+
+/// Finds the regions. All are left. Waits once. O(n log n), but mostly O(n).
+Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh);
+
+/// Which depths there are, and what is left.
+struct DepthRules {
+  FillRule fill = FillRule::nesting;
+  Outside outside = Outside::keep;
+  bool are_closed = false;  ///< whether segments are known to be closed curves
+};
+
+/// Computes the depths of regions, and which of them are left. Throws Error(input), which names a point, if
+/// segments are no closed curves and the rule needs such. Waits 2 times, or once more for each
+/// Tuning::depth_rounds levels; what is deeper than a few times as many is done on the host.
+void find_depths(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules, Regions& regions);
+
+/// Places in regions that are holes.
+struct Seeds {
+  std::vector<std::size_t> offsets;         ///< of sets
+  std::vector<kernel::query_frame> frames;  ///< how sets are scaled
+  double bound = 0;                         ///< of orientations
+  std::vector<kernel::double2> places;      ///< in each set by ascending x, scaled
+  std::vector<std::int32_t> numbers;        ///< those of the caller
+};
+
+/// The offsets of the holes of sets. Throws Error(usage) if they do not fit.
+std::vector<std::size_t> hole_offsets(const Constraints& constraints, std::size_t sets);
+/// Sorts and scales the holes of sets. points: the magnitudes by set. Throws
+/// Error(input), which names a hole, if one is not finite, too fine or too far away.
+Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Magnitudes>& points);
+/// Throws Error(input), which names the first hole that is in no triangle or on a constraint. found: per
+/// seed, less than 0 or INT_MAX if it is in none; barred: whether it is on a constraint.
+void check_seeds(const Seeds& seeds, const Constraints& constraints, const std::vector<std::int32_t>& found,
+                 const std::vector<std::uint8_t>& barred);
+
+/// Leaves out the regions of seeds. Throws what check_seeds throws. Waits once. O(n log m) for m seeds, if
+/// not many have an x coordinate in the range of one triangle.
+void drop_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
+                const Constraints& constraints, Regions& regions);
+
+/// Where the triangles and regions that are left go.
+struct LeftPlaces {
+  std::vector<std::size_t> triangle_offsets;
+  std::size_t regions = 0;
+  Buffer<cl_uint> triangles{}, numbers{};
+};
+LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regions& regions);
+
+/// The arrays of ConstrainedTriangulation for what is left.
+struct LeftBuffers {
+  Buffer<cl_int> triangles{}, neighbors{};
+  Buffer<cl_uchar> constrained{};
+  Buffer<cl_int> regions{};
+};
+/// Writes what is left, and numbers the depths by regions that are left. Does not wait. O(n).
+void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces& places,
+                const LeftBuffers& left, Regions& regions);
+
+/// Writes the depths of n triangles. regions: by triangle.
+void write_depths(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
+                  const Buffer<cl_int>& depths, const Buffer<cl_int>& triangle_depths);
+
+/// Throws the error for segments that are no closed curves at a point.
+[[noreturn]] void throw_not_closed(FillRule rule, std::size_t point, double x, double y);
+
+}  // namespace flaunay::constrained

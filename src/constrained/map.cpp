@@ -1,0 +1,267 @@
+#include "constrained/map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "shared/planar.h"
+
+namespace flaunay::constrained {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+// How a region is entered from another one, or from outside: over a constraint edge, with the region to the
+// left of its direction here.
+struct Entry {
+  std::int32_t from;        // -1: the outside
+  std::int32_t tail, head;  // of the edge; equal if there is none
+};
+
+// A tree of regions, whose root is the outside: per region how it is entered. order: each region comes after
+// the one it is entered from.
+struct Tree {
+  std::vector<Entry> entries;
+  Ids order;
+};
+
+Tree make_tree(const ConstrainedTriangulation& mesh, const Ids& regions, std::size_t count) {
+  const auto halfedges = static_cast<std::int32_t>(mesh.triangles.size());
+  const auto edge_at = [&](std::int32_t c) {
+    const std::int32_t t = c - c % 3;
+    return std::pair(mesh.triangles[t + (c + 1) % 3], mesh.triangles[t + (c + 2) % 3]);
+  };
+  // Corners whose opposite edge is a border, grouped by the region of their triangle.
+  Ids offsets(count + 1, 0), corners, seen(count, 0);
+  const auto is_border = [&](std::int32_t c) {
+    return mesh.constrained[c] != 0 && mesh.neighbors[c] >= 0 && regions[mesh.neighbors[c]] != regions[c / 3];
+  };
+  for (std::int32_t c = 0; c < halfedges; ++c) offsets[regions[c / 3] + 1] += is_border(c) ? 1 : 0;
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  corners.resize(static_cast<std::size_t>(offsets.back()));
+  Ids place(offsets.begin(), offsets.end() - 1);
+  for (std::int32_t c = 0; c < halfedges; ++c) {
+    if (is_border(c)) corners[place[regions[c / 3]]++] = c;
+  }
+
+  Tree tree;
+  tree.entries.resize(count);
+  const auto enter = [&](std::int32_t region, const Entry& entry) {
+    if (std::exchange(seen[region], 1) != 0) return;
+    tree.entries[region] = entry;
+    tree.order.push_back(region);
+  };
+  for (std::int32_t c = 0; c < halfedges; ++c) {
+    if (mesh.neighbors[c] >= 0) continue;
+    const auto [tail, head] = edge_at(c);
+    enter(regions[c / 3], mesh.constrained[c] != 0 ? Entry{-1, tail, head} : Entry{-1, 0, 0});
+  }
+  for (std::size_t next = 0; next < tree.order.size(); ++next) {
+    const std::int32_t from = tree.order[next];
+    for (std::int32_t i = offsets[from]; i < offsets[from + 1]; ++i) {
+      const auto [head, tail] = edge_at(corners[i]);
+      enter(regions[mesh.neighbors[corners[i]]], {from, tail, head});
+    }
+  }
+  return tree;
+}
+
+// What segments of a polygon do to those who enter a region: how many of them they cross from right to left,
+// less those the other way.
+struct Step {
+  std::int32_t polygon, amount;
+};
+
+// The steps into each region.
+struct Steps {
+  Ids offsets;
+  std::vector<Step> steps;
+};
+
+class Coverage {
+ public:
+  Coverage(const double* coordinates, const ConstrainedTriangulation& mesh, const Tree& tree)
+      : coordinates_(coordinates),
+        mesh_(mesh),
+        edges_(mesh.constraint_edges.size() / 2),
+        wanted_(edges_, -1) {
+    find_edges(tree);
+  }
+
+  Steps steps(const Ids& segments, const Ids& polygons) const {
+    std::vector<std::pair<std::int32_t, Step>> all;
+    for (std::size_t s = 0; s < polygons.size(); ++s) {
+      const std::int32_t a = mesh_.representatives[segments[2 * s]],
+                         b = mesh_.representatives[segments[2 * s + 1]];
+      if (a == b) continue;
+      const bool is_turned = comes_before(b, a);
+      std::int32_t from = is_turned ? b : a;
+      for (std::int32_t p = mesh_.piece_offsets[s]; p < mesh_.piece_offsets[s + 1]; ++p) {
+        const std::int32_t first = mesh_.piece_edges[2 * p], end = mesh_.piece_edges[2 * p + 1];
+        if (first == end) continue;
+        const std::int32_t low = mesh_.constraint_edges[2 * first],
+                           high = mesh_.constraint_edges[2 * end - 1];
+        const bool is_backward = low != from;
+        from = is_backward ? low : high;
+        for (std::int32_t e = next_[first]; e < end; e = next_[e + 1]) {
+          for (std::int32_t i = wanted_[e]; i >= 0; i = following_[i]) {
+            const bool same = (is_backward == is_turned) == is_forward_[i];
+            all.push_back({i, {polygons[s], same ? 1 : -1}});
+          }
+        }
+      }
+    }
+    Steps grouped;
+    grouped.offsets.assign(following_.size() + 1, 0);
+    for (const auto& [region, step] : all) ++grouped.offsets[region + 1];
+    std::partial_sum(grouped.offsets.begin(), grouped.offsets.end(), grouped.offsets.begin());
+    grouped.steps.resize(all.size());
+    Ids place(grouped.offsets.begin(), grouped.offsets.end() - 1);
+    for (const auto& [region, step] : all) grouped.steps[place[region]++] = step;
+    return grouped;
+  }
+
+ private:
+  bool comes_before(std::int32_t u, std::int32_t v) const {
+    const auto point = [this](std::int32_t i) {
+      return kernel::double2{coordinates_[2 * static_cast<std::size_t>(i)],
+                             coordinates_[2 * static_cast<std::size_t>(i) + 1]};
+    };
+    return kernel::comes_before(point(u), point(v)) != 0;
+  }
+
+  // Lists per constraint edge the regions that are entered over it.
+  void find_edges(const Tree& tree) {
+    const std::size_t regions = tree.entries.size();
+    following_.assign(regions, -1);
+    is_forward_.assign(regions, false);
+    struct Wanted {
+      std::int32_t from, to, region;
+    };
+    std::vector<Wanted> all;
+    for (std::size_t r = 0; r < regions; ++r) {
+      const Entry& entry = tree.entries[r];
+      if (entry.tail == entry.head) continue;
+      is_forward_[r] = comes_before(entry.tail, entry.head);
+      all.push_back({is_forward_[r] ? entry.tail : entry.head, is_forward_[r] ? entry.head : entry.tail,
+                     static_cast<std::int32_t>(r)});
+    }
+    std::sort(all.begin(), all.end(), [](const Wanted& a, const Wanted& b) {
+      return std::tie(a.from, a.to, a.region) < std::tie(b.from, b.to, b.region);
+    });
+    for (std::size_t e = 0; e < edges_; ++e) {
+      const std::int32_t from = mesh_.constraint_edges[2 * e], to = mesh_.constraint_edges[2 * e + 1];
+      auto found =
+          std::lower_bound(all.begin(), all.end(), std::tie(from, to),
+                           [](const Wanted& a, const auto& b) { return std::tie(a.from, a.to) < b; });
+      for (; found != all.end() && found->from == from && found->to == to; ++found) {
+        following_[found->region] = wanted_[e];
+        wanted_[e] = found->region;
+      }
+    }
+    next_.assign(edges_ + 2, static_cast<std::int32_t>(edges_));
+    for (std::size_t e = edges_; e-- > 0;) {
+      next_[e] = wanted_[e] >= 0 ? static_cast<std::int32_t>(e) : next_[e + 1];
+    }
+  }
+
+  const double* coordinates_;
+  const ConstrainedTriangulation& mesh_;
+  std::size_t edges_;
+  Ids wanted_;     // per edge the first region entered over it, or -1
+  Ids following_;  // per region the next one entered over its edge, or -1
+  std::vector<bool> is_forward_;
+  Ids next_;  // per edge the first one from there on that is wanted
+};
+
+// The polygons around the place of a walk.
+class Around {
+ public:
+  Around(std::size_t polygons, FillRule rule) : counts_(polygons, 0), rule_(rule) {}
+
+  void step(const Step& step, int times) {
+    std::int32_t& count = counts_[step.polygon];
+    const bool was_in = is_in(count);
+    count += times * step.amount;
+    if (is_in(count) == was_in) return;
+    if (was_in) {
+      in_.erase(step.polygon);
+    } else {
+      in_.insert(step.polygon);
+    }
+  }
+  const std::set<std::int32_t>& polygons() const { return in_; }
+
+ private:
+  bool is_in(std::int32_t count) const { return rule_ == FillRule::winding ? count != 0 : count % 2 != 0; }
+
+  Ids counts_;
+  std::set<std::int32_t> in_;
+  FillRule rule_;
+};
+
+[[noreturn]] void throw_overlap(const ConstrainedTriangulation& mesh, const Ids& regions, std::int32_t region,
+                                const std::pair<std::int32_t, std::int32_t>& polygons) {
+  const auto t =
+      static_cast<std::size_t>(std::find(regions.begin(), regions.end(), region) - regions.begin());
+  throw Error(ErrorKind::input,
+              fmt::format("polygons {} and {} overlap, at the triangle of points {}, {} and {}",
+                          polygons.first, polygons.second, mesh.triangles[3 * t], mesh.triangles[3 * t + 1],
+                          mesh.triangles[3 * t + 2]));
+}
+
+}  // namespace
+
+MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& mesh, const Ids& regions,
+                    std::size_t count, const Ids& segments, const Ids& polygons, FillRule rule,
+                    Overlaps overlaps) {
+  const Tree tree = make_tree(mesh, regions, count);
+  const Steps into = Coverage(coordinates, mesh, tree).steps(segments, polygons);
+  Ids first_child(count + 1, -1), sibling(count, -1);
+  for (auto r = tree.order.rbegin(); r != tree.order.rend(); ++r) {
+    const std::int32_t parent = tree.entries[*r].from;
+    std::int32_t& first = first_child[parent < 0 ? count : static_cast<std::size_t>(parent)];
+    sibling[*r] = std::exchange(first, *r);
+  }
+  const std::int32_t most = polygons.empty() ? -1 : *std::max_element(polygons.begin(), polygons.end());
+  Around around(static_cast<std::size_t>(most + 1), rule);
+  const auto step = [&](std::int32_t region, int times) {
+    for (std::int32_t i = into.offsets[region]; i < into.offsets[region + 1]; ++i) {
+      around.step(into.steps[i], times);
+    }
+  };
+  MapLabels labels{Ids(count, -1), Ids(count, 0)};
+  auto first_overlap = static_cast<std::int32_t>(count);
+  std::pair<std::int32_t, std::int32_t> overlapping;
+  // Depth first: down to the first child, else on to the next sibling, of the region or of one above it.
+  for (std::int32_t r = first_child[count]; r >= 0;) {
+    step(r, 1);
+    const std::set<std::int32_t>& in = around.polygons();
+    labels.depths[r] = static_cast<std::int32_t>(in.size());
+    if (!in.empty()) labels.polygons[r] = *in.begin();
+    if (in.size() > 1 && r < first_overlap) {
+      first_overlap = r;
+      overlapping = {*in.begin(), *std::next(in.begin())};
+    }
+    if (first_child[r] >= 0) {
+      r = first_child[r];
+      continue;
+    }
+    while (r >= 0) {
+      step(r, -1);
+      if (sibling[r] >= 0) break;
+      r = tree.entries[r].from;
+    }
+    if (r >= 0) r = sibling[r];
+  }
+  if (overlaps == Overlaps::error && first_overlap < static_cast<std::int32_t>(count)) {
+    throw_overlap(mesh, regions, first_overlap, overlapping);
+  }
+  return labels;
+}
+
+}  // namespace flaunay::constrained

@@ -1,0 +1,268 @@
+// The triangulation of chains on a device beside PolygonTriangulator, on the cavities of real segments and on
+// chains that are made to be hard.
+//
+// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+#include "constrained/chains.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constrained/mesh.hpp"
+#include "constrained/polygon.hpp"
+#include "flaunay/research.hpp"
+#include "geometry/magnitudes.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/runtimes.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::constrained {
+namespace {
+
+using host::Runtime;
+using testing::Coordinates;
+using testing::download;
+using testing::FixtureRandom;
+using testing::guarded;
+using testing::make_fixture;
+using testing::upload;
+
+using Runtimes = testing::SharedRuntimes<testing::make_tuned_runtime>;
+[[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
+
+using Chain = std::vector<std::int32_t>;
+
+/// Scaled points and chains of them.
+struct Case {
+  std::vector<Point> points;
+  Predicates predicates;
+  std::vector<Chain> chains;
+
+  explicit Case(const Coordinates& coordinates) {
+    const geometry::Magnitudes magnitudes = geometry::inspect(coordinates.data(), 0, coordinates.size() / 2);
+    const geometry::Scaling scaling = geometry::scaling_for(magnitudes);
+    predicates.bounds = scaling.bounds;
+    for (std::size_t i = 0; i < coordinates.size(); i += 2) {
+      points.push_back({std::ldexp(coordinates[i], scaling.shift) + 0.0,
+                        std::ldexp(coordinates[i + 1], scaling.shift) + 0.0});
+    }
+  }
+};
+
+std::vector<std::int32_t> expected_triangles(const Case& input) {
+  PolygonTriangulator triangulator(input.predicates, input.points.data());
+  std::vector<std::int32_t> all;
+  for (const Chain& chain : input.chains) {
+    for (const ChainTriangle& t : triangulator.triangulate(chain)) all.insert(all.end(), t.begin(), t.end());
+  }
+  return all;
+}
+
+std::vector<std::int32_t> device_triangles(Runtime& runtime, const Case& input) {
+  host::Arena::Scope scope(runtime.arena());
+  std::vector<cl_double2> points;
+  for (const Point p : input.points) points.push_back({{p.x, p.y}});
+  std::vector<cl_int> offsets{0}, all;
+  for (const Chain& chain : input.chains) {
+    all.insert(all.end(), chain.begin(), chain.end());
+    offsets.push_back(static_cast<cl_int>(all.size()));
+  }
+  DeviceChains chains;
+  chains.count = input.chains.size();
+  chains.vertices = all.size();
+  chains.circle_bound = input.predicates.bounds.circle;
+  chains.points = upload(runtime, points);
+  chains.offsets = upload(runtime, offsets);
+  chains.chain = upload(runtime, all);
+  const std::size_t size = 3 * (chains.vertices - 2 * chains.count);
+  const auto triangles = guarded<cl_int>(runtime, size);
+  triangulate_chains(runtime, chains, triangles);
+  return download(runtime, triangles, size);
+}
+
+void expect_right(const Case& input, const std::vector<std::string>& tunings) {
+  const std::vector<std::int32_t> expected = expected_triangles(input);
+  for (const std::string& tuning : tunings) {
+    const std::vector<std::int32_t> found = device_triangles(Runtimes::get(tuning), input);
+    ASSERT_EQ(found.size(), expected.size());
+    const auto differs = std::mismatch(found.begin(), found.end(), expected.begin()).first - found.begin();
+    ASSERT_EQ(differs, static_cast<std::ptrdiff_t>(expected.size()))
+        << "of " << input.chains.size() << " chains";
+  }
+}
+
+/// Under the tuning that the environment names alone, if it names one.
+std::vector<std::string> tunings() {
+  if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
+  return {"own", "small", "gpu:1", "gpu:32", "gpu:64", "gpu:256"};
+}
+
+/// Both sides of the cavities of random segments, of which every `kept`-th becomes a constraint, so that
+/// later chains have sides that are constraints, and vertices several times. Others that cross a constraint
+/// are left out.
+Case walks(const Coordinates& coordinates, std::size_t segments, std::size_t kept, std::uint64_t seed) {
+  Case input(coordinates);
+  const std::size_t n = input.points.size();
+  research::Options options;
+  options.mode = research::Mode::dwyer;
+  options.neighbors = true;
+  const Triangulation delaunay = research::triangulate_on_host(coordinates.data(), {0, n}, options);
+  if (delaunay.triangles.empty()) return input;
+  ConstrainedMesh mesh(input.predicates, input.points.data(), n, delaunay);
+  FixtureRandom random(seed);
+  for (std::size_t s = 0; s < segments; ++s) {
+    const auto any = [&] {
+      return delaunay.representatives[random.integer(0, static_cast<std::int64_t>(n) - 1)];
+    };
+    std::int32_t from = any();
+    const std::int32_t to = any();
+    while (from != to) {
+      const Departure departure = mesh.depart_from(from, to);
+      if (departure.vertex >= 0) {
+        from = departure.vertex;
+        continue;
+      }
+      Cavity cavity;
+      std::vector<std::int32_t> crossed;
+      from = mesh.follow(from, to, departure.halfedge, cavity, crossed);
+      if (!crossed.empty()) break;
+      input.chains.push_back(cavity.left.vertices);
+      input.chains.emplace_back(cavity.right.vertices.rbegin(), cavity.right.vertices.rend());
+      if (s % kept == 0) mesh.retriangulate(cavity, static_cast<std::int32_t>(s));
+    }
+  }
+  return input;
+}
+
+/// The whole of a chain whose first and last vertices are given before and behind those between.
+Chain in_order(std::size_t vertices) {
+  Chain chain(vertices);
+  std::iota(chain.begin(), chain.end(), 0);
+  return chain;
+}
+
+/// Points at random heights above a long base, by x: visible from it along verticals.
+Coordinates random_heights(std::size_t vertices, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates points{0, 0};
+  const auto width = static_cast<double>(vertices);
+  for (std::size_t k = 1; k + 1 < vertices; ++k) {
+    points.push_back(static_cast<double>(k) + 0.5 * random.unit());
+    points.push_back(1 + 10 * random.unit());
+  }
+  points.insert(points.end(), {width, 0});
+  return points;
+}
+
+/// On a parabola that opens downwards, so that the chain is convex.
+Coordinates convex_arc(std::size_t vertices, std::uint64_t) {
+  Coordinates points;
+  const auto width = static_cast<double>(vertices - 1);
+  for (std::size_t k = 0; k < vertices; ++k) {
+    const auto x = static_cast<double>(k);
+    points.insert(points.end(), {x, x * (width - x)});
+  }
+  return points;
+}
+
+/// Around one point in the middle, or at the base's end, all at about the same distance.
+Coordinates fan(std::size_t vertices, bool at_end, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates points;
+  const auto count = static_cast<double>(vertices);
+  for (std::size_t k = 0; k < vertices; ++k) {
+    const double angle = M_PI * (at_end ? 0.5 : 1) * (1 - static_cast<double>(k) / (count - 1));
+    const double radius = 1 + 1e-3 * random.unit() / count;
+    points.insert(points.end(), {radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  points[1] = points[points.size() - 1] = 0;
+  if (at_end) {
+    points[0] = points[1] = 0;
+  } else {
+    points[vertices / 2 * 2] = 0;
+    points[vertices / 2 * 2 + 1] = 0.5 / count;
+  }
+  return points;
+}
+
+/// The upper half of the points of a circle, in the opposite order of x.
+Coordinates cocircular(std::size_t vertices, std::uint64_t seed) {
+  Coordinates all = io::generate("integer-circle", 2 * vertices, seed).coordinates;
+  std::vector<std::pair<double, double>> upper;
+  for (std::size_t i = 0; i < all.size(); i += 2) {
+    if (all[i + 1] >= 0) upper.emplace_back(all[i], all[i + 1]);
+  }
+  std::sort(upper.begin(), upper.end());
+  upper.erase(std::unique(upper.begin(), upper.end()), upper.end());
+  // On the circle alone, if there are several.
+  Coordinates points;
+  for (const auto& [x, y] : upper) points.insert(points.end(), {x, y});
+  return points;
+}
+
+Case one_chain(const Coordinates& points) {
+  Case input(points);
+  input.chains.push_back(in_order(points.size() / 2));
+  return input;
+}
+
+std::vector<std::pair<std::string, Coordinates>> hard_chains(std::size_t vertices) {
+  return {{"random heights", random_heights(vertices, 3)},
+          {"convex arc", convex_arc(vertices, 4)},
+          {"fan in the middle", fan(vertices, false, 5)},
+          {"fan at an end", fan(vertices, true, 6)},
+          {"cocircular", cocircular(vertices, 7)}};
+}
+
+TEST(SmallChains, NoneAndTiny) {
+  Case input(Coordinates{0, 0, 4, 0, 1, 1, 3, 1, 2, 3});
+  expect_right(input, {"own"});
+  input.chains = {{0, 1}};
+  expect_right(input, {"own"});
+  input.chains = {{0, 2, 1}, {0, 1}, {0, 1}, {0, 2, 4, 3, 1}, {0, 3, 1}};
+  expect_right(input, {"own"});
+}
+
+TEST(SmallChains, HardOnes) {
+  for (const auto& [name, points] : hard_chains(40)) {
+    SCOPED_TRACE(name);
+    expect_right(one_chain(points), {"own"});
+  }
+}
+
+TEST(Chains, HardOnes) {
+  for (const std::size_t vertices : {7, 26, 130, 1500}) {
+    for (const auto& [name, points] : hard_chains(vertices)) {
+      SCOPED_TRACE(name + ", " + std::to_string(vertices));
+      expect_right(one_chain(points), tunings());
+    }
+  }
+}
+
+TEST(SmallChains, CavitiesOfSegments) {
+  for (const char* const name : {"uniform", "grid", "integer-circle", "one-ulp", "nearly-cocircular"}) {
+    SCOPED_TRACE(name);
+    expect_right(walks(make_fixture(name, 40, 1), 20, 3, 2), {"own"});
+  }
+}
+
+TEST(Chains, CavitiesOfSegmentsInAllFixtures) {
+  for (const testing::Fixture& fixture : testing::all_fixtures()) {
+    SCOPED_TRACE(fixture.name);
+    expect_right(walks(fixture.make(3000, 5), 300, 4, 6), tunings());
+    if (HasFailure()) return;
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::constrained

@@ -1,0 +1,271 @@
+// All segments at once, on a device or natively: the same bytes and the same errors as one after the other.
+//
+// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+#include "constrained/device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/halfedges.hpp"
+#include "tests/constrained/segments.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/integer_points.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/runtimes.hpp"
+#include "tests/support/same.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+using Runtimes = SharedRuntimes<make_tuned_runtime>;
+[[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
+
+/// Under the tuning that the environment names alone, if it names one.
+std::vector<std::string> tunings() {
+  if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
+  return {"own", "small", "gpu"};
+}
+
+struct Outcome {
+  constrained::Result result;
+  std::string error;
+};
+
+template <typename Constrain>
+Outcome outcome_of(const Constrain& constrain) {
+  Outcome outcome;
+  try {
+    outcome.result = constrain();
+  } catch (const Error& error) {
+    outcome.error = error.what();
+    EXPECT_NE(outcome.error, "");
+  }
+  return outcome;
+}
+
+/// Returns whether there was an error, which must be the same for both.
+bool expect_as_twin(const Coordinates& points, const std::vector<std::size_t>& offsets,
+                    const Segments& segments) {
+  const Triangulation delaunay = delaunay_of(points, offsets);
+  const Outcome expected =
+      outcome_of([&] { return constrained::constrain(points.data(), offsets, delaunay, segments); });
+  Options options;
+  options.halfedges = true;
+  Triangulation halfedges;
+  halfedges.neighbors = expected.result.neighbors;
+  geometry::write_halfedges(options, halfedges);
+  for (const std::string& tuning : tunings()) {
+    SCOPED_TRACE("tuning " + tuning);
+    const Outcome found = outcome_of([&] {
+      return constrained::constrain(Runtimes::get(tuning), points.data(), offsets, delaunay, segments, true);
+    });
+    EXPECT_EQ(found.error, expected.error);
+    EXPECT_TRUE(same(found.result.triangles, expected.result.triangles));
+    EXPECT_TRUE(same(found.result.neighbors, expected.result.neighbors));
+    EXPECT_TRUE(same(found.result.constrained, expected.result.constrained));
+    EXPECT_TRUE(same(found.result.constraint_edges, expected.result.constraint_edges));
+    EXPECT_TRUE(same(found.result.segment_edges, expected.result.segment_edges));
+    EXPECT_TRUE(same(found.result.halfedges, halfedges.halfedges));
+  }
+  return !expected.error.empty();
+}
+
+bool expect_as_twin(const Coordinates& points, const Segments& segments) {
+  return expect_as_twin(points, {0, points.size() / 2}, segments);
+}
+
+TEST(SmallInsertion, RandomSegmentsInSmallBoxes) {
+  FixtureRandom random(1);
+  int errors = 0;
+  for (int round = 0; round < 100; ++round) {
+    const auto n = static_cast<std::size_t>(random.integer(0, 16));
+    const int side = static_cast<int>(random.integer(1, 7));
+    const Coordinates points = random_integer_points(n, side, static_cast<std::uint64_t>(round));
+    const auto count = static_cast<std::size_t>(random.integer(0, 6));
+    errors += expect_as_twin(points, random_segments(random, n, count));
+    ASSERT_FALSE(HasFailure()) << "round " << round;
+  }
+  EXPECT_GT(errors, 10);
+  EXPECT_LT(errors, 80);
+}
+
+TEST(SmallInsertion, EdgesOfOtherTriangulations) {
+  for (int round = 0; round < 8; ++round) {
+    const Coordinates points = random_integer_points(40, 3 + 8 * round, static_cast<std::uint64_t>(round));
+    expect_as_twin(points, edges_of_stretched(points, std::ldexp(1.0, round - 4), 1 + round % 3, 1));
+    ASSERT_FALSE(HasFailure()) << "round " << round;
+  }
+}
+
+// One segment with a long walk, and what is left of those beside it.
+TEST(SmallInsertion, LongWalks) {
+  FixtureRandom random(2);
+  for (int round = 0; round < 4; ++round) {
+    Coordinates points = {-1, 0, 101, 0};
+    for (int i = 0; i < 100; ++i) {
+      const double y = std::ldexp(double(random.integer(1, 64)), static_cast<int>(random.integer(-8, 0)));
+      points.insert(points.end(), {static_cast<double>(random.integer(0, 100)), i % 2 ? y : -y});
+    }
+    Segments segments = edges_of_stretched(points, std::ldexp(1.0, 4 * round - 8), 2, 1);
+    segments.insert(segments.begin(), {0, 1});
+    expect_as_twin(points, segments);
+    expect_as_twin(points, {1, 0});
+    ASSERT_FALSE(HasFailure()) << "round " << round;
+  }
+}
+
+TEST(SmallInsertion, SegmentsThroughPoints) {
+  FixtureRandom random(3);
+  for (int round = 0; round < 12; ++round) {
+    const int columns = static_cast<int>(random.integer(2, 9)), rows = static_cast<int>(random.integer(1, 7));
+    Segments segments;
+    for (int k = 0; k < 8; ++k) {
+      const auto y = random.integer(0, rows - 1);
+      segments.push_back(static_cast<std::int32_t>(y * columns + random.integer(0, columns - 1)));
+      const auto place = random.integer(0, 1)
+                             ? y * columns + random.integer(0, columns - 1)
+                             : random.integer(0, rows - 1) * columns + segments.back() % columns;
+      segments.push_back(static_cast<std::int32_t>(place));
+    }
+    expect_as_twin(grid_points(columns, rows), segments);
+    ASSERT_FALSE(HasFailure()) << "round " << round;
+  }
+}
+
+// Sets with and without triangles, and of very different magnitudes.
+TEST(SmallInsertion, SeveralSets) {
+  FixtureRandom random(5);
+  Coordinates points;
+  std::vector<std::size_t> offsets = {0};
+  Segments segments;
+  for (int s = 0; s < 20; ++s) {
+    Coordinates set = random_integer_points(static_cast<std::size_t>(random.integer(0, 12)), 5, 100 + s);
+    if (s % 5 == 0) {
+      for (std::size_t i = 1; i < set.size(); i += 2) set[i] = 2 * set[i - 1];
+    }
+    for (double& c : set) c *= s % 3 == 0 ? 0x1p-400 : 0x1p400;
+    const auto first = static_cast<std::int32_t>(offsets.back());
+    points.insert(points.end(), set.begin(), set.end());
+    offsets.push_back(points.size() / 2);
+    for (const std::int32_t v : edges_of_stretched(set, 4, 2, 100 + static_cast<std::uint64_t>(s))) {
+      segments.push_back(first + v);
+    }
+    if (s % 5 == 0) {
+      for (const std::int32_t v : random_segments(random, set.size() / 2, 4)) segments.push_back(first + v);
+    }
+  }
+  EXPECT_FALSE(expect_as_twin(points, offsets, segments));
+  // And without those of sets on lines, so that no segment has several edges.
+  EXPECT_FALSE(expect_as_twin(points, offsets, {}));
+}
+
+TEST(SmallInsertion, AllMagnitudes) {
+  FixtureRandom random(7);
+  for (const double factor : {0x1p-1000, 0x1p-600, 0x1p600, 0x1p1000}) {
+    const Coordinates points = scaled(random_integer_points(30, 9, 1), factor);
+    expect_as_twin(points, edges_of_stretched(points, 4, 2, 1));
+    expect_as_twin(points, random_segments(random, 30, 3));
+  }
+}
+
+TEST(SmallInsertion, Errors) {
+  const Coordinates points = {0, 0, 4, 4, 0, 4, 4, 0, 10, 10};
+  EXPECT_TRUE(expect_as_twin(points, {4, 4, 3, 2, 0, 1}));
+  EXPECT_TRUE(expect_as_twin(points, {0, 1, 2}));
+  EXPECT_TRUE(expect_as_twin(points, {0, 1, 2, 5}));
+  EXPECT_TRUE(expect_as_twin(points, {0, 2, -1, 3}));
+  const Coordinates two = {0, 0, 1, 0, 0, 1, 5, 5, 6, 5, 5, 6};
+  EXPECT_TRUE(expect_as_twin(two, {0, 3, 6}, {0, 1, 2, 3}));
+  EXPECT_FALSE(expect_as_twin(two, {0, 3, 6}, {0, 2, 3, 5}));
+  EXPECT_FALSE(expect_as_twin({}, {}));
+}
+
+TEST(Insertion, RandomSegmentsInSmallBoxes) {
+  FixtureRandom random(11);
+  for (int round = 0; round < 3000; ++round) {
+    const auto n = static_cast<std::size_t>(random.integer(0, 24));
+    const int side = static_cast<int>(random.integer(1, 9));
+    const Coordinates points = random_integer_points(n, side, static_cast<std::uint64_t>(round));
+    expect_as_twin(points, random_segments(random, n, static_cast<std::size_t>(random.integer(0, 8))));
+    ASSERT_FALSE(HasFailure()) << "round " << round;
+  }
+}
+
+TEST(Insertion, EdgesOfOtherTriangulations) {
+  for (const Fixture& fixture : all_fixtures()) {
+    for (const std::size_t n : {100, 3000}) {
+      for (const double factor : {0x1p-6, 0.5, 0x1p6}) {
+        SCOPED_TRACE(fixture.name + ", n = " + std::to_string(n) + ", factor " + std::to_string(factor));
+        const Coordinates points = fixture.make(n, 2);
+        EXPECT_FALSE(expect_as_twin(points, edges_of_stretched(points, factor, 1, n)));
+        EXPECT_FALSE(expect_as_twin(points, edges_of_stretched(points, factor, 5, n)));
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+}
+
+TEST(Insertion, Files) {
+  for (const std::string& file : data_files()) {
+    SCOPED_TRACE(file);
+    const Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
+    EXPECT_FALSE(expect_as_twin(points, edges_of_stretched(points, 16, 2, 1)));
+  }
+}
+
+// One segment that crosses 100,000 edges.
+TEST(Insertion, OneSegmentThroughEverything) {
+  FixtureRandom random(8);
+  const int n = 100000;
+  Coordinates points = {-1, 0, n, 0};
+  for (int i = 0; i < n; ++i) {
+    const double height = 1 + random.unit();
+    points.insert(points.end(), {i + 0.25 * random.unit(), i % 2 ? height : -height});
+  }
+  EXPECT_FALSE(expect_as_twin(points, {0, 1}));
+}
+
+TEST(Insertion, StarsAndOverlaps) {
+  const std::int32_t n = 100000;
+  Coordinates star = {0, 0}, line;
+  Segments rays, spans, few;
+  for (std::int32_t i = 1; i <= n; ++i) {
+    const double angle = 2 * M_PI * i / n, radius = i % 2 ? 1 : 2;
+    star.insert(star.end(), {radius * std::cos(angle), radius * std::sin(angle)});
+    rays.insert(rays.end(), {0, i});
+    line.insert(line.end(), {double(i), double(i)});
+    spans.insert(spans.end(), {(i - 1) / 2, n - 1 - (i - 1) / 3});
+    few.insert(few.end(), {i - 1, std::min(n - 1, i + 9)});
+  }
+  EXPECT_FALSE(expect_as_twin(star, rays));
+  for (const bool with_others : {false, true}) {
+    if (with_others) line.insert(line.end(), {0, double(n), double(n), 0});
+    EXPECT_FALSE(expect_as_twin(line, spans));
+    EXPECT_FALSE(expect_as_twin(line, few));
+  }
+}
+
+// Segments to one point from everywhere around it, of which most cross many triangles.
+TEST(Insertion, StarAcrossTriangles) {
+  FixtureRandom random(9);
+  const std::int32_t n = 30000;
+  Coordinates points = {0, 0};
+  Segments rays;
+  for (std::int32_t i = 1; i <= n; ++i) {
+    const double angle = 2 * M_PI * random.unit(), radius = 1 + random.unit();
+    points.insert(points.end(), {radius * std::cos(angle), radius * std::sin(angle)});
+    rays.insert(rays.end(), {0, i});
+  }
+  EXPECT_FALSE(expect_as_twin(points, rays));
+}
+
+}  // namespace
+}  // namespace flaunay::testing

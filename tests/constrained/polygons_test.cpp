@@ -1,0 +1,388 @@
+// Polygons: what is inside of them, by exact crossing numbers, as sets of their own and in a map.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "flaunay/constrained.hpp"
+#include "tests/constrained/domains.hpp"
+#include "tests/support/integer_points.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+// Rings with their own points.
+struct Rings {
+  Coordinates coordinates;
+  std::vector<std::size_t> rings = {0}, polygons = {0};
+
+  void add_ring(const Coordinates& ring) {
+    coordinates.insert(coordinates.end(), ring.begin(), ring.end());
+    rings.push_back(coordinates.size() / 2);
+  }
+  void end_polygon() { polygons.push_back(rings.size() - 1); }
+  void add(const std::vector<Coordinates>& polygon) {
+    for (const Coordinates& ring : polygon) add_ring(ring);
+    end_polygon();
+  }
+  Polygons view() const { return {coordinates.data(), rings, polygons}; }
+  std::size_t count() const { return polygons.size() - 1; }
+
+  Segments segments() const {
+    Segments all;
+    for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
+      for (std::size_t i = rings[r]; i < rings[r + 1]; ++i) {
+        all.push_back(static_cast<std::int32_t>(i));
+        all.push_back(static_cast<std::int32_t>(i + 1 < rings[r + 1] ? i + 1 : rings[r]));
+      }
+    }
+    return all;
+  }
+  // How a polygon goes around a place on none of its segments.
+  Around around(std::size_t polygon, const RationalPlace& place) const {
+    return testing::around(coordinates, segments(), rings[polygons[polygon]], rings[polygons[polygon + 1]],
+                           place);
+  }
+};
+
+bool is_in(const Around& found, FillRule rule) {
+  return rule == FillRule::winding ? found.winding != 0 : found.crossings % 2 != 0;
+}
+
+PolygonOptions options_of(FillRule rule, Outside outside = Outside::holes, bool map = false) {
+  PolygonOptions options;
+  options.fill_rule = rule;
+  options.outside = outside;
+  options.labels = true;
+  options.map = map;
+  return options;
+}
+
+using Row = std::vector<std::int32_t>;
+Row row_at(const std::vector<std::int32_t>& triangles, std::size_t t) {
+  return {triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]};
+}
+
+// Each polygon a set: what is left must be just those of all its triangles whose middle is inside.
+void expect_right_sets(const Rings& input) {
+  for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+    SCOPED_TRACE(static_cast<int>(rule));
+    const ConstrainedTriangulation all =
+        triangulator().polygons(input.view(), options_of(rule, Outside::keep));
+    const ConstrainedTriangulation found = triangulator().polygons(input.view(), options_of(rule));
+    ASSERT_EQ(all.triangle_offsets.size(), input.count() + 1);
+    std::vector<std::int32_t> triangles;
+    std::vector<std::size_t> offsets = {0};
+    for (std::size_t p = 0; p < input.count(); ++p) {
+      for (std::size_t t = all.triangle_offsets[p]; t < all.triangle_offsets[p + 1]; ++t) {
+        const Around at = input.around(p, centroid(input.coordinates, &all.triangles[3 * t]));
+        EXPECT_EQ(all.depths[t], rule == FillRule::winding ? at.winding : at.crossings % 2);
+        if (!is_in(at, rule)) continue;
+        triangles.insert(triangles.end(), &all.triangles[3 * t], &all.triangles[3 * t] + 3);
+      }
+      offsets.push_back(triangles.size() / 3);
+    }
+    EXPECT_EQ(found.triangles, triangles);
+    EXPECT_EQ(found.triangle_offsets, offsets);
+    EXPECT_EQ(found.neighbors, reference_neighbors(triangles));
+    EXPECT_EQ(found.hull, all.hull);
+    EXPECT_TRUE(found.polygons.empty());
+  }
+}
+
+// All in one map: each triangle is in the first polygon that its middle is in.
+void expect_right_map(const Rings& input) {
+  for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+    SCOPED_TRACE(static_cast<int>(rule));
+    const ConstrainedTriangulation all =
+        triangulator().polygons(input.view(), options_of(rule, Outside::keep, true));
+    const ConstrainedTriangulation found =
+        triangulator().polygons(input.view(), options_of(rule, Outside::holes, true));
+    std::vector<std::int32_t> triangles, polygons, depths;
+    bool overlap = false;
+    for (std::size_t t = 0; t < all.triangles.size() / 3; ++t) {
+      const RationalPlace place = centroid(input.coordinates, &all.triangles[3 * t]);
+      std::int32_t first = -1, count = 0;
+      for (std::size_t p = 0; p < input.count(); ++p) {
+        if (!is_in(input.around(p, place), rule)) continue;
+        if (first < 0) first = static_cast<std::int32_t>(p);
+        ++count;
+      }
+      EXPECT_EQ(all.polygons[t], first);
+      EXPECT_EQ(all.depths[t], count);
+      overlap |= count > 1;
+      if (first < 0) continue;
+      triangles.insert(triangles.end(), &all.triangles[3 * t], &all.triangles[3 * t] + 3);
+      polygons.push_back(first);
+      depths.push_back(count);
+    }
+    EXPECT_EQ(found.triangles, triangles);
+    EXPECT_EQ(found.polygons, polygons);
+    EXPECT_EQ(found.depths, depths);
+    EXPECT_EQ(found.neighbors, reference_neighbors(triangles));
+    EXPECT_EQ(found.triangle_offsets, (std::vector<std::size_t>{0, triangles.size() / 3}));
+    PolygonOptions strict = options_of(rule, Outside::holes, true);
+    strict.overlaps = Overlaps::error;
+    if (overlap) {
+      EXPECT_THROW(triangulator().polygons(input.view(), strict), Error);
+    } else {
+      EXPECT_EQ(triangulator().polygons(input.view(), strict).triangles, triangles);
+    }
+  }
+}
+
+// Polygons of triangles of one triangulation as rings: inner edges are there twice, and polygons overlap.
+Rings random_polygons(FixtureRandom& random, std::uint64_t round, int most) {
+  const auto n = static_cast<std::size_t>(random.integer(3, 14));
+  const Coordinates points = random_integer_points(n, static_cast<int>(random.integer(2, 7)), round);
+  const Triangulation mesh = delaunay_of(points, {0, n});
+  Rings rings;
+  for (std::int64_t p = random.integer(0, most); p > 0; --p) {
+    for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+      if (random.integer(0, 2) != 0) continue;
+      Coordinates ring;
+      const bool is_turned = random.integer(0, 1) != 0;
+      const std::int64_t corners = random.integer(3, 4);
+      for (std::int64_t k = 0; k < corners; ++k) {
+        const std::int64_t at = is_turned ? 3 * corners - k : k;
+        const auto v = static_cast<std::size_t>(mesh.triangles[3 * t + static_cast<std::size_t>(at % 3)]);
+        // The fourth is the first one again.
+        ring.insert(ring.end(), {points[2 * v], points[2 * v + 1]});
+      }
+      if (is_turned && corners == 4)
+        ring = {ring[0], ring[1], ring[2], ring[3], ring[4], ring[5], ring[0], ring[1]};
+      rings.add_ring(ring);
+    }
+    if (random.integer(0, 3) == 0) rings.add_ring({});
+    if (random.integer(0, 3) == 0) rings.add_ring({points[0], points[1]});
+    if (random.integer(0, 3) == 0) rings.add_ring({points[0], points[1], points[0], points[1]});
+    rings.end_polygon();
+  }
+  return rings;
+}
+
+TEST(SmallPolygons, RandomSets) {
+  FixtureRandom random(1);
+  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 60); ++round) {
+    expect_right_sets(random_polygons(random, round, 6));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(SmallPolygons, RandomMaps) {
+  FixtureRandom random(2);
+  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 100); ++round) {
+    expect_right_map(random_polygons(random, round, 4));
+    if (HasFailure()) return;
+  }
+}
+
+double area_of(const Rings& input, const ConstrainedTriangulation& mesh, std::int32_t polygon = -1) {
+  double doubled = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+    if (polygon >= 0 && mesh.polygons[t] != polygon) continue;
+    const double* p[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = &input.coordinates[2 * static_cast<std::size_t>(mesh.triangles[3 * t + k])];
+    }
+    doubled += (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+  }
+  return doubled / 2;
+}
+
+Coordinates square(double low, double high) { return {low, low, high, low, high, high, low, high}; }
+
+TEST(SmallPolygons, Shapes) {
+  const auto area = [](const Rings& input, const PolygonOptions& options) {
+    return area_of(input, triangulator().polygons(input.view(), options));
+  };
+  // An island in a lake, whose rings have any direction.
+  Rings lake;
+  lake.add({square(0, 10), square(2, 8), square(4, 6)});
+  EXPECT_EQ(area(lake, {}), 100 - 36 + 4);
+  EXPECT_EQ(area(lake, options_of(FillRule::nesting)), 100 - 36 + 4);
+  EXPECT_EQ(area(lake, options_of(FillRule::nesting, Outside::hull)), 100);
+  EXPECT_EQ(area(lake, options_of(FillRule::winding)), 100);
+  // A hole that goes the other way around.
+  Rings turned;
+  turned.add({square(0, 10), {2, 2, 2, 8, 8, 8, 8, 2}});
+  EXPECT_EQ(area(turned, options_of(FillRule::winding)), 64);
+  // Holes that touch each other and the outer ring at a point, and one with a common side.
+  Rings touching;
+  touching.add({square(0, 10), {5, 0, 6, 1, 5, 2, 4, 1}, {5, 2, 6, 3, 5, 4, 4, 3}, {0, 6, 2, 6, 2, 8, 0, 8}});
+  EXPECT_EQ(area(touching, {}), 100 - 2 - 2 - 4);
+  // A ring that touches itself at a point, and one that goes back along a segment.
+  Rings itself;
+  itself.add({{0, 0, 4, 0, 2, 2, 4, 4, 0, 4, 2, 2}});
+  itself.add({{0, 0, 4, 0, 4, 4, 6, 4, 4, 4, 0, 4}});
+  EXPECT_EQ(area(itself, {}), 8 + 16);
+  // Twice the same ring: even-odd has nothing left, and around it is twice as often.
+  Rings twice;
+  twice.add({square(0, 4), square(0, 4)});
+  EXPECT_EQ(area(twice, {}), 0);
+  EXPECT_EQ(area(twice, options_of(FillRule::winding)), 16);
+  // Rings without area.
+  Rings flat;
+  flat.add({{}, {1, 1}, {1, 1, 2, 2}, {0, 0, 1, 1, 2, 2, 3, 3}, {5, 5, 5, 5, 5, 5}});
+  flat.add({});
+  EXPECT_TRUE(triangulator().polygons(flat.view()).triangles.empty());
+  EXPECT_EQ(triangulator().polygons(flat.view()).triangle_offsets, (std::vector<std::size_t>{0, 0, 0}));
+  flat.add({square(0, 1), {0, 0, 1, 1}});
+  EXPECT_EQ(area(flat, {}), 1);
+  Rings none;
+  EXPECT_EQ(triangulator().polygons(none.view()).triangle_offsets, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(triangulator()
+                .polygons(none.view(), options_of(FillRule::even_odd, Outside::holes, true))
+                .triangle_offsets,
+            (std::vector<std::size_t>{0, 0}));
+}
+
+TEST(SmallPolygons, SharedBordersOfMaps) {
+  // Two squares side by side, of which one has a point more on the border; a third one lies in the first.
+  Rings map;
+  map.add({{0, 0, 4, 0, 4, 4, 0, 4}});
+  map.add({{4, 0, 8, 0, 8, 4, 4, 4, 4, 1}});
+  map.add({{1, 1, 2, 1, 2, 2, 1, 2}});
+  PolygonOptions options = options_of(FillRule::even_odd, Outside::holes, true);
+  ConstrainedTriangulation mesh = triangulator().polygons(map.view(), options);
+  EXPECT_EQ(area_of(map, mesh, 0), 16);
+  EXPECT_EQ(area_of(map, mesh, 1), 16);
+  EXPECT_EQ(area_of(map, mesh), 32);
+  // Over the common border triangles are neighbours.
+  int across = 0;
+  for (std::size_t c = 0; c < mesh.neighbors.size(); ++c) {
+    across +=
+        mesh.neighbors[c] >= 0 && mesh.polygons[c / 3] == 0 && mesh.polygons[mesh.neighbors[c]] == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(across, 2);
+  options.overlaps = Overlaps::error;
+  try {
+    triangulator().polygons(map.view(), options);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_EQ(std::string(error.what()).rfind("polygons 0 and 2 overlap, at the triangle of points ", 0), 0u)
+        << error.what();
+  }
+  // As a hole of the first polygon it is no overlap.
+  map.coordinates.insert(map.coordinates.begin() + 8, {1, 1, 2, 1, 2, 2, 1, 2});
+  map.rings = {0, 4, 8, 13, 17};
+  map.polygons = {0, 2, 3, 4};
+  mesh = triangulator().polygons(map.view(), options);
+  EXPECT_EQ(area_of(map, mesh, 0), 15);
+  EXPECT_EQ(area_of(map, mesh, 2), 1);
+}
+
+TEST(SmallPolygons, Errors) {
+  const auto message = [](const Rings& input, const PolygonOptions& options, ErrorKind kind) -> std::string {
+    try {
+      triangulator().polygons(input.view(), options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind);
+      return error.what();
+    }
+    return "no error";
+  };
+  Rings bow;
+  bow.add({square(0, 1)});
+  bow.add({{0, 0, 4, 4, 4, 0, 0, 4}});
+  EXPECT_EQ(message(bow, {}, ErrorKind::input),
+            "polygon 1: segments 4 (points 4 and 5) and 6 (points 6 and 7) cross near (2, 2)");
+  Rings pair;
+  pair.add({{0, 0, 4, 0, 4, 4, 0, 4}});
+  pair.add({{2, 1, 6, 1, 6, 3, 2, 3}});
+  EXPECT_EQ(message(pair, {}, ErrorKind::input), "no error");
+  EXPECT_EQ(message(pair, options_of(FillRule::even_odd, Outside::holes, true), ErrorKind::input),
+            "polygons 0 and 1: segments 1 (points 1 and 2) and 4 (points 4 and 5) cross near (4, 1)");
+  EXPECT_EQ(message(pair, options_of(FillRule::nesting, Outside::holes, true), ErrorKind::usage),
+            "the polygons of a map need the fill rule even-odd or winding");
+  pair.polygons.back() = 1;
+  EXPECT_EQ(message(pair, {}, ErrorKind::usage),
+            "the offsets of polygons do not end with the number of rings");
+  pair.polygons = {};
+  EXPECT_EQ(message(pair, {}, ErrorKind::usage),
+            "polygons need offsets of rings and of polygons, which begin with 0");
+  pair.polygons = {0, 2, 1, 2};
+  EXPECT_NE(message(pair, {}, ErrorKind::usage), "no error");
+}
+
+// Options that change which arrays there are.
+TEST(SmallPolygons, Arrays) {
+  Rings input;
+  input.add({square(0, 10), square(2, 8)});
+  PolygonOptions options;
+  ConstrainedTriangulation mesh = triangulator().polygons(input.view(), options);
+  EXPECT_TRUE(mesh.depths.empty() && mesh.regions.empty() && mesh.halfedges.empty());
+  EXPECT_EQ(mesh.neighbors.size(), mesh.triangles.size());
+  EXPECT_EQ(mesh.constrained.size(), mesh.triangles.size());
+  EXPECT_EQ(mesh.statistics.triangles, mesh.triangles.size() / 3);
+  options.neighbors = false;
+  options.halfedges = true;
+  mesh = triangulator().polygons(input.view(), options);
+  EXPECT_TRUE(mesh.neighbors.empty());
+  ASSERT_EQ(mesh.halfedges.size(), mesh.triangles.size());
+  for (std::size_t h = 0; h < mesh.halfedges.size(); ++h) {
+    const std::int32_t twin = mesh.halfedges[h];
+    if (twin >= 0) {
+      EXPECT_EQ(mesh.halfedges[twin], static_cast<std::int32_t>(h));
+    }
+  }
+}
+
+// Many polygons in one call are what each of them is on its own.
+TEST(Polygons, ManyAreAsEach) {
+  FixtureRandom random(3);
+  Rings all;
+  std::vector<Rings> each;
+  for (int p = 0; p < 300; ++p) {
+    Rings one;
+    std::vector<Coordinates> rings;
+    const std::int64_t corners = random.integer(3, 60);
+    for (const double size : {2.0, 0.9}) {
+      Coordinates ring;
+      for (std::int64_t i = 0; i < corners; ++i) {
+        const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(corners);
+        const double radius = size * (1 + random.unit());
+        ring.insert(ring.end(), {radius * std::cos(angle) + p, radius * std::sin(angle)});
+      }
+      rings.push_back(ring);
+    }
+    // Not if they cross.
+    one.add(rings);
+    try {
+      triangulator().polygons(one.view());
+    } catch (const Error&) {
+      continue;
+    }
+    all.add(rings);
+    each.push_back(one);
+  }
+  ASSERT_GT(each.size(), 50u);
+  const ConstrainedTriangulation mesh = triangulator().polygons(all.view(), options_of(FillRule::even_odd));
+  std::size_t t = 0;
+  std::int32_t regions = 0, point = 0;
+  for (std::size_t p = 0; p < each.size(); ++p) {
+    const ConstrainedTriangulation own =
+        triangulator().polygons(each[p].view(), options_of(FillRule::even_odd));
+    ASSERT_EQ(mesh.triangle_offsets[p], t);
+    for (std::size_t i = 0; i < own.triangles.size() / 3; ++i, ++t) {
+      Row row = row_at(own.triangles, i);
+      for (std::int32_t& v : row) v += point;
+      ASSERT_EQ(row_at(mesh.triangles, t), row);
+      ASSERT_EQ(mesh.regions[t], own.regions[i] + regions);
+    }
+    if (!own.regions.empty()) regions += 1 + *std::max_element(own.regions.begin(), own.regions.end());
+    point += static_cast<std::int32_t>(each[p].coordinates.size() / 2);
+  }
+  EXPECT_EQ(mesh.triangles.size() / 3, t);
+}
+
+}  // namespace
+}  // namespace flaunay::testing
