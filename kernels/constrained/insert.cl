@@ -16,7 +16,8 @@
 //   work-item per triangle, and join_long one per entry.
 //
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
-// rows are marked by the round, which anyone may claim again.
+// rows are marked by the round, which anyone may claim again. A constraint that found a row held by another one of
+// smaller rank is blocked: as long as that holds the row, it cannot win, and does not walk.
 
 // Exact predicates are rare, and compiling each where it may be called takes long.
 #ifndef __cplusplus
@@ -81,6 +82,9 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
   }
 }
 
+// Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
+#define BLOCKED -1
+
 // What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
 static inline uint2 size_of_walk(int rows) {
   return VECTOR(uint2, rows > 0 && rows <= SHORT_WALK ? (uint)rows + 4u : 0u, 1u);
@@ -124,20 +128,38 @@ static inline void flag_edge(int corner, const walked_mesh* mesh, global volatil
   }
 }
 
-// Segments whose first rows, and then points, are fetched.
-#define ROWS_AHEAD 16
+FETCHING void fetch_row(int corner, const walked_mesh* mesh) {
+  fetch(&mesh->triangles[corner]);
+  fetch(&mesh->neighbors[corner]);
+}
+FETCHING void fetch_points(int row, const walked_mesh* mesh) {
+  for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[3 * row + k]]);
+}
+
+// How many segments ahead what a walk needs is fetched: the rows at both ends; then their neighbours, and the points
+// of the row; then the points of the neighbours.
+#define ROWS_AHEAD 24
+#define NEIGHBORS_AHEAD 16
 #define POINTS_AHEAD 8
-static inline void fetch_ends(ulong key, int with_points, const walked_mesh* mesh) {
+FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
-  for (int end = 0; end < 2; ++end) {
-    const uint place = (uint)(key >> 32 * end);
-    if (place >= PLACE_ON_LINE) return;
-    if (!with_points) {
-      fetch(&mesh->triangles[place]);
-      fetch(&mesh->neighbors[place]);
-    } else {
-      for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[place / 3 * 3 + k]]);
-    }
+  const ulong far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
+              near = keys[min(n - 1, s + POINTS_AHEAD)];
+  // Those of points on a line do not come before others.
+  if ((uint)far >= PLACE_ON_LINE) return;
+  fetch_row((int)(far >> 32), mesh);
+  fetch(&mesh->triangles[(uint)far]);
+  const int row = (int)(middle >> 32) / 3;
+  fetch(&mesh->points[2 * mesh->triangles[(uint)middle]]);
+  fetch_points(row, mesh);
+  for (int k = 0; k < 3; ++k) {
+    const int beyond = mesh->neighbors[3 * row + k];
+    if (beyond >= 0) fetch_row(3 * beyond, mesh);
+  }
+  const int near_row = (int)(near >> 32) / 3;
+  for (int k = 0; k < 3; ++k) {
+    const int beyond = mesh->neighbors[3 * near_row + k];
+    if (beyond >= 0) fetch_points(beyond, mesh);
   }
 #endif
 }
@@ -154,8 +176,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
   const int s = get_global_id(0);
   if (s < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
-    fetch_ends(keys[min(n - 1, s + ROWS_AHEAD)], 0, &mesh);
-    fetch_ends(keys[min(n - 1, s + POINTS_AHEAD)], 1, &mesh);
+    fetch_segments(s, n, keys, &mesh);
     const uint first_place = (uint)(keys[s] >> 32), second_place = (uint)keys[s];
     uint count = 0;
     sizes[s] = VECTOR(uint2, 0u, 0u);
@@ -257,12 +278,13 @@ static inline void write_side(int corner, const walked_mesh* mesh, global const 
 
 // Walks along a constraint as long as it holds the rows, and writes entries if there are any: the row in each, in the
 // order of the walk; what is on the left of the constraint, from its origin to its goal, and what is on its right, from
-// the goal to the origin. Returns the number of entries of the former, or 0 if the constraint does not hold all rows.
+// the goal to the origin. Returns the number of entries of the former; or, if the constraint does not hold all rows,
+// the first of those that it does not hold, complemented.
 static inline int gather_cavity(const constraint_walk* walk, uint rank, const walked_mesh* mesh,
                                 global const uint* claims, global const uchar* flags, global chain_entry* entries,
                                 int* crosses) {
   int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
-  if (claims[row] != rank) return 0;
+  if (claims[row] != rank) return ~row;
   const int is_long = walk->rows > SHORT_WALK;
   const double2 from = vload2(walk->origin, mesh->points), to = vload2(walk->goal, mesh->points);
   const int next = next_halfedge(corner), previous = previous_halfedge(corner);
@@ -280,7 +302,7 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   for (int j = 1;; ++j) {
     const int beyond = mesh->neighbors[corner];
     *crosses |= flags[row] & edge_flag(corner);
-    if (claims[beyond] != rank) return 0;
+    if (claims[beyond] != rank) return ~beyond;
     const int facing = corner_with(beyond, row, mesh->neighbors), v = mesh->triangles[facing];
     row = beyond;
     const int side = v == walk->goal          ? 0
@@ -306,38 +328,48 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   return left + 1;
 }
 
-// Whether a constraint that is an edge holds the rows beside it.
-static inline int holds_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
-  return claims[corner / 3] == rank && (neighbors[corner] < 0 || claims[neighbors[corner]] == rank);
+// Of a constraint that is an edge: 0 if it holds the rows beside it, or one that it does not hold, complemented.
+static inline int hold_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
+  const int beyond = neighbors[corner];
+  return claims[corner / 3] != rank ? ~(corner / 3) : beyond >= 0 && claims[beyond] != rank ? ~beyond : 0;
 }
 
 // offsets: of the entries. lefts: how many of these are on the left.
 kernel void choose_constraints(int n, double bound, global const int* restrict list,
-                               global const uint* restrict offsets, global const constraint_walk* restrict walks,
-                               global const double* restrict points, global const int* restrict triangles,
-                               global const int* restrict neighbors, global const uint* restrict claims,
-                               global const uchar* restrict flags, global uchar* restrict outcomes,
+                               global const uint* restrict offsets, global const double* restrict points,
+                               global const int* restrict triangles, global const int* restrict neighbors,
+                               global const uint* restrict claims, global const uchar* restrict flags,
+                               global constraint_walk* restrict walks, global uchar* restrict outcomes,
                                global int* restrict lefts, global chain_entry* restrict entries,
                                global volatile uint* restrict status) {
   const int i = get_global_id(0);
   if (i < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+#if FETCH_AHEAD
+    const int ahead = walks[list[min(n - 1, i + POINTS_AHEAD)]].corner;
+    fetch_row(ahead, &mesh);
+    fetch(&claims[ahead / 3]);
+#endif
     const uint rank = rank_of(list[i]);
     const constraint_walk walk = walks[list[i]];
     const int is_long = walk.rows > SHORT_WALK;
     int outcome = CONSTRAINT_WAITS;
-    if (walk.rows == 0) {
-      if (holds_edge(walk.corner, rank, neighbors, claims)) outcome = CONSTRAINT_FITS;
-    } else {
+    if (walk.rows != BLOCKED) {
       int crosses = 0;
-      lefts[i] = gather_cavity(&walk, rank, &mesh, claims, flags, is_long ? 0 : entries + offsets[i], &crosses);
-      if (lefts[i] > 0) outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+      const int left = walk.rows == 0 ? hold_edge(walk.corner, rank, neighbors, claims)
+                                      : gather_cavity(&walk, rank, &mesh, claims, flags,
+                                                      is_long ? 0 : entries + offsets[i], &crosses);
       if (crosses) {
-        outcome = CONSTRAINT_WAITS;
         atomic_or(&status[INSERTION_CROSSED], 1u);
+      } else if (left >= 0) {
+        outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+        lefts[i] = left;
+      } else {
+        walks[list[i]].rows = BLOCKED;
+        walks[list[i]].turns = (ulong)~left;
       }
     }
-    outcomes[i] = outcome;
+    outcomes[i] = (uchar)outcome;
   }
 }
 
@@ -422,6 +454,9 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
   }
 }
 
+// Constraints whose entries' points are fetched. Entries follow each other in memory, so they need not be.
+#define CAVITIES_AHEAD 4
+
 kernel void fill_cavities(int n, uint mark, double bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
@@ -430,6 +465,13 @@ kernel void fill_cavities(int n, uint mark, double bound, global const int* rest
                           global uchar* restrict changed, global int* restrict new_corners,
                           global chain_entry* restrict entries) {
   const int i = get_global_id(0);
+#if FETCH_AHEAD
+  if (i + CAVITIES_AHEAD < n && outcomes[i + CAVITIES_AHEAD] == CONSTRAINT_FITS) {
+    global const chain_entry* const ahead = entries + offsets[i + CAVITIES_AHEAD];
+    const int count = walks[list[i + CAVITIES_AHEAD]].rows + 3;
+    for (int p = 0; p < count && count > 3; ++p) fetch(&points[2 * ahead[p].vertex]);
+  }
+#endif
   if (i < n && outcomes[i] == CONSTRAINT_FITS) {
     const constraint_walk walk = walks[list[i]];
     if (walk.rows == 0) {
@@ -507,12 +549,16 @@ kernel void walk_constraints(int n, double bound, global const int* restrict lis
       const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
       const uint rank = rank_of(list[i]);
       constraint_walk walk = walks[list[i]];
+      if (walk.rows == BLOCKED && claims[walk.turns] < rank) {
+        sizes[i] = size_of_walk(BLOCKED);
+        return;
+      }
       const int origin = walk.origin, goal = walk.goal;
       int first = walk.corner, second;
       departure found;
       // As a rule it leaves through the same row.
       int is_found = 0;
-      if (walk.rows > 0 && triangles[first] == origin) {
+      if (triangles[first] == origin) {
         const star_search star = star_search_at(&mesh, first, goal);
         is_found = star.next_side < 0 && star.previous_side > 0;
         found.corner = first;

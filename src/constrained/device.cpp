@@ -212,12 +212,13 @@ class Insertion {
                                                     .status = status_});
   }
   void place_vertices() {
-    runtime_.map(rows_, kernels::start_rows{.triangles = result_.triangles,
-                                            .marks = marks_,
-                                            .places = places_,
-                                            .claims = claims_,
-                                            .flags = flags_,
-                                            .changed = changed_});
+    runtime_.chunks(rows_, runtime_.sizes().chunk(rows_),
+                    kernels::start_rows{.triangles = result_.triangles,
+                                        .marks = marks_,
+                                        .places = places_,
+                                        .claims = claims_,
+                                        .flags = flags_,
+                                        .changed = changed_});
     const auto& triangle_offsets = delaunay_.triangle_offsets;
     if (std::adjacent_find(triangle_offsets.begin(), triangle_offsets.end()) == triangle_offsets.end())
       return;
@@ -329,12 +330,12 @@ class Insertion {
     runtime_.map(waiting.count, kernels::choose_constraints{.bound = points_.bounds.orient,
                                                             .list = waiting.list,
                                                             .offsets = waiting.offsets,
-                                                            .walks = walks.walks,
                                                             .points = points_.coordinates,
                                                             .triangles = result_.triangles,
                                                             .neighbors = result_.neighbors,
                                                             .claims = claims_,
                                                             .flags = flags_,
+                                                            .walks = walks.walks,
                                                             .outcomes = waiting.outcomes,
                                                             .lefts = waiting.lefts,
                                                             .entries = entries,

@@ -78,7 +78,7 @@ Weights weigh_edges(host::Runtime& runtime, const DomainMesh& mesh, const DepthR
   host::exclusive_scan(runtime, weights.sums, mesh.edges + 1, weights.sums);
   runtime.map(mesh.edges,
               kernels::find_even{.rule = rules.fill, .sums = weights.sums, .needed = weights.needed});
-  std::size_t size = 2;
+  std::size_t size = 8;
   while (size < 2 * mesh.edges) size *= 2;
   weights.mask = static_cast<cl_int>(size - 1);
   weights.slots = filled(runtime, size, cl_int{-1});
@@ -196,12 +196,14 @@ Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
     Arena::Scope scope(runtime.arena());
     const auto parents = runtime.arena().allocate<cl_int>(triangles);
     const auto numbers = runtime.arena().allocate<cl_uint>(triangles + 1);
-    runtime.map(triangles,
-                kernels::start_regions{
-                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
-    runtime.map(triangles,
-                kernels::join_regions{
-                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    const std::size_t chunk = runtime.sizes().chunk(triangles);
+    runtime.chunks(triangles, chunk,
+                   kernels::start_regions{
+                       .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    runtime.map(triangles, kernels::join_regions{.length = chunk,
+                                                 .neighbors = mesh.neighbors,
+                                                 .constrained = mesh.constrained,
+                                                 .parents = parents});
     runtime.map(triangles,
                 kernels::find_roots{.parents = parents, .regions = regions.of_triangles, .counts = numbers});
     host::exclusive_scan(runtime, numbers, triangles, numbers);
