@@ -289,7 +289,11 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
   if (claims[row] != rank) return ~row;
   const int is_long = walk->rows > SHORT_WALK;
-  const double2 from = vload2(walk->origin, mesh->points), to = vload2(walk->goal, mesh->points);
+  double2 from = VECTOR(double2, 0.0, 0.0), to = from;
+  if (is_long) {
+    from = vload2(walk->origin, mesh->points);
+    to = vload2(walk->goal, mesh->points);
+  }
   const int next = next_halfedge(corner), previous = previous_halfedge(corner);
   if (entries) {
     entries[0].row = row;
@@ -540,6 +544,8 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
       const int twin = max(0, (int)(ahead[p].side >> 1) - 1);
       fetch(&claims[twin / 3]);
       fetch(&neighbors[twin]);
+      const int v = ahead[p].vertex;
+      if (marks[v >> 5] >> (v & 31) & 1) fetch((global const void*)&places[v]);
     }
   }
 #endif
