@@ -156,7 +156,9 @@ void Runtime::keep_order() {
 void Runtime::set_sizes(std::shared_ptr<const Sizes> sizes) {
   // Pending events refer to kernels by name.
   collect_times();
+  const std::string compiled_for = sizes_->build_options();
   sizes_ = std::move(sizes);
+  if (sizes_->build_options() == compiled_for) return;
   for (auto& kernels : kernels_) kernels.clear();
   for (auto& programs : programs_) programs.clear();
 }

@@ -60,7 +60,7 @@ class Runtime {
   /// Where arenas and buffers get their memory from.
   MemorySource memory() const;
   const Sizes& sizes() const { return *sizes_; }
-  /// Changes the sizes. Kernels are compiled again.
+  /// Changes the sizes. Kernels are compiled again if they are compiled for sizes that differ.
   void set_sizes(std::shared_ptr<const Sizes> sizes);
   Arena& arena() { return arena_; }
   const Arena& arena() const { return arena_; }

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the Python module, installs it in a separate virtual environment (build/python) and runs its tests and the
 # examples in its documentation. Arguments go to pytest. Needs what scripts/install-deps.sh installs.
+# FLAUNAY_PYTHON_LIBRARY: a libflaunay.so to put into the module, in place of compiling one.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -21,9 +22,15 @@ with open("pyproject.toml", "rb") as file:
 ((${#build_requirements[@]} > 0))
 pip=("$python" -m pip --disable-pip-version-check --no-input)
 "${pip[@]}" install --quiet "${build_requirements[@]}"
+settings=()
+if [[ -n ${FLAUNAY_PYTHON_LIBRARY-} ]]; then
+  # In a folder of its own, whose settings later builds do not find.
+  settings=(--config-settings=cmake.define.FLAUNAY_PYTHON_LIBRARY="$FLAUNAY_PYTHON_LIBRARY"
+    --config-settings=build-dir=build/wheel-of-library)
+fi
 # The wheel is kept for scripts/wheel-test.sh.
 rm -rf build/python-wheel
-"${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel .
+"${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel "${settings[@]}" .
 "${pip[@]}" install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
 # What triangulations are handed over to, in versions for the system's NumPy. The test of PyVista runs where that is
 # installed: it brings all of VTK.

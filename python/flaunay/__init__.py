@@ -22,6 +22,7 @@ used it, calls run on the host, and calls that name a device raise ``DeviceError
 from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
+from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
@@ -35,7 +36,9 @@ from flaunay._interpolate import (
 )
 from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
-from flaunay._triangulation import Triangulation, modes, triangulate
+from flaunay._polygons import PolygonTriangulation, polygons
+from flaunay._triangulate import triangulate
+from flaunay._triangulation import Triangulation, modes
 from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 
@@ -44,6 +47,7 @@ __all__ = [
     "ChunkedTriangulation",
     "ClippedVoronoi",
     "CloughTocherInterpolator",
+    "ConstrainedTriangulation",
     "Delaunay",
     "DeviceClippedVoronoi",
     "DeviceError",
@@ -56,6 +60,7 @@ __all__ = [
     "LinearInterpolator",
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
+    "PolygonTriangulation",
     "Triangulation",
     "UsageError",
     "Voronoi",
@@ -64,6 +69,7 @@ __all__ = [
     "devices",
     "griddata",
     "modes",
+    "polygons",
     "relax",
     "relax_device",
     "triangulate",

@@ -13,7 +13,6 @@
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
 #include "io/points.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -145,9 +144,7 @@ std::vector<std::string> fixture_names() {
 // that touch themselves, vertices with several corners.
 TEST_P(OnFixture, FlattenedEndsInBlocks) {
   for (const std::size_t most : {1, 2, 6, 40}) {
-    const ScopedEnvironment tuning("FLAUNAY_TUNING",
-                                   ("small-blocks,region_points=" + std::to_string(most)).c_str());
-    Triangulator tuned(device_under_test());
+    Triangulator& tuned = triangulator_with("small-blocks,region_points=" + std::to_string(most));
     for (const std::size_t n : {3, 7, 12, 30, 200, 900}) {
       // More levels than 200 points have, once: with the tiniest regions, each takes as many launches again.
       if (n == 900 && most != 6) continue;
@@ -185,9 +182,7 @@ TEST(Modes, FlattenedSetsEndInBlocks) {
   options.mode = Mode::flattened;
   for (const char* const name : {"small-blocks", "small-blocks,region_points=30", "cpu,region_points=6"}) {
     SCOPED_TRACE(name);
-    const ScopedEnvironment tuning("FLAUNAY_TUNING", name);
-    Triangulator tuned(device_under_test());
-    expect_same(research::triangulate(tuned, points.data(), offsets, options), expected);
+    expect_same(research::triangulate(triangulator_with(name), points.data(), offsets, options), expected);
   }
 }
 

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <string>
 
 #include "flaunay/flaunay.hpp"
+#include "tests/support/environment.hpp"
 
 namespace flaunay::testing {
 
@@ -19,25 +21,33 @@ inline std::string device_under_test() {
   return named != nullptr && *named != '\0' ? named : "#0";
 }
 
-/// One per process: building its programs takes longer than most tests. It ends with the tests and not among
-/// the process's statics, since some OpenCL implementations (oclgrind) have destroyed theirs by then.
-class SharedTriangulator : public ::testing::Environment {
+/// One per process and tuning: building its programs takes longer than most tests. They end with the tests
+/// and not among the process's statics, since some OpenCL implementations (oclgrind) have destroyed theirs by
+/// then.
+class SharedTriangulators : public ::testing::Environment {
  public:
-  static Triangulator& get() {
-    if (!instance()) instance() = std::make_unique<Triangulator>(device_under_test());
-    return *instance();
+  /// tuning: as FLAUNAY_TUNING has it; "": the one that the environment names, or else the device's.
+  static Triangulator& get(const std::string& tuning) {
+    std::unique_ptr<Triangulator>& triangulator = all()[tuning];
+    if (!triangulator) {
+      const char* const before = std::getenv("FLAUNAY_TUNING");
+      const ScopedEnvironment kind("FLAUNAY_TUNING", tuning.empty() ? before : tuning.c_str());
+      triangulator = std::make_unique<Triangulator>(device_under_test());
+    }
+    return *triangulator;
   }
-  void TearDown() override { instance().reset(); }
+  void TearDown() override { all().clear(); }
 
  private:
-  static std::unique_ptr<Triangulator>& instance() {
-    static std::unique_ptr<Triangulator> triangulator;
-    return triangulator;
+  static std::map<std::string, std::unique_ptr<Triangulator>>& all() {
+    static std::map<std::string, std::unique_ptr<Triangulator>> triangulators;
+    return triangulators;
   }
 };
-[[maybe_unused]] inline ::testing::Environment* const kSharedTriangulator =
-    ::testing::AddGlobalTestEnvironment(new SharedTriangulator);
+[[maybe_unused]] inline ::testing::Environment* const kSharedTriangulators =
+    ::testing::AddGlobalTestEnvironment(new SharedTriangulators);
 
-inline Triangulator& triangulator() { return SharedTriangulator::get(); }
+inline Triangulator& triangulator() { return SharedTriangulators::get(""); }
+inline Triangulator& triangulator_with(const std::string& tuning) { return SharedTriangulators::get(tuning); }
 
 }  // namespace flaunay::testing
