@@ -7,9 +7,9 @@
 //    high-performance connected components implementation for GPUs", 2018). find_roots and, after a scan over roots,
 //    number_regions give each triangle its region's number.
 // 2. Weights of constraint edges, if the fill rule needs them: cover_edges writes where segments begin and end to
-//    cover edges; a scan of this gives each edge's sum. find_unbalanced finds points where segments are no closed
-//    curves. list_edges puts the edges into a hash table, by which triangles find them.
-// 3. Borders. count_borders counts for each triangle its constraints to another region with a smaller triangle there,
+//    cover edges; a scan of this gives each edge's sum. count_ends and find_unbalanced find points where segments are
+//    no closed curves. list_edges puts the edges into a hash table, by which triangles find them.
+// 3. Borders. count_borders counts for each triangle its constraints to another region with a larger triangle there,
 //    or to the outside; after a scan write_borders lists them.
 // 4. Depths. Each pass of reach_regions over the borders goes one level further from outside. Where there are too many
 //    levels the host goes on, one region after the other (src/constrained/domain.cpp). finish_regions says which
@@ -120,20 +120,15 @@ kernel void number_regions(int n, global const uint* restrict numbers, global in
 
 // The pieces of a segment are on its way from the lexicographically smaller end to the other one. changes: 0
 // throughout; gets 1 where a piece's edges begin, and -1 where they end; with the winding rule the opposite if the
-// segment goes the other way than its edges. balances: 0 throughout; gets how many segments begin at a point, less
-// those that end there, or how many do either. Those of points that several have the same coordinates with are their
-// representative's.
+// segment goes the other way than its edges.
 kernel void cover_edges(int n, int rule, global const double* restrict input, global const int* restrict segments,
                         global const int* restrict representatives, global const int* restrict piece_offsets,
                         global const int* restrict piece_edges, global const int* restrict edges,
-                        global volatile uint* restrict changes, global volatile uint* restrict balances) {
+                        global volatile uint* restrict changes) {
   const int s = get_global_id(0);
   if (s < n) {
     const int a = representatives[segments[2 * s]], b = representatives[segments[2 * s + 1]];
-    const uint down = (uint)-1, at_end = rule == FILL_WINDING ? down : 1u;
     if (a != b) {
-      atomic_add(&balances[a], 1u);
-      atomic_add(&balances[b], at_end);
       const int is_turned = comes_before(vload2(b, input), vload2(a, input));
       int from = is_turned ? b : a;
       for (int p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
@@ -141,11 +136,22 @@ kernel void cover_edges(int n, int rule, global const double* restrict input, gl
         if (first == end) continue;
         const int is_backward = edges[2 * first] != from;
         from = is_backward ? edges[2 * first] : edges[2 * end - 1];
-        const uint amount = rule == FILL_WINDING && is_backward != is_turned ? down : 1u;
+        const uint amount = rule == FILL_WINDING && is_backward != is_turned ? (uint)-1 : 1u;
         atomic_add(&changes[first], amount);
         atomic_add(&changes[end], (uint)0 - amount);
       }
     }
+  }
+}
+
+// balances: 0 throughout; gets how many segments begin at a point, less those that end there, or how many do either. Of
+// points with the same coordinates, their representative has them all.
+kernel void count_ends(int n, int rule, global const int* restrict segments, global const int* restrict representatives,
+                       global volatile uint* restrict balances) {
+  const int s = get_global_id(0);
+  if (s < n) {
+    atomic_add(&balances[representatives[segments[2 * s]]], 1u);
+    atomic_add(&balances[representatives[segments[2 * s + 1]]], rule == FILL_WINDING ? (uint)-1 : 1u);
   }
 }
 

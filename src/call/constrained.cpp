@@ -49,20 +49,20 @@ Ids segments_of_edges(std::size_t edges, const Ids& piece_offsets, const Ids& pi
   return owner;
 }
 
-// The coordinates of all points, those that splitting added too. Empty if there are none of these.
-std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added) {
+ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
+                                         const std::vector<std::size_t>& offsets,
+                                         const Constraints& constraints, const ConstrainedOptions& options);
+
+}  // namespace
+
+std::vector<double> call::with_added(const double* coordinates, std::size_t n,
+                                     const std::vector<double>& added) {
   std::vector<double> all;
   if (added.empty()) return all;
   all.assign(coordinates, coordinates + 2 * n);
   all.insert(all.end(), added.begin(), added.end());
   return all;
 }
-
-ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
-                                         const std::vector<std::size_t>& offsets,
-                                         const Constraints& constraints, const ConstrainedOptions& options);
-
-}  // namespace
 
 ConstrainedTriangulation call::constrain(Implementation& self, const double* coordinates,
                                          const std::vector<std::size_t>& offsets,
