@@ -397,6 +397,54 @@ TEST_F(CommandVerifyTest, Neighbors) {
   EXPECT_EQ(run({"verify", points, triangles, "--neighbors", few}, kNoPlatform).exit_code, kFailure);
 }
 
+TEST_F(CommandVerifyTest, Constraints) {
+  // Both diagonals of the square are Delaunay. Without segments that from the smallest point is canonical.
+  const std::string points = write("points.xy", "0 0\n4 0\n4 4\n0 4\n");
+  const auto mesh = [this](const std::string& name, const std::vector<std::int32_t>& corners) {
+    return write(name,
+                 npy("<i4", "False", "(" + std::to_string(corners.size() / 3) + ", 3)", bytes_of(corners)));
+  };
+  const std::string from_first = mesh("first.npy", {0, 1, 2, 0, 2, 3}),
+                    other = mesh("other.npy", {0, 1, 3, 1, 2, 3});
+  const std::string segments = write("s.npy", npy("<i8", "False", "(1, 2)", bytes_of<std::int64_t>({3, 1})));
+  const std::string text = write("s.txt", "3 1\n");
+  for (const std::string& file : {segments, text}) {
+    const Outcome good = run_well({"verify", points, other, "--constraints", file}, kNoPlatform);
+    EXPECT_NE(good.out.find("; 1 constraint edges"), std::string::npos) << good.out;
+    const Outcome bad = run({"verify", points, from_first, "--constraints", file}, kNoPlatform);
+    EXPECT_EQ(bad.exit_code, kFailure);
+    EXPECT_NE(bad.err.find("segment 0 from point 3 at (0, 4) to point 1 at (4, 0) is no chain of edges"),
+              std::string::npos)
+        << bad.err;
+  }
+  const std::string edges = write("e.npy", npy("<i4", "False", "(1, 2)", bytes_of<std::int32_t>({3, 1})));
+  const std::string turned =
+      write("turned.npy", npy("<i4", "False", "(1, 2)", bytes_of<std::int32_t>({1, 3})));
+  run_well({"verify", points, other, "--constraints", segments, "--constraint-edges", edges}, kNoPlatform);
+  EXPECT_EQ(
+      run({"verify", points, other, "--constraints", segments, "--constraint-edges", turned}, kNoPlatform)
+          .exit_code,
+      kFailure);
+
+  // What is left of it: a triangle, by its border, by a hole, and by a file of its own.
+  const std::string half = mesh("half.npy", {0, 1, 3}), border = write("border.txt", "0 1\n1 3\n3 0\n");
+  run_well({"verify", points, half, "--constraints", border, "--outside", "hull", "--fill", "even-odd"},
+           kNoPlatform);
+  run_well({"verify", points, half, "--constraints", text, "--hole", "3,3"}, kNoPlatform);
+  const std::string poly =
+      write("border.poly", "4 2 0 0\n0 0 0\n1 4 0\n2 4 4\n3 0 4\n3 0\n0 0 1\n1 1 3\n2 3 0\n0\n");
+  run_well({"verify", poly, half}, kNoPlatform);
+  EXPECT_EQ(run({"verify", poly, half, "--outside", "keep"}, kNoPlatform).exit_code, kFailure);
+
+  expect_error(kUsage, {"--outside", "needs segments"}, {"verify", points, half, "--outside", "hull"});
+  expect_error(kUsage, {"--memory"}, {"verify", points, other, "--constraints", text, "--memory", "64M"});
+  expect_error(kUsage, {"border.poly", "segments of its own"}, {"verify", poly, half, "--constraints", text});
+  expect_error(kUsage, {"edges.txt", ".npy"},
+               {"verify", points, other, "--constraints", text, "--constraint-edges", path("edges.txt")});
+  expect_error(kBadInput, {"beyond.txt: line 1", "index 7"},
+               {"verify", points, other, "--constraints", write("beyond.txt", "0 7\n")});
+}
+
 TEST_F(CommandVerifyTest, BadFiles) {
   const std::string points = write("points.xy", "0 0\n4 0\n0 4\n");
   expect_error(kBadInput, {"missing.npy"}, {"verify", points, path("missing.npy")});

@@ -57,10 +57,10 @@ std::vector<double> holes_of(const ConstraintRequest& request) {
   return holes;
 }
 
-io::Map read_input(const ConstrainedWork& work, const ConstraintRequest& request) {
-  if (io::is_map(work.input)) return io::read_map(work.input);
+io::Map read_input(const std::string& input, const ConstraintRequest& request) {
+  if (io::is_map(input)) return io::read_map(input);
   io::Map map;
-  map.points = io::read_points(work.input);
+  map.points = io::read_points(input);
   map.has_others = true;
   map.segments = io::read_segments(request.segments, map.points.size());
   return map;
@@ -91,14 +91,6 @@ bool are_polygons(const io::Map& map, const ConstrainedWork& work, const Constra
                     io::printable(work.input)));
   }
   return possible;
-}
-
-/// The map's segments with its lines. A line in both directions bounds nothing by rules that count crossings.
-std::vector<std::int32_t> all_segments(const io::Map& map, FillRule fill) {
-  std::vector<std::int32_t> segments = map.segments;
-  segments.insert(segments.end(), map.lines.begin(), map.lines.end());
-  if (fill != FillRule::nesting) segments.insert(segments.end(), map.lines.rbegin(), map.lines.rend());
-  return segments;
 }
 
 bool wants_labels(const ConstrainedWork& work, const ConstraintRequest& request) {
@@ -225,14 +217,11 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
 
 }  // namespace
 
-void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
+void add_domain_options(CLI::App* command, ConstraintRequest& request) {
   add_path(
       command, "--constraints", request.segments,
       "Segments that become edges: .npy, .txt or .csv, 2 point indices per row; .poly and .geojson files "
       "have their own");
-  add_named_choice(command, "--crossings", request.crossings,
-                   "Segments that cross: an error, or split where they do, which adds points", kCrossings)
-      ->default_str("error");
   add_named_choice(command, "--outside", request.outside,
                    "Triangles: keep all, up to the hull; hull: without those outside; holes: nor those in "
                    "holes. Default: keep, for .poly hull, for polygons in GeoJSON holes",
@@ -246,6 +235,13 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                    "A place in a hole, which is left out up to the constraints around it; can be repeated")
       ->allow_extra_args(false)
       ->type_name("X,Y");
+}
+
+void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
+  add_domain_options(command, request);
+  add_named_choice(command, "--crossings", request.crossings,
+                   "Segments that cross: an error, or split where they do, which adds points", kCrossings)
+      ->default_str("error");
   command->add_flag("--separate", request.separate, "GeoJSON: triangulate each polygon on its own");
   add_named_choice(command, "--overlaps", request.overlaps,
                    "GeoJSON: what is in several polygons belongs to the first one, or is an error", kOverlaps)
@@ -261,6 +257,32 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
            "GeoJSON: for each triangle the number of its polygon, -1 for none: .npy");
 }
 
+void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
+  if (io::is_map(input)) {
+    refuse(command, "--constraints", fmt::format("{} has segments of its own", input));
+  } else {
+    io::check_segments_ending(request.segments);
+  }
+  holes_of(request);
+  request.chose_outside = command.count("--outside") > 0;
+  request.chose_fill = command.count("--fill") > 0;
+}
+
+io::Map read_domain(const std::string& input, ConstraintRequest& request) {
+  io::Map map = read_input(input, request);
+  choose_for(map, input, request);
+  const std::vector<double> further_holes = holes_of(request);
+  map.holes.insert(map.holes.end(), further_holes.begin(), further_holes.end());
+  return map;
+}
+
+std::vector<std::int32_t> all_segments(const io::Map& map, FillRule fill) {
+  std::vector<std::int32_t> segments = map.segments;
+  segments.insert(segments.end(), map.lines.begin(), map.lines.end());
+  if (fill != FillRule::nesting) segments.insert(segments.end(), map.lines.rbegin(), map.lines.rend());
+  return segments;
+}
+
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
   const bool is_map = io::is_map(input);
   const bool has_any = is_map || !request.segments.empty();
@@ -272,11 +294,7 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
     }
     return false;
   }
-  if (is_map) {
-    refuse(command, "--constraints", fmt::format("{} has segments of its own", input));
-  } else {
-    io::check_segments_ending(request.segments);
-  }
+  check_domain_options(command, input, request);
   if (io::ending_of(input) == ".poly" || !is_map) {
     for (const char* option : {"--separate", "--overlaps", "--polygons"}) {
       refuse(command, option, "needs polygons, from a .geojson file");
@@ -292,9 +310,6 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   if (command.count("--mode") > 0 && command.get_option("--mode")->as<std::string>() != "blocks") {
     refuse(command, "--mode", "constraints need --mode blocks, the default");
   }
-  holes_of(request);
-  request.chose_outside = command.count("--outside") > 0;
-  request.chose_fill = command.count("--fill") > 0;
   request.chose_overlaps = command.count("--overlaps") > 0;
   return true;
 }
@@ -312,10 +327,7 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   Progress progress(!work.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Map map = read_input(work, request);
-  choose_for(map, work.input, request);
-  const std::vector<double> further_holes = holes_of(request);
-  map.holes.insert(map.holes.end(), further_holes.begin(), further_holes.end());
+  io::Map map = read_domain(work.input, request);
   const auto triangulate = are_polygons(map, work, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
 

@@ -7,6 +7,7 @@
 
 #include "cli/results.hpp"
 #include "flaunay/constrained.hpp"
+#include "io/map.hpp"
 
 namespace flaunay::cli {
 
@@ -54,6 +55,16 @@ struct ConstrainedWork {
 };
 
 void add_constraint_options(CLI::App* command, ConstraintRequest& request);
+/// Those of them that say what the segments are and what they bound: --constraints, --outside, --fill,
+/// --hole.
+void add_domain_options(CLI::App* command, ConstraintRequest& request);
+/// Checks the options of add_domain_options for an input with segments. Throws Error(usage).
+void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request);
+
+/// Reads points, segments and holes, and decides what is outside unless the user has.
+io::Map read_domain(const std::string& input, ConstraintRequest& request);
+/// The map's segments with its lines. A line in both directions bounds nothing by rules that count crossings.
+std::vector<std::int32_t> all_segments(const io::Map& map, FillRule fill);
 
 /// Whether the triangulation has constraints. Throws Error(usage) for options that do not go together.
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request);

@@ -28,11 +28,13 @@ namespace {
 using Ids = std::vector<std::int32_t>;
 
 // So few pieces are all held against each other.
-constexpr std::size_t kFew = 16;
+constexpr std::size_t kFew = 32;
 // A line separates pieces if it crosses at most one in so many.
 constexpr std::size_t kSeparated = 16;
+// If it crosses at most one in so many, no better one is looked for.
+constexpr std::size_t kWellSeparated = 64;
 // The middle of pieces is looked for among so many of them.
-constexpr std::size_t kSamples = 15;
+constexpr std::size_t kSamples = 7;
 
 // Where a piece is at some x: between two numbers; exactly there if they are equal.
 struct Height {
@@ -256,6 +258,7 @@ class Search {
       axis = candidate;
       middle = cut;
       found = true;
+      if (low + high <= count + count / kWellSeparated) break;
     }
     return found;
   }
