@@ -9,16 +9,13 @@ namespace {
 // What kernels/shared/chains.h needs for the chains' vertices.
 struct Scratch {
   Buffer<cl_double2> places;
-  Buffer<cl_int> next, before, inside, order, corners, twins;
+  Buffer<kernel::chain_vertex> vertices;
+  Buffer<kernel::chain_edge> edges;
 
-  Scratch(host::Arena& arena, std::size_t vertices)
-      : places(arena.allocate<cl_double2>(vertices)),
-        next(arena.allocate<cl_int>(vertices)),
-        before(arena.allocate<cl_int>(vertices)),
-        inside(arena.allocate<cl_int>(vertices)),
-        order(arena.allocate<cl_int>(vertices)),
-        corners(arena.allocate<cl_int>(3 * vertices)),
-        twins(arena.allocate<cl_int>(3 * vertices)) {}
+  Scratch(host::Arena& arena, std::size_t count)
+      : places(arena.allocate<cl_double2>(count)),
+        vertices(arena.allocate<kernel::chain_vertex>(count)),
+        edges(arena.allocate<kernel::chain_edge>(3 * count)) {}
 };
 
 }  // namespace
@@ -35,16 +32,12 @@ void triangulate_chains(host::Runtime& runtime, const DeviceChains& chains, cons
                                                         .places = scratch.places});
   runtime.launch(chains.count, tuning.block_group, chains.count,
                  kernels::triangulate_chains{.wrapped_most = tuning.chain_wrapped_most,
-                                             .inserted_most = tuning.chain_alone_most,
+                                             .alone_most = tuning.chain_alone_most,
                                              .bound = chains.circle_bound,
                                              .offsets = chains.offsets,
                                              .places = scratch.places,
-                                             .next = scratch.next,
-                                             .before = scratch.before,
-                                             .inside = scratch.inside,
-                                             .order = scratch.order,
-                                             .corners = scratch.corners,
-                                             .twins = scratch.twins,
+                                             .vertices = scratch.vertices,
+                                             .edges = scratch.edges,
                                              .triangles = triangles});
 }
 

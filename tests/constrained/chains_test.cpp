@@ -195,18 +195,19 @@ Coordinates fan(std::size_t vertices, bool at_end, std::uint64_t seed) {
   return points;
 }
 
-/// The upper half of the points of a circle, in the opposite order of x.
+/// Integers exactly on the upper half of a circle, or on several, by x.
 Coordinates cocircular(std::size_t vertices, std::uint64_t seed) {
-  Coordinates all = io::generate("integer-circle", 2 * vertices, seed).coordinates;
+  const Coordinates all = io::generate("integer-circle", 2 * vertices, seed).coordinates;
   std::vector<std::pair<double, double>> upper;
+  const double width = *std::max_element(all.begin(), all.end());
   for (std::size_t i = 0; i < all.size(); i += 2) {
-    if (all[i + 1] >= 0) upper.emplace_back(all[i], all[i + 1]);
+    if (all[i + 1] > 0 && std::fabs(all[i]) < width) upper.emplace_back(all[i], all[i + 1]);
   }
   std::sort(upper.begin(), upper.end());
   upper.erase(std::unique(upper.begin(), upper.end()), upper.end());
-  // On the circle alone, if there are several.
-  Coordinates points;
+  Coordinates points{-width, 0};
   for (const auto& [x, y] : upper) points.insert(points.end(), {x, y});
+  points.insert(points.end(), {width, 0});
   return points;
 }
 
