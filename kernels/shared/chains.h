@@ -201,6 +201,31 @@ static inline int is_right(const polygon* g, int triangle) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
+// A walk around the triangles that a vertex takes away, which changes nothing
+
+// The half-edge of a triangle that separates it from the side between a position and the next one.
+static inline int entry_of(const polygon* g, int triangle, int before) {
+  const int h = 3 * triangle;
+  const int a = g->edges[h].origin, b = g->edges[h + 1].origin, c = g->edges[h + 2].origin;
+  // Half-edges lead to smaller positions, but for the one that has the base on its side.
+  if (b <= before && before < a) return h;
+  if (c <= before && before < b) return h + 1;
+  if (a <= before && before < c) return h + 2;
+  return a < b ? h : b < c ? h + 1 : h + 2;
+}
+
+// After the twin behind which all is known: the half-edge to be crossed next, or the side if all is known.
+static inline int edge_after(const polygon* g, int twin, int before) {
+  int h = *link_of(g, twin);
+  while (h >= 0) {
+    const int entry = entry_of(g, h / 3, before);
+    if (h == next_halfedge(entry)) return previous_halfedge(entry);
+    h = g->edges[entry].twin;
+  }
+  return h;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
 // Random insertion by one work-item
 
 // As of a linear congruential generator (Knuth), whose low bits are bad.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include "host/runtime.hpp"
 
@@ -13,7 +14,9 @@ using host::Buffer;
 /// vertices [offsets[c], offsets[c + 1]) of `chain`, at least two.
 struct DeviceChains {
   std::size_t count = 0;
-  std::size_t vertices = 0;     ///< offsets[count]
+  std::size_t vertices = 0;  ///< offsets[count]
+  /// No chain has more vertices. A small number spares work.
+  std::size_t longest = std::numeric_limits<std::size_t>::max();
   double circle_bound = 0;      ///< of in-circle tests, see shared/bounds.h
   Buffer<cl_double2> points{};  ///< scaled
   Buffer<cl_int> offsets{};     ///< count + 1
