@@ -23,17 +23,28 @@
 
 // Of the vertices in a list: before and after it. A vertex that is removed has NOT_LISTED.
 #define NOT_LISTED VECTOR(int2, -2, -2)
-#define NO_OWNER 0x7fffffffu
+#define NO_OWNER 0xffffffffu
 
-// A random number for each vertex, different for each: below NO_OWNER + 1, which none is given.
-static inline uint random_key(int vertex, int round) {
+// A random number of so many bits for each vertex, different for each; they must suffice for all.
+static inline uint random_key(int vertex, int bits, int round) {
+  const uint most = (1u << bits) - 1u;
+  const int half_bits = (bits + 1) / 2;
   uint x = (uint)vertex;
-  for (int k = 0; k < 2; ++k) {
-    x = (x * 0x2c1b3c6du + (uint)round * 0x297a2d39u) & NO_OWNER;
-    x ^= x >> 15;
+  for (int k = 0; k < 3; ++k) {
+    x = (x * 0x2c1b3c6du + (uint)round * 0x297a2d39u) & most;
+    x ^= x >> half_bits;
   }
-  x = (x * 0x5bd1e995u) & NO_OWNER;
   return x;
+}
+
+// The bits of the largest position.
+static inline int bits_of(const polygon* g) { return 32 - clz(g->last); }
+
+// Keys by which vertices claim triangles, below NO_OWNER: the smaller one wins. Vertices that were removed later go
+// first: if many others went before one of them, it would take very many triangles away, and hardly ever win.
+static inline uint claim_key(const polygon* g, int vertex, int stage, int round) {
+  const int bits = bits_of(g);
+  return (uint)min((ulong)stage, (1ul << (32 - bits)) - 2ul) << bits | random_key(vertex, bits, round);
 }
 
 // sizes: per chain, whether it is long, and its vertices if so.
@@ -95,7 +106,8 @@ static inline int can_go(const thinning* of, int v) {
 }
 
 static inline int goes_before(const thinning* of, int v, int other) {
-  return !can_go(of, other) || random_key(v, of->round) < random_key(other, of->round);
+  return !can_go(of, other) ||
+         random_key(v, bits_of(&of->g), of->round) < random_key(other, bits_of(&of->g), of->round);
 }
 
 static inline int goes(const thinning* of, int v) {
@@ -104,10 +116,12 @@ static inline int goes(const thinning* of, int v) {
   return goes_before(of, v, at.x) && goes_before(of, v, at.y);
 }
 
-kernel void thin_chains(int n, int round, int with_hubs, global const int* restrict offsets,
+// stage: of the vertices that go.
+kernel void thin_chains(int n, int round, int stage, int with_hubs, global const int* restrict offsets,
                         global const int* restrict of, global const double2* restrict places,
                         global const uchar* restrict hubs, global const int2* restrict list,
-                        global int2* restrict thinned, global chain_vertex* restrict vertices) {
+                        global int2* restrict thinned, global chain_vertex* restrict vertices,
+                        global uchar* restrict stages) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
@@ -122,6 +136,7 @@ kernel void thin_chains(int n, int round, int with_hubs, global const int* restr
     if (goes(&t, v)) {
       vertices[i].before = at.x;
       vertices[i].after = at.y;
+      stages[i] = stage;
       at = NOT_LISTED;
     } else {
       if (v > 0 && goes(&t, at.x)) at.x = list[first + at.x].x;
@@ -131,10 +146,10 @@ kernel void thin_chains(int n, int round, int with_hubs, global const int* restr
   thinned[i] = at;
 }
 
-// Removes all but one, for each long chain, and puts the first triangle.
+// Removes all but one, for each long chain, and puts the first triangle. Their stage is 0.
 kernel void finish_thinning(int n, global const int* restrict offsets, global const double2* restrict places,
                             global int2* restrict lists, global chain_vertex* restrict vertices,
-                            global chain_edge* restrict edges COUNTERS) {
+                            global chain_edge* restrict edges, global uchar* restrict stages COUNTERS) {
   const int c = get_global_id(0);
   if (c >= n) return;
   const int first = offsets[c];
@@ -146,6 +161,7 @@ kernel void finish_thinning(int n, global const int* restrict offsets, global co
     if (may_be_removed(&g, at.x, v, at.y)) {
       g.vertices[v].before = at.x;
       g.vertices[v].after = at.y;
+      stages[first + v] = 0;
       list[at.x].y = at.y;
       list[at.y].x = at.x;
       v = at.y < g.last ? list[at.y].y : g.last;
@@ -174,9 +190,9 @@ static inline int is_missing(const polygon* g, int v) { return v > 0 && v < g->l
 kernel void claim_triangles(int n, int round, int pass, int longest_walk, double bound,
                             global const int* restrict offsets, global const int* restrict of,
                             global const double2* restrict places, global chain_vertex* restrict vertices,
-                            global chain_edge* restrict edges, global uchar* restrict hubs,
-                            global volatile uint* restrict owners, global uchar* restrict roles,
-                            global volatile uint* restrict state COUNTERS) {
+                            global chain_edge* restrict edges, global const uchar* restrict stages,
+                            global uchar* restrict hubs, global volatile uint* restrict owners,
+                            global uchar* restrict roles, global volatile uint* restrict state COUNTERS) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
@@ -184,7 +200,7 @@ kernel void claim_triangles(int n, int round, int pass, int longest_walk, double
   int role = WAITS;
   if (is_missing(&g, v) && hubs[i] != pass + 1 && g.vertices[g.vertices[v].before].next == g.vertices[v].after) {
     const int before = g.vertices[v].before;
-    const uint key = random_key(v, round);
+    const uint key = claim_key(&g, v, stages[i], round);
     int h = g.vertices[before].inside, steps = 0;
     role = takes_away(&g, h, v) ? TAKES : TAKES_NONE;
     atomic_min(&owners[first + h / 3], key);
@@ -229,14 +245,15 @@ static inline int has_all(const polygon* g, int v, uint key, global const uint* 
 kernel void choose_vertices(int n, int round, int counts, global const int* restrict offsets,
                             global const int* restrict of, global const double2* restrict places,
                             global chain_vertex* restrict vertices, global chain_edge* restrict edges,
-                            global const uint* restrict owners, global uint* restrict next_owners,
-                            global uchar* restrict roles, global volatile uint* restrict state) {
+                            global const uchar* restrict stages, global const uint* restrict owners,
+                            global uint* restrict next_owners, global uchar* restrict roles,
+                            global volatile uint* restrict state) {
   const int i = get_global_id(0);
   if (i >= n) return;
   next_owners[i] = NO_OWNER;
   const int first = offsets[of[i]], v = i - first;
   const polygon g = polygon_at(0.0, first, offsets[of[i] + 1] - first, places, vertices, edges);
-  const uint key = random_key(v, round);
+  const uint key = claim_key(&g, v, stages[i], round);
   int role = roles[i];
   if (role == TAKES && !has_all(&g, v, key, owners + first)) role = WAITS;
   if (role == TAKES_NONE && owners[first + g.vertices[g.vertices[v].before].inside / 3] != key) role = WAITS;
@@ -246,14 +263,16 @@ kernel void choose_vertices(int n, int round, int counts, global const int* rest
 
 kernel void insert_vertices(int n, int round, global const int* restrict offsets, global const int* restrict of,
                             global const double2* restrict places, global chain_vertex* restrict vertices,
-                            global chain_edge* restrict edges, global const uint* restrict owners,
-                            global const uchar* restrict roles) {
+                            global chain_edge* restrict edges, global const uchar* restrict stages,
+                            global const uint* restrict owners, global const uchar* restrict roles) {
   const int i = get_global_id(0);
   if (i >= n || roles[i] == WAITS) return;
   const int first = offsets[of[i]], v = i - first;
   const polygon g = polygon_at(0.0, first, offsets[of[i] + 1] - first, places, vertices, edges);
   const chain_vertex at = g.vertices[v];
-  insert_vertex(&g, at.before, v, at.after, owners + first, roles[i] == TAKES ? random_key(v, round) : NO_OWNER + 1u);
+  // The only triangle that it looks at otherwise is its own, which it leaves.
+  const uint key = roles[i] == TAKES ? claim_key(&g, v, stages[i], round) : NO_OWNER;
+  insert_vertex(&g, at.before, v, at.after, owners + first, key);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

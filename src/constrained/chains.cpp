@@ -41,14 +41,14 @@ class LongChains {
         all_(all),
         count_(count),
         vertices_(vertices),
-        // A round removes a third of the vertices, and an insertion takes two or three.
+        // A round removes about a third of the vertices.
         thinning_rounds_(2 * bits_of(vertices)),
-        batch_(2 * thinning_rounds_),
         chains_(runtime.arena().allocate<cl_int>(count)),
         offsets_(runtime.arena().allocate<cl_int>(count + 1)),
         of_(runtime.arena().allocate<cl_int>(vertices)),
         scratch_(runtime.arena(), vertices),
         hubs_(runtime.arena().allocate<cl_uchar>(vertices)),
+        stages_(runtime.arena().allocate<cl_uchar>(vertices)),
         roles_(runtime.arena().allocate<cl_uchar>(vertices)),
         lists_{runtime.arena().allocate<cl_int2>(vertices), runtime.arena().allocate<cl_int2>(vertices)},
         owners_{runtime.arena().allocate<cl_uint>(vertices), runtime.arena().allocate<cl_uint>(vertices)},
@@ -121,6 +121,7 @@ class LongChains {
     const int without_hubs = thinning_rounds_, all = has_hubs ? 2 * without_hubs : without_hubs;
     for (int k = 0; k < all; ++k) {
       runtime_.map(vertices_, kernels::thin_chains{.round = k,
+                                                   .stage = all - k,
                                                    .with_hubs = k >= without_hubs,
                                                    .offsets = offsets_,
                                                    .of = of_,
@@ -128,7 +129,8 @@ class LongChains {
                                                    .hubs = hubs_,
                                                    .list = lists_[0],
                                                    .thinned = lists_[1],
-                                                   .vertices = scratch_.vertices});
+                                                   .vertices = scratch_.vertices,
+                                                   .stages = stages_});
       std::swap(lists_[0], lists_[1]);
     }
     runtime_.launch(count_, tuning_of(runtime_).block_group, count_,
@@ -136,14 +138,17 @@ class LongChains {
                                              .places = scratch_.places,
                                              .lists = lists_[0],
                                              .vertices = scratch_.vertices,
-                                             .edges = scratch_.edges});
+                                             .edges = scratch_.edges,
+                                             .stages = stages_});
   }
 
-  // Returns false if there are hubs. Waits for each batch of rounds.
+  // Returns false if there are hubs. It takes a few rounds more than thinning, on hard chains twice as many;
+  // waits to know whether these suffice.
   bool insert(int pass, std::size_t longest_walk) {
     runtime_.fill(state_, 2, cl_uint{0});
-    for (int round = 0;; ++round) {
-      const bool counts = round + 1 >= batch_ && (round + 1) % (batch_ / 4) == 0;
+    const int between = std::max(1, thinning_rounds_ / 4);
+    for (int round = 1;; ++round) {
+      const bool counts = round > thinning_rounds_ && round % between == 0;
       insert_round(round, pass, longest_walk, counts);
       if (!counts) continue;
       cl_uint state[2];
@@ -164,6 +169,7 @@ class LongChains {
                                                                      .places = scratch_.places,
                                                                      .vertices = scratch_.vertices,
                                                                      .edges = scratch_.edges,
+                                                                     .stages = stages_,
                                                                      .hubs = hubs_,
                                                                      .owners = owners_[0],
                                                                      .roles = roles_,
@@ -175,6 +181,7 @@ class LongChains {
                                                      .places = scratch_.places,
                                                      .vertices = scratch_.vertices,
                                                      .edges = scratch_.edges,
+                                                     .stages = stages_,
                                                      .owners = owners_[0],
                                                      .next_owners = owners_[1],
                                                      .roles = roles_,
@@ -185,6 +192,7 @@ class LongChains {
                                                      .places = scratch_.places,
                                                      .vertices = scratch_.vertices,
                                                      .edges = scratch_.edges,
+                                                     .stages = stages_,
                                                      .owners = owners_[0],
                                                      .roles = roles_});
     std::swap(owners_[0], owners_[1]);
@@ -193,10 +201,10 @@ class LongChains {
   Runtime& runtime_;
   const DeviceChains& all_;
   std::size_t count_, vertices_;
-  int thinning_rounds_, batch_;
+  int thinning_rounds_;
   Buffer<cl_int> chains_, offsets_, of_;
   Scratch scratch_;
-  Buffer<cl_uchar> hubs_, roles_;
+  Buffer<cl_uchar> hubs_, stages_, roles_;
   Buffer<cl_int2> lists_[2];
   Buffer<cl_uint> owners_[2];
   Buffer<cl_uint> state_, wrong_;
@@ -226,7 +234,8 @@ void triangulate_chains(Runtime& runtime, const DeviceChains& chains, const Buff
   const Tuning& tuning = tuning_of(runtime);
   // Kernels that run natively are made for cores.
   const bool is_alone =
-      runtime.is_native() || chains.longest <= std::max(tuning.chain_wrapped_most, tuning.chain_alone_most);
+      runtime.is_native() || std::min(chains.longest, chains.vertices) <=
+                                 std::max(tuning.chain_wrapped_most, tuning.chain_alone_most);
   const std::size_t alone_most =
       runtime.is_native() ? std::max(chains.vertices, tuning.chain_alone_most) : tuning.chain_alone_most;
   Arena::Scope scope(runtime.arena());
