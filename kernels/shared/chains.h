@@ -86,18 +86,22 @@ static inline void wrap(const polygon* g, GLOBAL int* rows) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Insertion of a vertex beyond a side
 
-// How near a vertex is to the base.
-static inline double base_distance(const polygon* g, int v) {
-  const double2 origin = g->places[0];
-  const double2 along = g->places[g->last] - origin, from = g->places[v] - origin;
-  return fabs(along.x * from.y - along.y * from.x);
+// Whether a vertex is nearer to the base than another one.
+static inline int is_nearer(const polygon* g, int v, int other) {
+  const double2 a = g->places[0], b = g->places[g->last], p = g->places[v], q = g->places[other];
+  const double2 along = b - a, from = p - q;
+  const double left = along.x * from.y, right = along.y * from.x;
+  // With the bound of orient_filtered, which has the same terms.
+  const int sign = filtered_sign(left - right, ORIENT_BOUND * (fabs(left) + fabs(right)), ORIENT_BOUND);
+  return (sign != UNDECIDED ? sign
+                            : cross_by_expansions(two_sum(b.x, -a.x), two_sum(b.y, -a.y), two_sum(p.x, -q.x),
+                                                  two_sum(p.y, -q.y))) < 0;
 }
 
 // A vertex that is nearer to the base than its neighbours must not be removed before one of them: otherwise polygons
 // could turn inside out.
 static inline int may_be_removed(const polygon* g, int before, int v, int after) {
-  const double distance = base_distance(g, v);
-  return distance >= base_distance(g, before) || distance >= base_distance(g, after);
+  return !is_nearer(g, v, before) || !is_nearer(g, v, after);
 }
 
 // The ends of the edge before a twin, as a new vertex on the other side sees it counter-clockwise.
