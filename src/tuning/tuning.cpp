@@ -242,13 +242,16 @@ constexpr Row kTable[] = {
      {24},
      {128},
      {5},
-     "From here on insertion is faster. On a GPU gift-wrapping's loads do not wait for each other."},
+     "With more, insertion takes less time than gift-wrapping. A GPU's rounds take hundreds of launches, as "
+     "long as a "
+     "thousand in-circle tests after each other."},
     {"chain_alone_most",
      &Tuning::chain_alone_most,
      {kLargestValue},
      {128},
      {9},
-     "A core does alone what takes many work-items of a GPU rounds."},
+     "A core does alone what takes many work-items of a GPU rounds; one of its work-items would take "
+     "seconds."},
     {"chain_walk_most",
      &Tuning::chain_walk_most,
      {1024},
