@@ -48,7 +48,7 @@ static inline uint claim_key(const polygon* g, int vertex, int stage, int round)
 }
 
 // sizes: per chain, whether it is long, and its vertices if so.
-kernel void measure_chains(int n, int least, global const int* restrict offsets, global uint2* restrict sizes) {
+kernel void measure_long_chains(int n, int least, global const int* restrict offsets, global uint2* restrict sizes) {
   const int c = get_global_id(0);
   if (c >= n) return;
   const int size = offsets[c + 1] - offsets[c];
@@ -56,8 +56,8 @@ kernel void measure_chains(int n, int least, global const int* restrict offsets,
 }
 
 // places: the scanned sizes. Lists the long chains, and where their vertices begin.
-kernel void list_chains(int n, global const uint2* restrict places, global int* restrict chains,
-                        global int* restrict offsets) {
+kernel void list_long_chains(int n, global const uint2* restrict places, global int* restrict chains,
+                             global int* restrict offsets) {
   const int c = get_global_id(0);
   if (c > n) return;
   if (c == n || places[c].x != places[c + 1].x) {

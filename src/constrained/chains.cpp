@@ -58,7 +58,7 @@ class LongChains {
   // places: of the vertices of all chains; numbers: the scanned numbers of long chains and of their vertices.
   void start(const Buffer<cl_double2>& places, const Buffer<cl_uint2>& numbers) {
     runtime_.launch(all_.count + 1, runtime_.sizes().map_group, all_.count,
-                    kernels::list_chains{.places = numbers, .chains = chains_, .offsets = offsets_});
+                    kernels::list_long_chains{.places = numbers, .chains = chains_, .offsets = offsets_});
     runtime_.map(vertices_, kernels::start_vertices{.count = count_,
                                                     .chains = chains_,
                                                     .offsets = offsets_,
@@ -217,7 +217,7 @@ void triangulate_long(Runtime& runtime, const DeviceChains& chains, const Buffer
   const std::size_t least = std::max(tuning.chain_wrapped_most, tuning.chain_alone_most) + 1;
   const auto numbers = runtime.arena().allocate<cl_uint2>(chains.count + 1);
   runtime.map(chains.count,
-              kernels::measure_chains{.least = least, .offsets = chains.offsets, .sizes = numbers});
+              kernels::measure_long_chains{.least = least, .offsets = chains.offsets, .sizes = numbers});
   host::exclusive_scan(runtime, numbers, chains.count, numbers);
   const cl_uint2 total = runtime.read_one(numbers, chains.count);
   if (total.s[0] == 0) return;
