@@ -88,14 +88,7 @@ static inline void wrap(const polygon* g, GLOBAL int* rows) {
 
 // Whether a vertex is nearer to the base than another one.
 static inline int is_nearer(const polygon* g, int v, int other) {
-  const double2 a = g->places[0], b = g->places[g->last], p = g->places[v], q = g->places[other];
-  const double2 along = b - a, from = p - q;
-  const double left = along.x * from.y, right = along.y * from.x;
-  // With the bound of orient_filtered, which has the same terms.
-  const int sign = filtered_sign(left - right, ORIENT_BOUND * (fabs(left) + fabs(right)), ORIENT_BOUND);
-  return (sign != UNDECIDED ? sign
-                            : cross_by_expansions(two_sum(b.x, -a.x), two_sum(b.y, -a.y), two_sum(p.x, -q.x),
-                                                  two_sum(p.y, -q.y))) < 0;
+  return cross_sign(g->places[0], g->places[g->last], g->places[other], g->places[v]) < 0;
 }
 
 // A vertex that is nearer to the base than its neighbours must not be removed before one of them: otherwise polygons
