@@ -1340,6 +1340,51 @@ static void test_clipped_voronoi_on_device(void) {
   clReleaseMemObject(small);
 }
 
+// A square whose diagonal is the constraint.
+static void test_constrained_on_device(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const int32_t diagonal[] = {3, 1};
+  const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  cl_mem segments = make_buffer(context, sizeof diagonal, diagonal);
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  flaunay_device_constraints* edges = NULL;
+  REQUIRE(flaunay_device_constraints_create(&edges) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_constraints_edge_count(edges) == 0);
+  const flaunay_enqueue plain = {.queue = queue};
+  REQUIRE(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges) ==
+          FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_triangle_count(mesh) == 2);
+  REQUIRE(flaunay_device_constraints_edge_count(edges) == 1);
+  int32_t ends[2] = {0, 0}, range[2] = {9, 9};
+  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_EDGES), sizeof ends, ends);
+  CHECK((ends[0] == 1 && ends[1] == 3) || (ends[0] == 3 && ends[1] == 1));
+  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_PIECE_EDGES), sizeof range, range);
+  CHECK(range[0] == 0 && range[1] == 1);
+  unsigned char constrained[6] = {0};
+  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_CONSTRAINED), sizeof constrained,
+              constrained);
+  int sum = 0;
+  for (int k = 0; k < 6; ++k) sum += constrained[k];
+  CHECK(sum == 2);
+
+  cl_mem small = make_buffer(context, 1, NULL);
+  CHECK(flaunay_device_constraints_set_buffer(edges, FLAUNAY_CONSTRAINT_EDGES, small) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges),
+              usage, "constraint edges"));
+  CHECK(flaunay_device_constraints_set_buffer(edges, FLAUNAY_CONSTRAINT_EDGES, NULL) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_device_constraints_set_buffer(edges, 3, NULL), usage, "not one part"));
+  CHECK(fails(flaunay_triangulate_constrained_device(triangulator, &square, segments, 2, &plain, mesh, edges),
+              usage, "segments"));
+  CHECK(fails(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, NULL),
+              usage, "NULL"));
+  flaunay_device_constraints_destroy(edges);
+  flaunay_device_constraints_destroy(NULL);
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseMemObject(square.memory);
+  clReleaseMemObject(segments);
+  clReleaseMemObject(small);
+}
+
 static void test_relax(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4};
   double places[] = {1, 1, 1, 3, 9, 9}, expected[] = {2, 1, 2, 3, 9, 9};
@@ -1987,6 +2032,7 @@ static void test_all(void) {
   test_bad_polygons();
   test_clipped_voronoi();
   test_clipped_voronoi_on_device();
+  test_constrained_on_device();
   test_relax();
   test_locator();
   test_derived_on_device();

@@ -14,10 +14,28 @@ using namespace flaunay;
 
 using c::create;
 using c::elements;
+using c::guarded;
 using c::read;
 using c::required;
 
+struct flaunay_device_constraints {
+  DeviceConstraintEdges cpp;
+};
+
 namespace {
+
+template <typename Handle>
+auto& buffer_of(Handle& edges, unsigned part) {
+  switch (part) {
+    case FLAUNAY_CONSTRAINT_CONSTRAINED:
+      return edges.cpp.constrained;
+    case FLAUNAY_CONSTRAINT_PIECE_EDGES:
+      return edges.cpp.piece_edges;
+    case FLAUNAY_CONSTRAINT_EDGES:
+      return edges.cpp.constraint_edges;
+  }
+  throw Error(ErrorKind::usage, fmt::format("{} is not one part of constraint edges", part));
+}
 
 flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   flaunay_constrained_arrays view{};
@@ -168,4 +186,40 @@ const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result) 
 
 const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_constrained* result) {
   return read(result, [](const auto& handle) { return &handle.arrays; });
+}
+
+flaunay_status flaunay_device_constraints_create(flaunay_device_constraints** edges) {
+  return create(edges, [] { return std::make_unique<flaunay_device_constraints>(); });
+}
+
+void flaunay_device_constraints_destroy(flaunay_device_constraints* edges) { delete edges; }
+
+flaunay_status flaunay_device_constraints_set_buffer(flaunay_device_constraints* edges, unsigned part,
+                                                     cl_mem memory) {
+  return guarded([&] { buffer_of(required(edges, "the constraint edges"), part) = c::to_buffer(memory); });
+}
+
+cl_mem flaunay_device_constraints_buffer(const flaunay_device_constraints* edges, unsigned part) {
+  return read(edges, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
+}
+
+size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges) {
+  return read(edges, [](const auto& handle) { return handle.cpp.edge_count; });
+}
+
+flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
+                                                      const flaunay_device_points* points, cl_mem segments,
+                                                      size_t segment_count, const flaunay_enqueue* enqueue,
+                                                      flaunay_device_triangulation* mesh,
+                                                      flaunay_device_constraints* edges) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    flaunay_device_triangulation& handle = required(mesh, "the mesh");
+    DeviceConstraintEdges& result = required(edges, "the constraint edges").cpp;
+    // The view refers to statistics that the call replaces.
+    handle.statistics.clear();
+    cpp.constrained(c::to_points(points), {segments, segment_count}, handle.cpp, result, queued);
+    handle.statistics.show(handle.cpp.statistics);
+  });
 }

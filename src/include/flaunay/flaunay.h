@@ -173,6 +173,8 @@ typedef struct flaunay_triangulator flaunay_triangulator;
 typedef struct flaunay_triangulation flaunay_triangulation;
 /// The triangulations of one or more point sets with constraints, in host memory.
 typedef struct flaunay_constrained flaunay_constrained;
+/// Constraint edges in device memory.
+typedef struct flaunay_device_constraints flaunay_device_constraints;
 /// The triangulations of one or more point sets, in device memory.
 typedef struct flaunay_device_triangulation flaunay_device_triangulation;
 /// The dual of a triangulation, in host memory.
@@ -778,6 +780,36 @@ FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* tria
                                                       const flaunay_device_points* points, unsigned parts,
                                                       const flaunay_enqueue* enqueue,
                                                       flaunay_device_triangulation* result);
+
+/// The arrays of constraint edges in device memory, as bits, with their types and their sizes in bytes for n
+/// points, s segments and e constraint edges.
+typedef enum flaunay_constraint_part {
+  FLAUNAY_CONSTRAINT_CONSTRAINED = 1,  ///< uchar, 6 n
+  FLAUNAY_CONSTRAINT_PIECE_EDGES = 2,  ///< int32, 8 s
+  FLAUNAY_CONSTRAINT_EDGES = 4         ///< int32, 8 e
+} flaunay_constraint_part;
+
+/// Makes an empty result, like flaunay_device_triangulation_create.
+FLAUNAY_API flaunay_status flaunay_device_constraints_create(flaunay_device_constraints** edges);
+/// Releases its buffers; what is enqueued with them goes on.
+FLAUNAY_API void flaunay_device_constraints_destroy(flaunay_device_constraints* edges);
+/// Like flaunay_device_triangulation_set_buffer, for one part (one bit of flaunay_constraint_part).
+FLAUNAY_API flaunay_status flaunay_device_constraints_set_buffer(flaunay_device_constraints* edges,
+                                                                 unsigned part, cl_mem memory);
+/// Like flaunay_device_triangulation_buffer.
+FLAUNAY_API cl_mem flaunay_device_constraints_buffer(const flaunay_device_constraints* edges, unsigned part);
+/// e, the number of constraint edges, known when the call returns.
+FLAUNAY_API size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges);
+/// flaunay_triangulate_constrained for points and segments in device memory, into device memory. segments: 2
+/// int32 per segment. FLAUNAY_ERROR_INPUT if segments cross where no point is; no triangles are left out. The
+/// mesh has all parts but halfedges; Voronoi diagrams and locators refuse it. The work is enqueued like that
+/// of flaunay_triangulate_device, with the same errors; the host waits once more per round of segments.
+FLAUNAY_API flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
+                                                                  const flaunay_device_points* points,
+                                                                  cl_mem segments, size_t segment_count,
+                                                                  const flaunay_enqueue* enqueue,
+                                                                  flaunay_device_triangulation* mesh,
+                                                                  flaunay_device_constraints* edges);
 
 // ---- More points than fit memory
 
