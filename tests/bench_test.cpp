@@ -430,6 +430,19 @@ TEST_F(BenchTest, CellsAreBesideATriangulation) {
   }
 }
 
+TEST_F(BenchTest, ConstrainedIsBesideCgal) {
+  const auto record = run_well("constrained --quick --polygon-points 10");
+  ASSERT_EQ(record["results"].size(), 6u * 4);
+  ASSERT_EQ(record["ratios"].size(), 6u);
+  for (const auto& row : record["ratios"]) {
+    EXPECT_EQ(row["agrees"], true) << row;
+    EXPECT_GT(row.value("cgal_over_flaunay", 0.0), 0) << row;
+    EXPECT_GT(row.value("flaunay_over_triangulate", 0.0), 0) << row;
+  }
+  ASSERT_EQ(record["targets"].size(), 7u);
+  EXPECT_EQ(record["results"][0]["segments"], 600);
+}
+
 TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
   const auto record = run_well("threads --sizes 500,1000 --counts 1,2,3 --modes flattened,partition");
   expect_entries(record);
