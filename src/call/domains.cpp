@@ -81,7 +81,8 @@ void apply_domains(Implementation& self, const double* coordinates, const std::v
                    const Constraints& constraints, const constrained::DomainRequest& request,
                    ConstrainedTriangulation& result) {
   if (!request.needs_depths() && constraints.hole_count == 0) return;
-  if (!self.is_named() && offsets.back() <= self.host_tuning().host_points) {
+  // About two triangles per point.
+  if (!self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points) {
     apply_domains_on_host(coordinates, offsets, constraints, request, result);
     return;
   }

@@ -117,7 +117,13 @@ void drop_holes(const double* coordinates, const std::vector<std::size_t>& offse
       for (int k = 0; k < 3; ++k) {
         p[k] = kernel::scaled_point(mesh.triangles[3 * t + k], coordinates, seeds.frames[s].scale);
       }
-      for (std::size_t h = seeds.offsets[s]; h < seeds.offsets[s + 1]; ++h) {
+      const auto [least, most] = std::minmax({p[0].x, p[1].x, p[2].x});
+      const auto first = seeds.places.begin() + static_cast<std::ptrdiff_t>(seeds.offsets[s]),
+                 last = seeds.places.begin() + static_cast<std::ptrdiff_t>(seeds.offsets[s + 1]);
+      const auto low = std::lower_bound(first, last, least,
+                                        [](const geometry::Point& place, double x) { return place.x < x; });
+      for (auto h = static_cast<std::size_t>(low - seeds.places.begin());
+           h < seeds.offsets[s + 1] && seeds.places[h].x <= most; ++h) {
         int sides[3];
         for (int k = 0; k < 3; ++k) {
           sides[k] = kernel::orient_sign(p[(k + 1) % 3], p[(k + 2) % 3], seeds.places[h], seeds.bound);

@@ -30,8 +30,8 @@ void label_on_host(HostRegions& regions, ConstrainedTriangulation& result);
 
 /// Labels a triangulation with constraints and leaves out what the request and the holes say. It must have
 /// neighbours; half-edges are not kept up to date. coordinates: of all points, those that splitting added
-/// too. n: the number of points without those. Expected O(n + s) for s segments, besides the holes: O(h) per
-/// triangle of a set with h holes.
+/// too. n: the number of points without those. Expected O(n + s) for s segments, besides the holes: O(log h)
+/// per triangle of a set with h holes, and one step per hole in the range of its x coordinates.
 void apply_domains_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
                            const Constraints& constraints, const DomainRequest& request,
                            ConstrainedTriangulation& result);
