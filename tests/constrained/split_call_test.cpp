@@ -41,12 +41,11 @@ TEST(SmallSplitCall, SeveralSets) {
     ConstrainedOptions options;
     options.crossings = Crossings::split;
     const ConstrainedTriangulation result =
-        SharedTriangulator::get().constrained(points.data(), offsets, constraints, options);
+        triangulator().constrained(points.data(), offsets, constraints, options);
 
     const constrained::Split split = constrained::split(points.data(), offsets, segments);
     const constrained::AllPoints all = constrained::join_added(points.data(), offsets, split);
-    const Triangulation delaunay =
-        SharedTriangulator::get().triangulate(all.coordinates.data(), all.offsets, Options{});
+    const Triangulation delaunay = triangulator().triangulate(all.coordinates.data(), all.offsets, Options{});
     EXPECT_EQ(result.added_points, split.added_points);
     EXPECT_EQ(result.added_offsets, split.added_offsets);
     EXPECT_EQ(result.piece_offsets, split.piece_offsets);
@@ -87,12 +86,11 @@ TEST(SmallSplitCall, CrossingsAreAnErrorUnlessTheyAreSplit) {
   constraints.segments = segments.data();
   constraints.segment_count = 2;
   ConstrainedOptions options;
-  EXPECT_THROW(SharedTriangulator::get().constrained(points.data(), 4, constraints, options), Error);
+  EXPECT_THROW(triangulator().constrained(points.data(), 4, constraints, options), Error);
   options.crossings = Crossings::split;
   options.halfedges = true;
   options.neighbors = false;
-  const ConstrainedTriangulation result =
-      SharedTriangulator::get().constrained(points.data(), 4, constraints, options);
+  const ConstrainedTriangulation result = triangulator().constrained(points.data(), 4, constraints, options);
   EXPECT_EQ(result.added_points, (Coordinates{1, 1}));
   EXPECT_EQ(result.triangles.size(), 12u);
   EXPECT_EQ(result.halfedges.size(), 12u);
