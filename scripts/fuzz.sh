@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# Looks for bytes that a reader of files mishandles (tests/fuzz/readers.cpp), and for points that are triangulated
-# wrongly (tests/fuzz/triangulations.cpp), by trying random ones for some time.
-#   scripts/fuzz.sh 8h                         both, side by side; or 30m, or 90s
+# Looks for bytes that a reader of files mishandles (tests/fuzz/readers.cpp), and for points and segments that are
+# triangulated wrongly (tests/fuzz/triangulations.cpp, tests/fuzz/constrained.cpp), by trying random ones for some time.
+#   scripts/fuzz.sh 8h                         all, side by side; or 30m, or 90s
 #   scripts/fuzz.sh 8h readers                 the readers alone
 #   scripts/fuzz.sh 8h triangulations [SEED]   the triangulation alone; the seed is random if it is not given
-# Fails if it found something. A file that a reader mishandles is then in build/fuzz/failures; points that are
-# triangulated wrongly are printed. What the readers were tried with is kept in build/fuzz/found, for the next time.
+#   scripts/fuzz.sh 8h constrained [SEED]      the triangulation with segments alone
+# Fails if it found something. A file that a reader mishandles is then in build/fuzz/failures; what is triangulated
+# wrongly is printed. What the readers were tried with is kept in build/fuzz/found, for the next time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
-  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations [SEED]]' >&2
+  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations [SEED] | constrained [SEED]]' >&2
   exit 2
 }
 
@@ -20,7 +21,7 @@ case "${BASH_REMATCH[2]}" in
   m) seconds="$((BASH_REMATCH[1] * 60))" ;;
   h) seconds="$((BASH_REMATCH[1] * 3600))" ;;
 esac
-what="${2-both}"
+what="${2-all}"
 seed="${3-$((RANDOM << 15 | RANDOM))}"
 
 build="$PWD/build/fuzz"
@@ -60,22 +61,29 @@ fuzz_readers() {
   return "$status"
 }
 
-fuzz_triangulations() {
-  cmake --preset release && cmake --build --preset release --target fuzz_triangulations || return
-  build/release/tests/fuzz_triangulations --seconds "$seconds" --seed "$seed"
+# Fuzzers of the library, side by side.
+fuzz_library() {
+  cmake --preset release && cmake --build --preset release --target "${@/#/fuzz_}" || return
+  local fuzzer jobs=() status=0
+  for fuzzer in "$@"; do
+    build/release/tests/fuzz_"$fuzzer" --seconds "$seconds" --seed "$seed" &
+    jobs+=("$!")
+  done
+  for job in "${jobs[@]}"; do wait "$job" || status=1; done
+  return "$status"
 }
 
 cores="$(nproc)"
 case "$what" in
   readers) fuzz_readers "$cores" ;;
-  triangulations) fuzz_triangulations ;;
-  both)
-    # The triangulation takes one core or more.
-    fuzz_triangulations &
-    triangulations="$!"
+  triangulations | constrained) fuzz_library "$what" ;;
+  all)
+    # Those of the library take one core or more.
+    fuzz_library triangulations constrained &
+    library="$!"
     status=0
-    fuzz_readers "$((cores > 1 ? cores - 1 : 1))" || status=1
-    wait "$triangulations" || status=1
+    fuzz_readers "$((cores > 2 ? cores - 2 : 1))" || status=1
+    wait "$library" || status=1
     exit "$status"
     ;;
   *) usage ;;

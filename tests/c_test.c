@@ -1037,6 +1037,189 @@ static double total(const double* values, size_t count) {
   return sum;
 }
 
+// ---- Constrained triangulations
+
+// Two squares, one beside the other, as two sets; the diagonals of a square have equal circles.
+static const double kTwoSquares[] = {0, 0, 2, 0, 2, 2, 0, 2, 5, 0, 7, 0, 7, 2, 5, 2};
+static const size_t kTwoSets[] = {0, 4, 8};
+static const int32_t kDiagonals[] = {1, 3, 4, 6, 6, 4, 5, 5};
+
+static void test_constrained(void) {
+  flaunay_constrained* result = NULL;
+  const flaunay_constraints diagonals = {.segments = kDiagonals, .segment_count = 4};
+  const flaunay_options options = {.parts = FLAUNAY_PART_HALFEDGES | FLAUNAY_PART_NEIGHBORS};
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &diagonals, &options,
+                                          &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  CHECK(mesh->point_count == 8 && mesh->set_count == 2 && mesh->triangle_count == 4);
+  CHECK(mesh->hull_count == 8 && mesh->statistics->points == 8);
+  CHECK(mesh->triangle_offsets[1] == 2 && mesh->hull_offsets[1] == 4);
+  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  CHECK(arrays->added_count == 0 && arrays->added_points == NULL && arrays->added_offsets[2] == 0);
+  CHECK(arrays->constraint_count == 2 && arrays->segment_count == 4 && arrays->piece_count == 4);
+  const int32_t edges[] = {3, 1, 4, 6}, segments[] = {0, 1}, offsets[] = {0, 1, 2, 3, 4};
+  const int32_t pieces[] = {0, 1, 1, 2, 1, 2, 0, 0};
+  CHECK(same(arrays->constraint_edges, edges, 4) && same(arrays->edge_segments, segments, 2));
+  CHECK(same(arrays->piece_offsets, offsets, 5) && same(arrays->piece_edges, pieces, 8));
+  CHECK(arrays->depths == NULL && arrays->regions == NULL);
+  for (size_t k = 0; k < 12; ++k) {
+    // In each square, the constraint is what its two triangles have in common.
+    CHECK(arrays->constrained[k] == (mesh->neighbors[k] >= 0));
+    const size_t next = k - k % 3 + (k + 1) % 3;
+    CHECK((mesh->halfedges[next] >= 0) == (mesh->neighbors[k] >= 0));
+  }
+  flaunay_constrained_destroy(result);
+}
+
+static void test_constrained_without_constraints(void) {
+  flaunay_triangulation* plain = NULL;
+  flaunay_constrained* result = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, points, kPoints, NULL, 0, NULL, &plain) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_constrained(triangulator, points, kPoints, NULL, 0, NULL, NULL, &result) ==
+          FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  const flaunay_mesh* expected = flaunay_triangulation_mesh(plain);
+  CHECK(mesh->triangle_count == expected->triangle_count && mesh->halfedges == NULL);
+  CHECK(same(mesh->triangles, expected->triangles, 3 * mesh->triangle_count));
+  CHECK(same(mesh->neighbors, expected->neighbors, 3 * mesh->triangle_count));
+  CHECK(flaunay_constrained_get_arrays(result)->constraint_edges == NULL);
+  CHECK(flaunay_constrained_get_arrays(result)->piece_offsets[0] == 0);
+  flaunay_constrained_destroy(result);
+  flaunay_triangulation_destroy(plain);
+}
+
+static flaunay_status constrain_square(flaunay_constraints constraints, const flaunay_options* options) {
+  flaunay_constrained* result = NULL;
+  const flaunay_status status =
+      flaunay_triangulate_constrained(triangulator, kSquare, 4, NULL, 0, &constraints, options, &result);
+  CHECK((status == FLAUNAY_SUCCESS) == (result != NULL));
+  flaunay_constrained_destroy(result);
+  return status;
+}
+
+static void test_bad_constraints(void) {
+  const int32_t both[] = {0, 2, 1, 3}, none[] = {0, 4}, across[] = {3, 4};
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const flaunay_options flattened = {.mode = FLAUNAY_MODE_FLATTENED}, unknown = {.mode = 17};
+  const flaunay_constraints crossing = {.segments = both, .segment_count = 2};
+  CHECK(fails(constrain_square(crossing, NULL), FLAUNAY_ERROR_INPUT, "cross"));
+  const flaunay_constraints one = {.segments = both, .segment_count = 1};
+  CHECK(constrain_square(one, NULL) == FLAUNAY_SUCCESS);
+  CHECK(fails(constrain_square(one, &flattened), usage, "flattened"));
+  CHECK(fails(constrain_square(one, &unknown), usage, "17"));
+  const flaunay_constraints bad[] = {{.segments = none, .segment_count = 1},
+                                     {.segment_count = 1},
+                                     {.hole_count = 1},
+                                     {.crossings = 2},
+                                     {.outside = 3},
+                                     {.fill_rule = -1},
+                                     {.reserved = {0, 1}}};
+  const char* const texts[] = {
+      "4", "null", "null", "flaunay_crossings", "flaunay_outside", "_fill_rule", "flaunay_constraints"};
+  for (int k = 0; k < 7; ++k) CHECK(fails(constrain_square(bad[k], NULL), usage, texts[k]));
+  flaunay_constrained* result = NULL;
+  const flaunay_constraints between = {.segments = across, .segment_count = 1};
+  CHECK(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &between, NULL, &result) ==
+        usage);
+  CHECK(flaunay_triangulate_constrained(NULL, kSquare, 4, NULL, 0, NULL, NULL, &result) == usage);
+  CHECK(flaunay_triangulate_constrained(triangulator, kSquare, 4, NULL, 0, NULL, NULL, NULL) == usage);
+  CHECK(flaunay_constrained_mesh(NULL) == NULL && flaunay_constrained_get_arrays(NULL) == NULL);
+  flaunay_constrained_destroy(NULL);
+}
+
+// A square with a hole, whose ring repeats its first point, and a triangle.
+static const double kRings[] = {0, 0, 6, 0, 6, 6, 0, 6, 2, 2, 2, 4, 4, 4, 4, 2, 2, 2, 6, 0, 9, 3, 6, 6};
+static const size_t kRingOffsets[] = {0, 4, 9, 12}, kPolygonOffsets[] = {0, 2, 3};
+static const flaunay_polygons kPolygons = {.coordinates = kRings,
+                                           .ring_offsets = kRingOffsets,
+                                           .ring_count = 3,
+                                           .polygon_offsets = kPolygonOffsets,
+                                           .polygon_count = 2};
+
+static void test_polygons(void) {
+  flaunay_constrained* result = NULL;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &kPolygons, NULL, &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  CHECK(mesh->point_count == 12 && mesh->set_count == 2 && mesh->triangle_count == 9);
+  CHECK(mesh->triangle_offsets[1] == 8 && mesh->triangle_offsets[2] == 9);
+  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  CHECK(arrays->segment_count == 12 && arrays->constraint_count == 11 && arrays->polygons == NULL);
+  flaunay_constrained_destroy(result);
+
+  flaunay_polygons given = kPolygons;
+  given.map = 1;
+  given.labels = 1;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &given, NULL, &result) == FLAUNAY_SUCCESS);
+  mesh = flaunay_constrained_mesh(result);
+  arrays = flaunay_constrained_get_arrays(result);
+  CHECK(mesh->set_count == 1 && mesh->triangle_count == 9 && arrays->constraint_count == 10);
+  int of_second = 0;
+  for (size_t t = 0; t < 9; ++t) of_second += arrays->polygons[t] == 1;
+  CHECK(of_second == 1 && arrays->depths[0] == 1 && arrays->regions[0] == 0);
+  flaunay_constrained_destroy(result);
+
+  // Rings alone: the hole is a polygon of its own.
+  flaunay_polygons rings = kPolygons;
+  rings.polygon_offsets = NULL;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &rings, NULL, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_constrained_mesh(result)->set_count == 3);
+  CHECK(flaunay_constrained_mesh(result)->triangle_count == 5);
+  flaunay_constrained_destroy(result);
+
+  // What is outside and in holes may be kept.
+  flaunay_polygons kept = kPolygons;
+  kept.has_outside = 1;
+  kept.has_fill_rule = 1;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &kept, NULL, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_constrained_mesh(result)->triangle_count == 11);
+  flaunay_constrained_destroy(result);
+}
+
+static flaunay_status polygons_with(flaunay_polygons given) {
+  flaunay_constrained* result = NULL;
+  const flaunay_status status = flaunay_triangulate_polygons(triangulator, &given, NULL, &result);
+  flaunay_constrained_destroy(result);
+  return status;
+}
+
+static void test_bad_polygons(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const flaunay_polygons none = {0};
+  CHECK(polygons_with(none) == FLAUNAY_SUCCESS);
+  flaunay_polygons given = kPolygons;
+  given.ring_offsets = NULL;
+  CHECK(fails(polygons_with(given), usage, "rings"));
+  given = kPolygons;
+  given.coordinates = NULL;
+  CHECK(fails(polygons_with(given), usage, "null"));
+  given = kPolygons;
+  given.polygon_count = 1;
+  CHECK(polygons_with(given) == usage);
+  given = kPolygons;
+  given.overlaps = 2;
+  CHECK(fails(polygons_with(given), usage, "flaunay_overlaps"));
+  given = kPolygons;
+  given.crossings = 2;
+  CHECK(fails(polygons_with(given), usage, "flaunay_crossings"));
+  given = kPolygons;
+  given.reserved[1] = 1;
+  CHECK(fails(polygons_with(given), usage, "flaunay_polygons"));
+  given = kPolygons;
+  given.outside = given.fill_rule = 3;
+  CHECK(polygons_with(given) == FLAUNAY_SUCCESS);
+  given.has_outside = 1;
+  CHECK(fails(polygons_with(given), usage, "flaunay_outside"));
+  given.has_outside = 0;
+  given.has_fill_rule = 1;
+  CHECK(fails(polygons_with(given), usage, "flaunay_fill_rule"));
+  const double bow[] = {0, 0, 2, 2, 2, 0, 0, 2};
+  const flaunay_polygons crossing = {.coordinates = bow, .ring_offsets = kRingOffsets, .ring_count = 1};
+  CHECK(fails(polygons_with(crossing), FLAUNAY_ERROR_INPUT, "cross"));
+  flaunay_constrained* result = NULL;
+  CHECK(flaunay_triangulate_polygons(triangulator, NULL, NULL, &result) == usage);
+  CHECK(flaunay_triangulate_polygons(triangulator, &kPolygons, NULL, NULL) == usage);
+}
+
 static void test_clipped_voronoi(void) {
   const double box[] = {0, 0, 3, 0, 3, 3, 0, 3}, bow[] = {0, 0, 3, 3, 3, 0, 0, 3};
   flaunay_triangulation* mesh = NULL;
@@ -1154,6 +1337,51 @@ static void test_clipped_voronoi_on_device(void) {
   flaunay_triangulation_destroy(mesh);
   clReleaseMemObject(square.memory);
   clReleaseMemObject(enough);
+  clReleaseMemObject(small);
+}
+
+// A square whose diagonal is the constraint.
+static void test_constrained_on_device(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const int32_t diagonal[] = {3, 1};
+  const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  cl_mem segments = make_buffer(context, sizeof diagonal, diagonal);
+  flaunay_device_triangulation* mesh = make_device_triangulation();
+  flaunay_device_constraints* edges = NULL;
+  REQUIRE(flaunay_device_constraints_create(&edges) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_constraints_edge_count(edges) == 0);
+  const flaunay_enqueue plain = {.queue = queue};
+  REQUIRE(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges) ==
+          FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_triangle_count(mesh) == 2);
+  REQUIRE(flaunay_device_constraints_edge_count(edges) == 1);
+  int32_t ends[2] = {0, 0}, range[2] = {9, 9};
+  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_EDGES), sizeof ends, ends);
+  CHECK((ends[0] == 1 && ends[1] == 3) || (ends[0] == 3 && ends[1] == 1));
+  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_PIECE_EDGES), sizeof range, range);
+  CHECK(range[0] == 0 && range[1] == 1);
+  unsigned char constrained[6] = {0};
+  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_CONSTRAINED), sizeof constrained,
+              constrained);
+  int sum = 0;
+  for (int k = 0; k < 6; ++k) sum += constrained[k];
+  CHECK(sum == 2);
+
+  cl_mem small = make_buffer(context, 1, NULL);
+  CHECK(flaunay_device_constraints_set_buffer(edges, FLAUNAY_CONSTRAINT_EDGES, small) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges),
+              usage, "constraint edges"));
+  CHECK(flaunay_device_constraints_set_buffer(edges, FLAUNAY_CONSTRAINT_EDGES, NULL) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_device_constraints_set_buffer(edges, 3, NULL), usage, "not one part"));
+  CHECK(fails(flaunay_triangulate_constrained_device(triangulator, &square, segments, 2, &plain, mesh, edges),
+              usage, "segments"));
+  CHECK(fails(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, NULL),
+              usage, "NULL"));
+  flaunay_device_constraints_destroy(edges);
+  flaunay_device_constraints_destroy(NULL);
+  flaunay_device_triangulation_destroy(mesh);
+  clReleaseMemObject(square.memory);
+  clReleaseMemObject(segments);
   clReleaseMemObject(small);
 }
 
@@ -1797,8 +2025,14 @@ static void test_all(void) {
   test_bad_queues();
   test_out_of_memory();
   test_voronoi();
+  test_constrained();
+  test_constrained_without_constraints();
+  test_bad_constraints();
+  test_polygons();
+  test_bad_polygons();
   test_clipped_voronoi();
   test_clipped_voronoi_on_device();
+  test_constrained_on_device();
   test_relax();
   test_locator();
   test_derived_on_device();

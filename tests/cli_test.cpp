@@ -397,6 +397,54 @@ TEST_F(CommandVerifyTest, Neighbors) {
   EXPECT_EQ(run({"verify", points, triangles, "--neighbors", few}, kNoPlatform).exit_code, kFailure);
 }
 
+TEST_F(CommandVerifyTest, Constraints) {
+  // Both diagonals of the square are Delaunay. Without segments that from the smallest point is canonical.
+  const std::string points = write("points.xy", "0 0\n4 0\n4 4\n0 4\n");
+  const auto mesh = [this](const std::string& name, const std::vector<std::int32_t>& corners) {
+    return write(name,
+                 npy("<i4", "False", "(" + std::to_string(corners.size() / 3) + ", 3)", bytes_of(corners)));
+  };
+  const std::string from_first = mesh("first.npy", {0, 1, 2, 0, 2, 3}),
+                    other = mesh("other.npy", {0, 1, 3, 1, 2, 3});
+  const std::string segments = write("s.npy", npy("<i8", "False", "(1, 2)", bytes_of<std::int64_t>({3, 1})));
+  const std::string text = write("s.txt", "3 1\n");
+  for (const std::string& file : {segments, text}) {
+    const Outcome good = run_well({"verify", points, other, "--constraints", file}, kNoPlatform);
+    EXPECT_NE(good.out.find("; 1 constraint edges"), std::string::npos) << good.out;
+    const Outcome bad = run({"verify", points, from_first, "--constraints", file}, kNoPlatform);
+    EXPECT_EQ(bad.exit_code, kFailure);
+    EXPECT_NE(bad.err.find("segment 0 from point 3 at (0, 4) to point 1 at (4, 0) is no chain of edges"),
+              std::string::npos)
+        << bad.err;
+  }
+  const std::string edges = write("e.npy", npy("<i4", "False", "(1, 2)", bytes_of<std::int32_t>({3, 1})));
+  const std::string turned =
+      write("turned.npy", npy("<i4", "False", "(1, 2)", bytes_of<std::int32_t>({1, 3})));
+  run_well({"verify", points, other, "--constraints", segments, "--constraint-edges", edges}, kNoPlatform);
+  EXPECT_EQ(
+      run({"verify", points, other, "--constraints", segments, "--constraint-edges", turned}, kNoPlatform)
+          .exit_code,
+      kFailure);
+
+  // What is left of it: a triangle, by its border, by a hole, and by a file of its own.
+  const std::string half = mesh("half.npy", {0, 1, 3}), border = write("border.txt", "0 1\n1 3\n3 0\n");
+  run_well({"verify", points, half, "--constraints", border, "--outside", "hull", "--fill", "even-odd"},
+           kNoPlatform);
+  run_well({"verify", points, half, "--constraints", text, "--hole", "3,3"}, kNoPlatform);
+  const std::string poly =
+      write("border.poly", "4 2 0 0\n0 0 0\n1 4 0\n2 4 4\n3 0 4\n3 0\n0 0 1\n1 1 3\n2 3 0\n0\n");
+  run_well({"verify", poly, half}, kNoPlatform);
+  EXPECT_EQ(run({"verify", poly, half, "--outside", "keep"}, kNoPlatform).exit_code, kFailure);
+
+  expect_error(kUsage, {"--outside", "needs segments"}, {"verify", points, half, "--outside", "hull"});
+  expect_error(kUsage, {"--memory"}, {"verify", points, other, "--constraints", text, "--memory", "64M"});
+  expect_error(kUsage, {"border.poly", "segments of its own"}, {"verify", poly, half, "--constraints", text});
+  expect_error(kUsage, {"edges.txt", ".npy"},
+               {"verify", points, other, "--constraints", text, "--constraint-edges", path("edges.txt")});
+  expect_error(kBadInput, {"beyond.txt: line 1", "index 7"},
+               {"verify", points, other, "--constraints", write("beyond.txt", "0 7\n")});
+}
+
 TEST_F(CommandVerifyTest, BadFiles) {
   const std::string points = write("points.xy", "0 0\n4 0\n0 4\n");
   expect_error(kBadInput, {"missing.npy"}, {"verify", points, path("missing.npy")});
@@ -1431,6 +1479,250 @@ TEST_F(CommandPartitionTest, AssembleSaysWhatMakesNoSense) {
   ASSERT_TRUE(stats.is_object());
   EXPECT_EQ(stats.value("mode", ""), "assemble");
   EXPECT_EQ(stats.value("device", ""), "host");
+}
+
+// ---------------------------------------------------------------------------------------------- constraints
+
+/// The coordinates in a text file of the command.
+std::vector<double> read_text_points(const fs::path& path) {
+  std::ifstream file(path);
+  std::string header;
+  std::getline(file, header);
+  return {std::istream_iterator<double>(file), std::istream_iterator<double>()};
+}
+
+double area_of(const std::vector<double>& points, const Rows& triangles) {
+  double area = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const auto x = [&](std::int32_t v) { return points.at(2 * v); };
+    const auto y = [&](std::int32_t v) { return points.at(2 * v + 1); };
+    area += ((x(b) - x(a)) * (y(c) - y(a)) - (x(c) - x(a)) * (y(b) - y(a))) / 2;
+  }
+  return area;
+}
+
+class CommandConstraintsTest : public CommandTest {
+ protected:
+  static constexpr const char* kMap = R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [
+          [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]]}},
+      {"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [
+          [[4, 0], [7, 0], [7, 4], [4, 4], [4, 0]]]}}]})";
+
+  /// The area of the triangles of a run.
+  double area(const std::string& input, const Arguments& options = {}) const {
+    Arguments arguments = {"triangulate", input, "--triangles", path("t.npy"), "--points", path("p.txt")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    run_well(arguments, kNoPlatform);
+    return area_of(read_text_points(path("p.txt")), sorted_rows(path("t.npy")));
+  }
+};
+
+TEST_F(CommandConstraintsTest, SegmentsBesidePointsBecomeEdges) {
+  const std::string points = write("points.xy", "0 0\n4 0\n8 0\n8 1\n4 1\n0 1\n4 0.5\n");
+  const std::string segments = write("s.txt", "0 2\n5 6\n2 0\n");
+  const Outcome outcome =
+      run_well({"triangulate", points, "--constraints", segments, "--triangles", path("t.npy"),
+                "--constraint-edges", path("e.npy"), "--edge-segments", path("s.npy"), "--regions",
+                path("r.npy"), "--depths", path("d.npy"), "--stats", path("stats.json")},
+               kNoPlatform);
+  EXPECT_NE(outcome.out.find("3 segments, 3 constraint edges"), std::string::npos) << outcome.out;
+  const Array edges = read_array(path("e.npy"));
+  EXPECT_EQ(edges.shape, "(3, 2)");
+  EXPECT_EQ(edges.values, (std::vector<std::int32_t>{0, 1, 1, 2, 5, 6}));
+  EXPECT_EQ(read_array(path("s.npy")).values, (std::vector<std::int32_t>{0, 0, 1}));
+  const std::size_t triangles = sorted_rows(path("t.npy")).size();
+  EXPECT_EQ(triangles, 6U);
+  EXPECT_EQ(read_array(path("r.npy")).values, std::vector<std::int32_t>(triangles, 0));
+  EXPECT_EQ(read_array(path("d.npy")).shape, "(6,)");
+
+  const auto stats = nlohmann::json::parse(contents(path("stats.json")));
+  const nlohmann::json& constraints = stats["constraints"];
+  EXPECT_EQ(constraints["segments"], 3);
+  EXPECT_EQ(constraints["pieces"], 3);
+  EXPECT_EQ(constraints["constraint_edges"], 3);
+  EXPECT_EQ(constraints["added_points"], 0);
+  EXPECT_EQ(constraints["outside"], "keep");
+  EXPECT_EQ(constraints["fill"], "nesting");
+  EXPECT_EQ(constraints["crossings"], "error");
+  run_well({"triangulate", points, "--stats", path("stats.json")}, kNoPlatform);
+  EXPECT_TRUE(nlohmann::json::parse(contents(path("stats.json")))["constraints"].is_null());
+  // From standard input, too.
+  run_well({"triangulate", "-", "--constraints", segments}, kNoPlatform, contents(points));
+}
+
+TEST_F(CommandConstraintsTest, ALetterIsWhatTriangleMakesOfIt) {
+  // The outline is a trapezium without the gap between the legs; the opening is a hole.
+  const double gap = (0.52 + 0.30) / 2 * 0.28, opening = 0.16 * 0.24 / 2, trapezium = (1 + 0.24) / 2;
+  const std::string letter = data("letter.poly");
+  EXPECT_NEAR(area(letter), trapezium - gap - opening, 1e-12);
+  EXPECT_NEAR(area(letter, {"--outside", "keep"}), trapezium - opening, 1e-12) << "holes are holes";
+  EXPECT_NEAR(area(letter, {"--hole", "0.05,0.05"}), 0, 1e-12);
+  EXPECT_EQ(read_text_points(path("p.txt")).size(), 30U);
+  const Outcome outcome = run_well({"triangulate", letter, "--hole", "0.05,0.05"}, kNoPlatform);
+  EXPECT_NE(outcome.out.find("note: " + letter + ": the attributes of 1 region are not used"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("no triangles"), std::string::npos) << outcome.out;
+}
+
+TEST_F(CommandConstraintsTest, AMapHasItsPolygonsAndKnowsThem) {
+  const std::string map = write("map.geojson", kMap);
+  EXPECT_DOUBLE_EQ(area(map, {"--polygons", path("q.npy"), "--depths", path("d.npy")}), 15 + 12);
+  const std::vector<double> points = read_text_points(path("p.txt"));
+  EXPECT_EQ(points.size(), 2U * 12);
+  const Array triangles = read_array(path("t.npy")), polygons = read_array(path("q.npy"));
+  ASSERT_EQ(3 * polygons.values.size(), triangles.values.size());
+  for (std::size_t t = 0; t < polygons.values.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = points.at(2 * triangles.values[3 * t + k]);
+      EXPECT_TRUE(polygons.values[t] == 0 ? x <= 4 : x >= 4) << t;
+    }
+  }
+  EXPECT_DOUBLE_EQ(area(map, {"--outside", "keep"}), 28);
+  EXPECT_DOUBLE_EQ(area(map, {"--fill", "even-odd"}), 27);
+  EXPECT_DOUBLE_EQ(area(map, {"--hole", "5,1"}), 15);
+  // Their borders are the same edges in one map, and edges of each in two sets.
+  const Outcome together = run_well({"triangulate", map}, kNoPlatform);
+  EXPECT_NE(together.out.find("12 segments, 11 constraint edges"), std::string::npos) << together.out;
+  const Outcome separate =
+      run_well({"triangulate", map, "--separate", "--polygons", path("q.npy")}, kNoPlatform);
+  EXPECT_NE(separate.out.find("12 segments, 12 constraint edges, 2 sets"), std::string::npos) << separate.out;
+  EXPECT_EQ(read_array(path("q.npy")).values, (std::vector<std::int32_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1}));
+}
+
+TEST_F(CommandConstraintsTest, LinesAndPointsBesidePolygonsAreInTheirMesh) {
+  const double meadow_and_orchard = area(data("parcels.geojson"));
+  EXPECT_GT(meadow_and_orchard, 6000);
+  EXPECT_LT(meadow_and_orchard, area(data("parcels.geojson"), {"--outside", "keep"}));
+  EXPECT_DOUBLE_EQ(meadow_and_orchard, area(data("parcels.geojson"), {"--fill", "even-odd"}));
+  const Outcome outcome = run_well({"triangulate", data("parcels.geojson")}, kNoPlatform);
+  EXPECT_NE(outcome.out.find("30 points, 5 duplicates"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("26 segments, 24 constraint edges"), std::string::npos) << outcome.out;
+  for (const Arguments& options : {Arguments{"--separate"}, Arguments{"--polygons", path("q.npy")}}) {
+    Arguments arguments = {"triangulate", data("parcels.geojson")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    expect_error(kUsage, {"parcels.geojson", "polygons alone"}, arguments);
+  }
+}
+
+TEST_F(CommandConstraintsTest, OverlapsBelongToTheFirstPolygonUnlessTheyAreErrors) {
+  const std::string map = write("map.json",
+                                R"({"type": "GeometryCollection", "geometries": [
+      {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]]},
+      {"type": "Polygon", "coordinates": [[[1, 1], [2, 1], [2, 2], [1, 2], [1, 1]]]}]})");
+  EXPECT_DOUBLE_EQ(area(map, {"--depths", path("d.npy"), "--polygons", path("q.npy")}), 16);
+  const Array depths = read_array(path("d.npy")), polygons = read_array(path("q.npy"));
+  EXPECT_EQ(std::count(depths.values.begin(), depths.values.end(), 2), 2);
+  EXPECT_EQ(std::count(polygons.values.begin(), polygons.values.end(), 0),
+            static_cast<std::ptrdiff_t>(polygons.values.size()));
+  expect_error(kBadInput, {"map.json", "polygons 0 and 1 overlap"},
+               {"triangulate", map, "--overlaps", "error"});
+}
+
+TEST_F(CommandConstraintsTest, CrossingSegmentsAreSplitIfThatIsAskedFor) {
+  const std::string cross = write("cross.xy", "0 0\n4 0\n4 4\n0 4\n");
+  const std::string diagonals = write("s.txt", "0 2\n1 3\n");
+  const Outcome outcome =
+      run_well({"triangulate", cross, "--constraints", diagonals, "--crossings", "split", "--points",
+                path("p.txt"), "--constraint-edges", path("e.npy"), "--edge-segments", path("s.npy"),
+                "--stats", path("stats.json"), "-o", path("a.svg"), "--triangles", path("t.npy")},
+               kNoPlatform);
+  EXPECT_NE(outcome.out.find("4 constraint edges, 1 added point;"), std::string::npos) << outcome.out;
+  EXPECT_EQ(read_text_points(path("p.txt")), (std::vector<double>{0, 0, 4, 0, 4, 4, 0, 4, 2, 2}));
+  EXPECT_EQ(sorted_rows(path("t.npy")), (Rows{{0, 1, 4}, {0, 4, 3}, {1, 2, 4}, {2, 3, 4}}));
+  EXPECT_EQ(read_array(path("e.npy")).shape, "(4, 2)");
+  EXPECT_EQ(read_array(path("s.npy")).shape, "(4,)");
+  const auto constraints = nlohmann::json::parse(contents(path("stats.json")))["constraints"];
+  EXPECT_EQ(constraints["pieces"], 4);
+  EXPECT_EQ(constraints["added_points"], 1);
+  EXPECT_EQ(constraints["crossings"], "split");
+  EXPECT_NE(contents(path("a.svg")).find("1 point added where segments cross"), std::string::npos);
+  // Borders that cross, and a line across a polygon, whose two directions are split at the same points.
+  const std::string map = write("map.json", R"({"type": "GeometryCollection", "geometries": [
+      {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]]},
+      {"type": "LineString", "coordinates": [[-1, 1], [5, 3]]},
+      {"type": "Polygon", "coordinates": [[[2, 2], [6, 2], [6, 6], [2, 6], [2, 2]]]}]})");
+  EXPECT_DOUBLE_EQ(area(map, {"--crossings", "split"}), 16 + 16 - 4);
+  EXPECT_DOUBLE_EQ(area(map, {"--crossings", "split", "--fill", "even-odd"}), 16 + 16 - 2 * 4);
+}
+
+TEST_F(CommandConstraintsTest, MeshesCanBeReadAgain) {
+  run_well({"triangulate", data("letter.poly"), "-o", path("a.ele"), "--outside", "keep", "--quiet"},
+           kNoPlatform);
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.ele", "a.node", "a.poly"}));
+  const double once = area(path("a.poly"), {"--outside", "keep", "--constraint-edges", path("e.npy")});
+  EXPECT_DOUBLE_EQ(once, area(data("letter.poly"), {"--outside", "keep"}));
+  EXPECT_EQ(read_array(path("e.npy")).shape, "(12, 2)");
+  for (const char* name : {"a.off", "a.ply", "a.obj", "a.vtu", "a.npy", "a.geojson", "a.svg"}) {
+    run_well({"triangulate", path("a.poly"), "-o", path(name), "--quiet"}, kNoPlatform);
+  }
+}
+
+TEST_F(CommandConstraintsTest, InputsAreNotOverwritten) {
+  write("a.node", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n");
+  const std::string poly = write("a.poly", "0 2 0 0\n1 0\n0 0 1\n0\n");
+  expect_error(kUsage, {"overwrite the input"}, {"triangulate", poly, "-o", path("a.ele")});
+  expect_error(kUsage, {"overwrite the input"}, {"triangulate", poly, "--points", path("a.node")});
+  const std::string points = write("p.xy", "0 0\n1 0\n0 1\n"), segments = path("s.npy");
+  write("s.npy", npy("<i4", "False", "(1, 2)", bytes_of<std::int32_t>({0, 1})));
+  run_well({"triangulate", points, "--constraints", segments}, kNoPlatform);
+  expect_error(kUsage, {"s.npy", "overwrite the input"},
+               {"triangulate", points, "--constraints", segments, "--hull", segments});
+  expect_error(kUsage, {"two outputs"},
+               {"triangulate", points, "--constraints", segments, "--depths", path("d.npy"), "--regions",
+                path("d.npy")});
+}
+
+TEST_F(CommandConstraintsTest, OptionsThatMakeNoSenseAreRefusedFirst) {
+  const auto refused = [this](const std::string& input, const std::vector<std::string>& parts,
+                              Arguments options) {
+    options.insert(options.begin(), {"triangulate", path(input)});
+    expect_error(kUsage, parts, options);
+  };
+  for (const Arguments& options :
+       {Arguments{"--outside", "hull"}, Arguments{"--crossings", "split"}, Arguments{"--fill", "winding"},
+        Arguments{"--hole", "1,2"}, Arguments{"--separate"}, Arguments{"--overlaps", "error"},
+        Arguments{"--depths", path("d.npy")}, Arguments{"--points", path("p.npy")},
+        Arguments{"--constraint-edges", path("e.npy")}}) {
+    refused("missing.xy", {options[0], "needs segments"}, options);
+  }
+  refused("missing.poly", {"--constraints", "segments of its own"}, {"--constraints", path("s.npy")});
+  refused("missing.xy", {"s.obj", ".npy, .txt or .csv"}, {"--constraints", path("s.obj")});
+  refused("missing.poly", {"--separate", ".geojson"}, {"--separate"});
+  refused("missing.geojson", {"--hole", "polygon"}, {"--separate", "--hole", "1,2"});
+  refused("missing.geojson", {"--overlaps"}, {"--separate", "--overlaps", "error"});
+  refused("missing.poly", {"--hole", "'1;2'", "X,Y"}, {"--hole", "1;2"});
+  refused("missing.poly", {"--hole", "finite"}, {"--hole", "1,nan"});
+  refused("missing.poly", {"--outside", "sideways"}, {"--outside", "sideways"});
+  refused("missing.poly", {"--mode", "blocks"}, {"--mode", "dwyer"});
+  refused("missing.poly", {"--memory", "chunks"}, {"--memory", "4G"});
+  refused("missing.poly", {"--chunk-points", "chunks"}, {"--chunk-points", "4000"});
+  refused("missing.poly", {"--device", "one device"}, {"--device", "host,host"});
+  refused("missing.poly", {"d.txt", ".npy"}, {"--depths", path("d.txt")});
+}
+
+TEST_F(CommandConstraintsTest, FilesWithErrorsAreNamed) {
+  const std::string points = write("points.xy", "0 0\n4 0\n4 4\n0 4\n");
+  const auto segments = [&](const std::string& lines, const std::vector<std::string>& parts) {
+    expect_error(kBadInput, parts, {"triangulate", points, "--constraints", write("s.txt", lines)});
+  };
+  segments("0 4\n", {"s.txt", "line 1", "index 4", "0 to 3"});
+  segments("0 2\n1 3\n", {"s.txt", "segments 0 (points 0 and 2) and 1 (points 1 and 3) cross", "(2, 2)"});
+  expect_error(kBadInput, {"none.npy", "No such file"},
+               {"triangulate", points, "--constraints", path("none.npy")});
+  expect_error(kBadInput, {"hole.poly", "hole 0", "in no triangle"},
+               {"triangulate", write("hole.poly", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n0\n1\n0 5 5\n")});
+  expect_error(kBadInput, {"open.poly", "no closed curves at point 0"},
+               {"triangulate", write("open.poly", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n1\n0 0 1\n0\n"), "--fill",
+                "even-odd"});
+  expect_error(
+      kBadInput, {"a.geojson", "coordinates[0][1] is [1]"},
+      {"triangulate",
+       write("a.geojson", R"({"type": "Polygon", "coordinates": [[[0, 0], [1], [0, 1], [0, 0]]]})")});
+  expect_error(kBadInput, {"crossing.geojson", "cross"},
+               {"triangulate", write("crossing.geojson", R"({"type": "Polygon", "coordinates":
+                [[[0, 0], [2, 2], [2, 0], [0, 2], [0, 0]]]})")});
 }
 
 }  // namespace

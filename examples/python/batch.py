@@ -27,8 +27,8 @@ def main(path: str) -> None:
     sets = radius[:, None] * np.stack([np.cos(turn * seed), np.sin(turn * seed)], axis=-1)
 
     points = sets.reshape(-1, 2)
-    segments = np.arange(0, len(points) + 1, SEEDS)
-    mesh = flaunay.triangulate(points, segments=segments)
+    offsets = np.arange(0, len(points) + 1, SEEDS)
+    mesh = flaunay.triangulate(points, offsets=offsets)
 
     # Triangles have indices over all sets, so moving the points moves them.
     row, column = np.divmod(np.arange(ROWS * COLUMNS), COLUMNS)

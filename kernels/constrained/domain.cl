@@ -1,15 +1,15 @@
 // Domains of a triangulation with constraints: regions, their depths, and what is left of the triangles. The elements
 // are triangles, segments, constraint edges or regions of all sets at once; no kernel but those of holes knows of sets.
 //
-// 1. Regions. start_regions and join_regions, one pass each over the triangles, join what is connected without crossing
-//    a constraint: a forest in which every parent has a smaller number, so that roots are the first triangles of their
-//    regions, whatever the order of joins (Jaiganesh and Burtscher, "A high-performance connected components
-//    implementation for GPUs", 2018). find_roots and, after a scan over roots, number_regions give each triangle its
-//    region's number.
+// 1. Regions. start_regions joins what is connected within chunks of triangles without crossing a constraint, and
+//    join_regions what is connected between them: to a forest in which every parent has a smaller number, so that roots
+//    are the first triangles of their regions, whatever the order of joins (Jaiganesh and Burtscher, "A
+//    high-performance connected components implementation for GPUs", 2018). find_roots and, after a scan over roots,
+//    number_regions give each triangle its region's number.
 // 2. Weights of constraint edges, if the fill rule needs them: cover_edges writes where segments begin and end to
-//    cover edges; a scan of this gives each edge's sum. find_unbalanced finds points where segments are no closed
-//    curves. list_edges puts the edges into a hash table, by which triangles find them.
-// 3. Borders. count_borders counts for each triangle its constraints to another region with a smaller triangle there,
+//    cover edges; a scan of this gives each edge's sum. count_ends and find_unbalanced find points where segments are
+//    no closed curves. list_edges puts the edges into a hash table, by which triangles find them.
+// 3. Borders. count_borders counts for each triangle its constraints to another region with a larger triangle there,
 //    or to the outside; after a scan write_borders lists them.
 // 4. Depths. Each pass of reach_regions over the borders goes one level further from outside. Where there are too many
 //    levels the host goes on, one region after the other (src/constrained/domain.cpp). finish_regions says which
@@ -20,38 +20,16 @@
 
 #include "shared/coordinates.h"
 #include "shared/domains.h"
+#include "shared/meanwhile.h"
 #include "shared/planar.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
-// Other work-items may change what is read here. Atomic operations see all changes. Where caches are coherent, plain
-// ones do as well: an older parent is an ancestor, too, and what an old root is taken for is checked when it is joined.
-#ifndef FLAUNAY_NATIVE_KERNELS
-#if ATOMIC_READS
-#define read_shared(at) atomic_or(at, 0)
-#define write_shared(at, value) atomic_xchg(at, value)
-#else
-#define read_shared(at) (*(at))
-#define write_shared(at, value) (*(at) = (value))
-#endif
-#endif
+// Where another work-item has joined meanwhile: an older parent is an ancestor, too, and what an old root is taken for
+// is checked when it is joined (shared/meanwhile.h).
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Regions
-
-// parents[t]: the first neighbour in t's region if that is smaller, otherwise t.
-kernel void start_regions(int n, global const int* restrict neighbors, global const uchar* restrict constrained,
-                          global int* restrict parents) {
-  const int t = get_global_id(0);
-  if (t < n) {
-    int parent = t;
-    for (int k = 3 * t; k < 3 * t + 3; ++k) {
-      const int u = neighbors[k];
-      if (u >= 0 && u < parent && !constrained[k]) parent = u;
-    }
-    parents[t] = parent;
-  }
-}
 
 // Makes paths shorter on its way.
 static inline int root_of(int t, global volatile int* parents) {
@@ -66,6 +44,36 @@ static inline int root_of(int t, global volatile int* parents) {
   return t;
 }
 
+// The same where nobody else looks.
+static inline int own_root_of(int t, global int* parents) {
+  int parent = parents[t];
+  while (parent != t) {
+    const int above = parents[parent];
+    parents[t] = above;
+    t = above;
+    parent = parents[t];
+  }
+  return t;
+}
+
+// Joins neighbours within each chunk.
+kernel void start_regions(int n, int chunk, global const int* restrict neighbors,
+                          global const uchar* restrict constrained, global int* restrict parents) {
+  const int c = get_global_id(0);
+  const int low = c * chunk, high = (int)min((long)n, (c + 1L) * chunk);
+  for (int t = low; t < high; ++t) {
+    parents[t] = t;
+    int root = t;
+    for (int k = 3 * t; k < 3 * t + 3; ++k) {
+      const int u = neighbors[k];
+      if ((u < low) | (u >= t) | constrained[k]) continue;
+      const int other = own_root_of(u, parents);
+      parents[max(root, other)] = min(root, other);
+      root = min(root, other);
+    }
+  }
+}
+
 static inline void join(int t, int u, global volatile int* parents) {
   int a = root_of(t, parents), b = root_of(u, parents);
   while (a != b) {
@@ -77,18 +85,15 @@ static inline void join(int t, int u, global volatile int* parents) {
   }
 }
 
-// start_regions has joined each triangle to the smallest of its neighbours.
-kernel void join_regions(int n, global const int* restrict neighbors, global const uchar* restrict constrained,
-                         global volatile int* restrict parents) {
+// length: of the chunks in which neighbours are joined already.
+kernel void join_regions(int n, int length, global const int* restrict neighbors,
+                         global const uchar* restrict constrained, global volatile int* restrict parents) {
   const int t = get_global_id(0);
   if (t < n) {
-    int smallest = t;
-    for (int k = 3 * t; k < 3 * t + 3; ++k) {
-      if (!constrained[k] && neighbors[k] >= 0) smallest = min(smallest, neighbors[k]);
-    }
+    const int low = t - t % length;
     for (int k = 3 * t; k < 3 * t + 3; ++k) {
       const int u = neighbors[k];
-      if (!constrained[k] && u > smallest && u < t) join(t, u, parents);
+      if (u >= 0 && u < low && !constrained[k]) join(t, u, parents);
     }
   }
 }
@@ -115,20 +120,15 @@ kernel void number_regions(int n, global const uint* restrict numbers, global in
 
 // The pieces of a segment are on its way from the lexicographically smaller end to the other one. changes: 0
 // throughout; gets 1 where a piece's edges begin, and -1 where they end; with the winding rule the opposite if the
-// segment goes the other way than its edges. balances: 0 throughout; gets how many segments begin at a point, less
-// those that end there, or how many do either. Those of points that several have the same coordinates with are their
-// representative's.
+// segment goes the other way than its edges.
 kernel void cover_edges(int n, int rule, global const double* restrict input, global const int* restrict segments,
                         global const int* restrict representatives, global const int* restrict piece_offsets,
                         global const int* restrict piece_edges, global const int* restrict edges,
-                        global volatile uint* restrict changes, global volatile uint* restrict balances) {
+                        global volatile uint* restrict changes) {
   const int s = get_global_id(0);
   if (s < n) {
     const int a = representatives[segments[2 * s]], b = representatives[segments[2 * s + 1]];
-    const uint down = (uint)-1, at_end = rule == FILL_WINDING ? down : 1u;
     if (a != b) {
-      atomic_add(&balances[a], 1u);
-      atomic_add(&balances[b], at_end);
       const int is_turned = comes_before(vload2(b, input), vload2(a, input));
       int from = is_turned ? b : a;
       for (int p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
@@ -136,11 +136,22 @@ kernel void cover_edges(int n, int rule, global const double* restrict input, gl
         if (first == end) continue;
         const int is_backward = edges[2 * first] != from;
         from = is_backward ? edges[2 * first] : edges[2 * end - 1];
-        const uint amount = rule == FILL_WINDING && is_backward != is_turned ? down : 1u;
+        const uint amount = rule == FILL_WINDING && is_backward != is_turned ? (uint)-1 : 1u;
         atomic_add(&changes[first], amount);
         atomic_add(&changes[end], (uint)0 - amount);
       }
     }
+  }
+}
+
+// balances: 0 throughout; gets how many segments begin at a point, less those that end there, or how many do either. Of
+// points with the same coordinates, their representative has them all.
+kernel void count_ends(int n, int rule, global const int* restrict segments, global const int* restrict representatives,
+                       global volatile uint* restrict balances) {
+  const int s = get_global_id(0);
+  if (s < n) {
+    atomic_add(&balances[representatives[segments[2 * s]]], 1u);
+    atomic_add(&balances[representatives[segments[2 * s + 1]]], rule == FILL_WINDING ? (uint)-1 : 1u);
   }
 }
 
@@ -157,25 +168,30 @@ kernel void find_even(int n, int rule, global const uint* restrict sums, global 
   if (e < n && (rule == FILL_WINDING || (sums[e + 1] & 1) == 0)) needed[0] = 1;
 }
 
-// slots: mask + 1, a power of two, -1 throughout.
+// Where an edge may be in the hash table: first by its first point, so that what is near in memory stays near, and then
+// anywhere, since very many edges may have the same first point.
+#define PLACES_BY_POINT 4
+static inline int slot_of(int from, int to, uint attempt, int mask) {
+  const uint home = attempt < PLACES_BY_POINT ? 2 * (uint)from : edge_hash(from, to);
+  return (int)((home + attempt) & (uint)mask);
+}
+
+// slots: mask + 1, a power of two, -1 throughout; twice as many as edges, and more than PLACES_BY_POINT.
 kernel void list_edges(int n, int mask, global const uint* restrict needed, global const int* restrict edges,
                        global volatile int* restrict slots) {
   const int e = get_global_id(0);
   if (e < n && needed[0]) {
-    int slot = (int)(edge_hash(edges[2 * e], edges[2 * e + 1]) & (uint)mask);
-    while (atomic_cmpxchg(&slots[slot], -1, e) != -1) slot = (slot + 1) & mask;
+    uint attempt = 0;
+    while (atomic_cmpxchg(&slots[slot_of(edges[2 * e], edges[2 * e + 1], attempt, mask)], -1, e) != -1) ++attempt;
   }
 }
 
 // The number of the edge in slots; -1 if it is not there, which cannot be.
 static inline int find_edge(int from, int to, int mask, global const int* edges, global const int* slots) {
-  int slot = (int)(edge_hash(from, to) & (uint)mask);
-  int e = slots[slot];
-  while (e >= 0 && (edges[2 * e] != from || edges[2 * e + 1] != to)) {
-    slot = (slot + 1) & mask;
-    e = slots[slot];
+  for (uint attempt = 0;; ++attempt) {
+    const int e = slots[slot_of(from, to, attempt, mask)];
+    if (e < 0 || (edges[2 * e] == from && edges[2 * e + 1] == to)) return e;
   }
-  return e;
 }
 
 // What is crossed on a path over the edge from v to w from its right to its left. sums: by edge, one place further.

@@ -16,7 +16,8 @@
 //   work-item per triangle, and join_long one per entry.
 //
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
-// rows are marked by the round, which anyone may claim again.
+// rows are marked by the round, which anyone may claim again. A constraint that found a row held by another one of
+// smaller rank is blocked: as long as that holds the row, it cannot win, and does not walk.
 
 // Exact predicates are rare, and compiling each where it may be called takes long.
 #ifndef __cplusplus
@@ -27,6 +28,7 @@
 #include "shared/halfedges.h"
 #include "shared/language.h"
 #include "shared/limits.h"
+#include "shared/meanwhile.h"
 #include "shared/planar.h"
 #include "shared/prefetch.h"
 #include "shared/records.h"
@@ -81,6 +83,11 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
   }
 }
 
+// Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
+#define BLOCKED -1
+// What became of a constraint that stays blocked; see shared/codes.h for other outcomes.
+#define CONSTRAINT_BLOCKED 3
+
 // What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
 static inline uint2 size_of_walk(int rows) {
   return VECTOR(uint2, rows > 0 && rows <= SHORT_WALK ? (uint)rows + 4u : 0u, 1u);
@@ -124,20 +131,38 @@ static inline void flag_edge(int corner, const walked_mesh* mesh, global volatil
   }
 }
 
-// Segments whose first rows, and then points, are fetched.
-#define ROWS_AHEAD 16
+FETCHING void fetch_row(int corner, const walked_mesh* mesh) {
+  fetch(&mesh->triangles[corner]);
+  fetch(&mesh->neighbors[corner]);
+}
+FETCHING void fetch_points(int row, const walked_mesh* mesh) {
+  for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[3 * row + k]]);
+}
+
+// How many segments ahead what a walk needs is fetched: the rows at both ends; then their neighbours, and the points
+// of the row; then the points of the neighbours.
+#define ROWS_AHEAD 24
+#define NEIGHBORS_AHEAD 16
 #define POINTS_AHEAD 8
-static inline void fetch_ends(ulong key, int with_points, const walked_mesh* mesh) {
+FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
-  for (int end = 0; end < 2; ++end) {
-    const uint place = (uint)(key >> 32 * end);
-    if (place >= PLACE_ON_LINE) return;
-    if (!with_points) {
-      fetch(&mesh->triangles[place]);
-      fetch(&mesh->neighbors[place]);
-    } else {
-      for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[place / 3 * 3 + k]]);
-    }
+  const ulong far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
+              near = keys[min(n - 1, s + POINTS_AHEAD)];
+  // Those of points on a line do not come before others.
+  if ((uint)far >= PLACE_ON_LINE) return;
+  fetch_row((int)(far >> 32), mesh);
+  fetch(&mesh->triangles[(uint)far]);
+  const int row = (int)(middle >> 32) / 3;
+  fetch(&mesh->points[2 * mesh->triangles[(uint)middle]]);
+  fetch_points(row, mesh);
+  for (int k = 0; k < 3; ++k) {
+    const int beyond = mesh->neighbors[3 * row + k];
+    if (beyond >= 0) fetch_row(3 * beyond, mesh);
+  }
+  const int near_row = (int)(near >> 32) / 3;
+  for (int k = 0; k < 3; ++k) {
+    const int beyond = mesh->neighbors[3 * near_row + k];
+    if (beyond >= 0) fetch_points(beyond, mesh);
   }
 #endif
 }
@@ -154,8 +179,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
   const int s = get_global_id(0);
   if (s < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
-    fetch_ends(keys[min(n - 1, s + ROWS_AHEAD)], 0, &mesh);
-    fetch_ends(keys[min(n - 1, s + POINTS_AHEAD)], 1, &mesh);
+    fetch_segments(s, n, keys, &mesh);
     const uint first_place = (uint)(keys[s] >> 32), second_place = (uint)keys[s];
     uint count = 0;
     sizes[s] = VECTOR(uint2, 0u, 0u);
@@ -166,7 +190,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
       count = second_place - first_place;
       ends[2 * s] = hull[from];
       ends[2 * s + 1] = hull[from + 1];
-      for (uint k = 1; k < count && status[INSERTION_PIECES] <= limit; k += COUNTED_PIECES)
+      for (uint k = 1; k < count && read_shared(&status[INSERTION_PIECES]) <= limit; k += COUNTED_PIECES)
         atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
     } else {
       int first = (int)first_place, second = (int)second_place;
@@ -178,7 +202,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
         }
         if (walk.rows == 0) flag_edge(walk.corner, &mesh, flags);
         if (count % COUNTED_PIECES == 1) {
-          if (status[INSERTION_PIECES] > limit) break;
+          if (read_shared(&status[INSERTION_PIECES]) > limit) break;
           atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
         }
         ++count;
@@ -257,14 +281,19 @@ static inline void write_side(int corner, const walked_mesh* mesh, global const 
 
 // Walks along a constraint as long as it holds the rows, and writes entries if there are any: the row in each, in the
 // order of the walk; what is on the left of the constraint, from its origin to its goal, and what is on its right, from
-// the goal to the origin. Returns the number of entries of the former, or 0 if the constraint does not hold all rows.
+// the goal to the origin. Returns the number of entries of the former; or, if the constraint does not hold all rows,
+// the first of those that it does not hold, complemented.
 static inline int gather_cavity(const constraint_walk* walk, uint rank, const walked_mesh* mesh,
                                 global const uint* claims, global const uchar* flags, global chain_entry* entries,
                                 int* crosses) {
   int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
-  if (claims[row] != rank) return 0;
+  if (claims[row] != rank) return ~row;
   const int is_long = walk->rows > SHORT_WALK;
-  const double2 from = vload2(walk->origin, mesh->points), to = vload2(walk->goal, mesh->points);
+  double2 from = VECTOR(double2, 0.0, 0.0), to = from;
+  if (is_long) {
+    from = vload2(walk->origin, mesh->points);
+    to = vload2(walk->goal, mesh->points);
+  }
   const int next = next_halfedge(corner), previous = previous_halfedge(corner);
   if (entries) {
     entries[0].row = row;
@@ -280,7 +309,7 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   for (int j = 1;; ++j) {
     const int beyond = mesh->neighbors[corner];
     *crosses |= flags[row] & edge_flag(corner);
-    if (claims[beyond] != rank) return 0;
+    if (claims[beyond] != rank) return ~beyond;
     const int facing = corner_with(beyond, row, mesh->neighbors), v = mesh->triangles[facing];
     row = beyond;
     const int side = v == walk->goal          ? 0
@@ -306,38 +335,54 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   return left + 1;
 }
 
-// Whether a constraint that is an edge holds the rows beside it.
-static inline int holds_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
-  return claims[corner / 3] == rank && (neighbors[corner] < 0 || claims[neighbors[corner]] == rank);
+// Of a constraint that is an edge: 0 if it holds the rows beside it, or one that it does not hold, complemented.
+static inline int hold_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
+  const int beyond = neighbors[corner];
+  return claims[corner / 3] != rank ? ~(corner / 3) : beyond >= 0 && claims[beyond] != rank ? ~beyond : 0;
 }
 
 // offsets: of the entries. lefts: how many of these are on the left.
 kernel void choose_constraints(int n, double bound, global const int* restrict list,
-                               global const uint* restrict offsets, global const constraint_walk* restrict walks,
-                               global const double* restrict points, global const int* restrict triangles,
-                               global const int* restrict neighbors, global const uint* restrict claims,
-                               global const uchar* restrict flags, global uchar* restrict outcomes,
+                               global const uint* restrict offsets, global const double* restrict points,
+                               global const int* restrict triangles, global const int* restrict neighbors,
+                               global const uint* restrict claims, global const uchar* restrict flags,
+                               global constraint_walk* restrict walks, global uchar* restrict outcomes,
                                global int* restrict lefts, global chain_entry* restrict entries,
                                global volatile uint* restrict status) {
   const int i = get_global_id(0);
   if (i < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
+#if FETCH_AHEAD
+    const int far = walks[list[min(n - 1, i + NEIGHBORS_AHEAD)]].corner,
+              near = walks[list[min(n - 1, i + POINTS_AHEAD)]].corner / 3;
+    fetch_row(far, &mesh);
+    fetch(&claims[far / 3]);
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = max(0, neighbors[3 * near + k]);
+      fetch_row(3 * beyond, &mesh);
+      fetch(&claims[beyond]);
+    }
+#endif
     const uint rank = rank_of(list[i]);
     const constraint_walk walk = walks[list[i]];
     const int is_long = walk.rows > SHORT_WALK;
     int outcome = CONSTRAINT_WAITS;
-    if (walk.rows == 0) {
-      if (holds_edge(walk.corner, rank, neighbors, claims)) outcome = CONSTRAINT_FITS;
-    } else {
+    if (walk.rows != BLOCKED) {
       int crosses = 0;
-      lefts[i] = gather_cavity(&walk, rank, &mesh, claims, flags, is_long ? 0 : entries + offsets[i], &crosses);
-      if (lefts[i] > 0) outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+      const int left = walk.rows == 0 ? hold_edge(walk.corner, rank, neighbors, claims)
+                                      : gather_cavity(&walk, rank, &mesh, claims, flags,
+                                                      is_long ? 0 : entries + offsets[i], &crosses);
       if (crosses) {
-        outcome = CONSTRAINT_WAITS;
         atomic_or(&status[INSERTION_CROSSED], 1u);
+      } else if (left >= 0) {
+        outcome = is_long ? CONSTRAINT_FITS_LONG : CONSTRAINT_FITS;
+        lefts[i] = left;
+      } else {
+        walks[list[i]].rows = BLOCKED;
+        walks[list[i]].turns = (ulong)~left;
       }
     }
-    outcomes[i] = outcome;
+    outcomes[i] = (uchar)outcome;
   }
 }
 
@@ -422,6 +467,9 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
   }
 }
 
+// Constraints whose entries' points are fetched. Entries follow each other in memory, so they need not be.
+#define CAVITIES_AHEAD 4
+
 kernel void fill_cavities(int n, uint mark, double bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
@@ -430,6 +478,13 @@ kernel void fill_cavities(int n, uint mark, double bound, global const int* rest
                           global uchar* restrict changed, global int* restrict new_corners,
                           global chain_entry* restrict entries) {
   const int i = get_global_id(0);
+#if FETCH_AHEAD
+  if (i + CAVITIES_AHEAD < n && outcomes[i + CAVITIES_AHEAD] == CONSTRAINT_FITS) {
+    global const chain_entry* const ahead = entries + offsets[i + CAVITIES_AHEAD];
+    const int count = walks[list[i + CAVITIES_AHEAD]].rows + 3;
+    for (int p = 0; p < count && count > 3; ++p) fetch(&points[2 * ahead[p].vertex]);
+  }
+#endif
   if (i < n && outcomes[i] == CONSTRAINT_FITS) {
     const constraint_walk walk = walks[list[i]];
     if (walk.rows == 0) {
@@ -470,20 +525,35 @@ static inline void join_side(chain_entry entry, uint mark, global const uint* cl
   if (marks[v >> 5] >> (v & 31) & 1) {
     // The edge from i to j is opposite to the second corner, and i is at the first one; or j to k, and j at the third.
     const int corner = 3 * row + (entry.corner - 3 * row == 1 ? 0 : BASE_CORNER);
-    if (claims[places[v] / 3] == mark) atomic_xchg(&places[v], (uint)corner);
+    if (claims[read_shared(&places[v]) / 3] == mark) write_shared(&places[v], (uint)corner);
   }
 }
 
 kernel void join_cavities(int n, uint mark, global const int* restrict list, global const uint* restrict offsets,
-                          global const uchar* restrict outcomes, global const int* restrict lefts,
-                          global const constraint_walk* restrict walks, global const uint* restrict claims,
-                          global const uint* restrict marks, global const int* restrict new_corners,
-                          global const chain_entry* restrict entries, global int* restrict neighbors,
+                          global const int* restrict lefts, global const constraint_walk* restrict walks,
+                          global const uint* restrict claims, global const uint* restrict marks,
+                          global const int* restrict new_corners, global const chain_entry* restrict entries,
+                          global uchar* restrict outcomes, global int* restrict neighbors,
                           global volatile uint* restrict places) {
   const int i = get_global_id(0);
-  if (i < n && outcomes[i] == CONSTRAINT_FITS) {
+#if FETCH_AHEAD
+  if (i + CAVITIES_AHEAD < n && outcomes[i + CAVITIES_AHEAD] == CONSTRAINT_FITS) {
+    global const chain_entry* const ahead = entries + offsets[i + CAVITIES_AHEAD];
+    const int count = walks[list[i + CAVITIES_AHEAD]].rows + 3;
+    for (int p = 0; p < count && count > 3; ++p) {
+      const int twin = max(0, (int)(ahead[p].side >> 1) - 1);
+      fetch(&claims[twin / 3]);
+      fetch(&neighbors[twin]);
+      const int v = ahead[p].vertex;
+      if (marks[v >> 5] >> (v & 31) & 1) fetch((global const void*)&places[v]);
+    }
+  }
+#endif
+  if (i < n) {
     const int rows = walks[list[i]].rows;
-    if (rows > 0) {
+    if (outcomes[i] == CONSTRAINT_WAITS) {
+      if (rows == BLOCKED && claims[walks[list[i]].turns] < rank_of(list[i])) outcomes[i] = CONSTRAINT_BLOCKED;
+    } else if (outcomes[i] == CONSTRAINT_FITS && rows > 0) {
       for (int p = 0; p < rows + 3; ++p) {
         const chain_entry entry = entries[offsets[i] + p];
         if (p != lefts[i] - 1) join_side(entry, mark, claims, marks, new_corners, neighbors, places);
@@ -501,7 +571,9 @@ kernel void walk_constraints(int n, double bound, global const int* restrict lis
                              global volatile uint* restrict status) {
   const int i = get_global_id(0);
   if (i < n) {
-    if (outcomes[i] != CONSTRAINT_WAITS) {
+    if (outcomes[i] == CONSTRAINT_BLOCKED) {
+      sizes[i] = size_of_walk(BLOCKED);
+    } else if (outcomes[i] != CONSTRAINT_WAITS) {
       sizes[i] = VECTOR(uint2, 0u, 0u);
     } else {
       const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
@@ -512,7 +584,7 @@ kernel void walk_constraints(int n, double bound, global const int* restrict lis
       departure found;
       // As a rule it leaves through the same row.
       int is_found = 0;
-      if (walk.rows > 0 && triangles[first] == origin) {
+      if (triangles[first] == origin) {
         const star_search star = star_search_at(&mesh, first, goal);
         is_found = star.next_side < 0 && star.previous_side > 0;
         found.corner = first;

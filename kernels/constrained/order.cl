@@ -7,6 +7,7 @@
 
 #include "shared/halfedges.h"
 #include "shared/language.h"
+#include "shared/prefetch.h"
 #include "shared/segment_walks.h"
 
 // The corner of a row with the smallest vertex.
@@ -30,6 +31,10 @@ kernel void row_keys(int n, global const int* restrict rows, global const int* r
 #define UNCHANGED 0x80000000u
 #define OUTSIDE 0xffffffffu
 
+// Rows ahead that are fetched, and those whose neighbours are.
+#define ROWS_AHEAD 16
+#define NEIGHBORS_AHEAD 8
+
 // rows: ascending; sorted: in the order of their new contents. places: per changed row where that goes.
 kernel void take_rows(int n, global const int* restrict rows, global const int* restrict sorted,
                       global const int* restrict triangles, global const int* restrict neighbors,
@@ -38,6 +43,18 @@ kernel void take_rows(int n, global const int* restrict rows, global const int* 
                       global uchar* restrict copied_flags, global uint* restrict places) {
   const int i = get_global_id(0);
   if (i < n) {
+#if FETCH_AHEAD
+    const int far = sorted[min(n - 1, i + ROWS_AHEAD)], near = sorted[min(n - 1, i + NEIGHBORS_AHEAD)];
+    fetch(&triangles[3 * far]);
+    fetch(&neighbors[3 * far]);
+    fetch(&flags[far]);
+    fetch(&places[far]);
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = max(0, neighbors[3 * near + k]);
+      fetch(&changed[beyond]);
+      fetch(&neighbors[3 * beyond]);
+    }
+#endif
     const int row = sorted[i];
     int corner = first_corner(row, triangles);
     const int turn = corner - 3 * row;

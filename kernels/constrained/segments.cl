@@ -17,6 +17,7 @@
 #include "shared/codes.h"
 #include "shared/language.h"
 #include "shared/planar.h"
+#include "shared/prefetch.h"
 #include "shared/search.h"
 
 #define NO_KEY 0xffffffffffffffffUL
@@ -59,17 +60,32 @@ kernel void mark_ends(int n, int points, int sets, global const int* restrict of
   }
 }
 
+// Rows whose marked corners are collected before they are used: until then their vertices' places are fetched.
+#define ROWS_AT_ONCE 64
+
 // n triangles.
-kernel void start_rows(int n, global const int* restrict triangles, global const uint* restrict marks,
+kernel void start_rows(int n, int chunk, global const int* restrict triangles, global const uint* restrict marks,
                        global volatile uint* restrict places, global uint* restrict claims,
                        global uchar* restrict flags, global uchar* restrict changed) {
-  const int t = get_global_id(0);
-  if (t < n) {
-    claims[t] = UNCLAIMED;
-    flags[t] = changed[t] = 0;
-    for (int k = 0; k < 3; ++k) {
-      const int v = triangles[3 * t + k];
-      if (is_marked(v, marks)) atomic_min(&places[v], (uint)(3 * t + k));
+  const int c = get_global_id(0);
+  int low = c * chunk;
+  if (low < n) {
+    const int high = min(n, low + chunk);
+    int marked[3 * ROWS_AT_ONCE];
+    while (low < high) {
+      const int end = min(high, low + ROWS_AT_ONCE);
+      int count = 0;
+      for (int corner = 3 * low; corner < 3 * end; ++corner) {
+        // Without a branch, since it could not be predicted.
+        marked[count] = corner;
+        count += is_marked(triangles[corner], marks);
+      }
+      for (int i = 0; i < count; ++i) fetch((global const void*)&places[triangles[marked[i]]]);
+      for (; low < end; ++low) {
+        claims[low] = UNCLAIMED;
+        flags[low] = changed[low] = 0;
+      }
+      for (int i = 0; i < count; ++i) atomic_min(&places[triangles[marked[i]]], (uint)marked[i]);
     }
   }
 }

@@ -30,7 +30,7 @@ static inline int is_left(int depth, int rule, int outside) {
   return outside == OUTSIDE_HOLES && rule == FILL_NESTING ? depth & 1 : depth != 0;
 }
 
-// The order of numbers in a hash table; see constrained/domain.cl.
+// For a hash table of edges; see constrained/domain.cl.
 static inline uint edge_hash(int from, int to) {
   uint bits = (uint)from * 0x9e3779b9u ^ (uint)to * 0x85ebca6bu;
   bits ^= bits >> 15;

@@ -5,7 +5,8 @@
 SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clipped`` and
 ``voronoi_polygons`` clip cells to a box or a convex polygon, ``relax`` spreads points evenly, and
 ``alpha_shape`` finds the outline of points. ``triangulate`` is the plain call,
-for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
+for one set of points or many at once, also with segments that are to be edges, and ``polygons`` fills any
+number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files.
@@ -22,6 +23,7 @@ used it, calls run on the host, and calls that name a device raise ``DeviceError
 from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
+from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
@@ -35,7 +37,9 @@ from flaunay._interpolate import (
 )
 from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
-from flaunay._triangulation import Triangulation, modes, triangulate
+from flaunay._polygons import PolygonTriangulation, polygons
+from flaunay._triangulate import triangulate
+from flaunay._triangulation import Triangulation, modes
 from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 
@@ -44,6 +48,7 @@ __all__ = [
     "ChunkedTriangulation",
     "ClippedVoronoi",
     "CloughTocherInterpolator",
+    "ConstrainedTriangulation",
     "Delaunay",
     "DeviceClippedVoronoi",
     "DeviceError",
@@ -56,6 +61,7 @@ __all__ = [
     "LinearInterpolator",
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
+    "PolygonTriangulation",
     "Triangulation",
     "UsageError",
     "Voronoi",
@@ -64,6 +70,7 @@ __all__ = [
     "devices",
     "griddata",
     "modes",
+    "polygons",
     "relax",
     "relax_device",
     "triangulate",

@@ -56,6 +56,8 @@ _ROWS = 1 << 14
 _SINGULAR = {
     "points": "point",
     "triangles": "triangle",
+    "constraint_edges": "constraint edge",
+    "polygons": "polygon",
     "hull_vertices": "hull vertex",
     "vertices": "vertex",
 }
@@ -138,6 +140,8 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     if is_masked(given):
         return _of_masked(given, name)
     library = type(given).__module__.partition(".")[0]
+    if hasattr(given, "why_no_array"):
+        raise UsageError(f"{name} {given.why_no_array}")
     try:
         if library == "pyarrow":
             return _of_arrow(given, name)
@@ -202,12 +206,20 @@ def as_points(given: ArrayLike) -> FloatArray:
     return points
 
 
-def as_segments(given: npt.ArrayLike) -> npt.NDArray[np.int64]:
+def as_integers(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
+    """An array of integers, or an empty one; UsageError for anything else."""
+    array = _as_array(given, name)
+    if array.dtype.kind not in "iu" and array.size:
+        raise UsageError(f"{name} must be integers, not {array.dtype}")
+    return array
+
+
+def as_offsets(given: npt.ArrayLike, name: str = "offsets") -> npt.NDArray[np.int64]:
     """Offsets of sets; UsageError unless they are a list of integers."""
-    array = _as_array(given, "segments")
+    array = _as_array(given, name)
     if array.ndim != 1 or array.dtype.kind not in "iu":
         raise UsageError(
-            f"segments must be integers in one dimension, not {array.dtype} of shape {array.shape}"
+            f"{name} must be integers in one dimension, not {array.dtype} of shape {array.shape}"
         )
     return np.ascontiguousarray(array, dtype=np.int64)
 

@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _flaunay
-from flaunay._arrays import as_segments
+from flaunay._arrays import as_offsets
 from flaunay._errors import UsageError
 
 if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
 
-Segments = Union[npt.ArrayLike, "pyopencl.array.Array", None]
+Offsets = Union[npt.ArrayLike, "pyopencl.array.Array", None]
 
 _COORDINATES = (np.dtype(np.float64), np.dtype(np.float32))
 
@@ -66,13 +66,13 @@ def _check_points(points: Any, name: str) -> None:
     _check_contiguous(points, name)
 
 
-def _check_segments(segments: pyopencl.array.Array) -> None:
-    if segments.ndim != 1 or segments.dtype != np.int32 or segments.size == 0:
+def _check_offsets(offsets: pyopencl.array.Array) -> None:
+    if offsets.ndim != 1 or offsets.dtype != np.int32 or offsets.size == 0:
         raise UsageError(
-            "segments in device memory must be int32 in one dimension, one or more, "
-            f"not {segments.dtype} of shape {segments.shape}"
+            "offsets in device memory must be int32 in one dimension, one or more, "
+            f"not {offsets.dtype} of shape {offsets.shape}"
         )
-    _check_contiguous(segments, "segments")
+    _check_contiguous(offsets, "offsets")
 
 
 def queue_for(
@@ -113,7 +113,7 @@ class DeviceCall:
         """Makes the call wait for what these arrays wait for, and these know the call's event."""
         self._arrays += [array for array in arrays if array is not None]
 
-    def points(self, points: Any, segments: Segments, name: str) -> _flaunay.DevicePoints:
+    def points(self, points: Any, offsets: Offsets, name: str) -> _flaunay.DevicePoints:
         """Points as the library takes them."""
         _check_points(points, name)
         self.reads(points)
@@ -123,13 +123,13 @@ class DeviceCall:
             bool(points.dtype == np.float32),
             _first_point(points, name),
         )
-        if segments is None:
+        if offsets is None:
             return _flaunay.DevicePoints(*place)
-        if not isinstance(segments, import_pyopencl().array.Array):
-            return _flaunay.DevicePoints(*place, segments=as_segments(segments))
-        _check_segments(segments)
-        sets = int(segments.size) - 1
-        return _flaunay.DevicePoints(*place, device_segments=self._buffer(segments), sets=sets)
+        if not isinstance(offsets, import_pyopencl().array.Array):
+            return _flaunay.DevicePoints(*place, given_offsets=as_offsets(offsets))
+        _check_offsets(offsets)
+        sets = int(offsets.size) - 1
+        return _flaunay.DevicePoints(*place, device_offsets=self._buffer(offsets), sets=sets)
 
     def numbers(self, array: Any, shapes: list[tuple[int, ...]], name: str) -> int:
         """The buffer of an array of doubles of one of some shapes, in which -1 is any size but 0."""

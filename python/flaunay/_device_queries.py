@@ -9,7 +9,7 @@ import numpy as np
 
 from flaunay import _flaunay, _triangulators
 from flaunay._arrays import summary
-from flaunay._device_arrays import DeviceCall, Segments, queue_for, view
+from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
 
 if TYPE_CHECKING:
@@ -40,9 +40,9 @@ class DeviceLocator:
 
     queries : pyopencl.array.Array, shape (m, 2)
         As the points of `triangulate_device`, finite.
-    segments : array_like of int or pyopencl.array.Array of int32, shape (sets + 1,), optional
+    offsets : array_like of int or pyopencl.array.Array of int32, shape (sets + 1,), optional
         Needed if the triangulation has several sets: set s of the queries, which are
-        ``queries[segments[s]:segments[s + 1]]``, is for set s of the points.
+        ``queries[offsets[s]:offsets[s + 1]]``, is for set s of the points.
     queue : pyopencl.CommandQueue, optional
         Of the locator's context and device, in order or not. Without it, that of the queries (of the
         values, for `gradients`).
@@ -83,7 +83,7 @@ class DeviceLocator:
     def locate(
         self,
         queries: pyopencl.array.Array,
-        segments: Segments = None,
+        offsets: Offsets = None,
         queue: Optional[pyopencl.CommandQueue] = None,
         wait_for: Optional[Sequence[pyopencl.Event]] = None,
     ) -> pyopencl.array.Array:
@@ -106,14 +106,14 @@ class DeviceLocator:
         """
         handle = self._opened()
         call = DeviceCall(queue_for(queries, queue, "queries"), wait_for)
-        given = call.points(queries, segments, "queries")
+        given = call.points(queries, offsets, "queries")
         enqueue = call.begin()
         return _answers(call, enqueue, handle.locate(given, enqueue), queries.shape[:1], np.int32)
 
     def nearest(
         self,
         queries: pyopencl.array.Array,
-        segments: Segments = None,
+        offsets: Offsets = None,
         queue: Optional[pyopencl.CommandQueue] = None,
         wait_for: Optional[Sequence[pyopencl.Event]] = None,
     ) -> pyopencl.array.Array:
@@ -123,7 +123,7 @@ class DeviceLocator:
         """
         handle = self._opened()
         call = DeviceCall(queue_for(queries, queue, "queries"), wait_for)
-        given = call.points(queries, segments, "queries")
+        given = call.points(queries, offsets, "queries")
         enqueue = call.begin()
         return _answers(call, enqueue, handle.nearest(given, enqueue), queries.shape[:1], np.int32)
 
@@ -134,7 +134,7 @@ class DeviceLocator:
         method: str = "linear",
         fill_value: float = np.nan,
         gradients: Optional[pyopencl.array.Array] = None,
-        segments: Segments = None,
+        offsets: Offsets = None,
         queue: Optional[pyopencl.CommandQueue] = None,
         wait_for: Optional[Sequence[pyopencl.Event]] = None,
     ) -> pyopencl.array.Array:
@@ -144,7 +144,7 @@ class DeviceLocator:
         ----------
         values : pyopencl.array.Array of float64, shape (npoints,) or (npoints, k)
             Of equal points, those of the smallest index count.
-        queries, segments, queue, wait_for
+        queries, offsets, queue, wait_for
             As the class says.
         method : str
             ``"linear"``, ``"nearest"`` or ``"clough-tocher"``: as `LinearInterpolator`,
@@ -180,7 +180,7 @@ class DeviceLocator:
         if gradients is not None and method != "clough-tocher":
             raise UsageError(f"gradients are for the method 'clough-tocher', not {method!r}")
         call = DeviceCall(queue_for(queries, queue, "queries"), wait_for)
-        given = call.points(queries, segments, "queries")
+        given = call.points(queries, offsets, "queries")
         memory, columns = self._values(call, values)
         slopes = 0
         if gradients is not None:

@@ -30,10 +30,17 @@ def _checked(data: Optional[Data], n: int, name: str) -> dict[str, npt.NDArray[A
 
 
 class TriangleExports:
-    """`Delaunay` for other packages, each imported when it is asked for."""
+    """Triangulations for other packages, each imported when it is asked for."""
 
     points: FloatArray
-    simplices: Indices
+
+    if TYPE_CHECKING:
+
+        @property
+        def simplices(self) -> Indices: ...
+
+    def _purpose(self, method: str) -> str:
+        return f"{type(self).__name__}.{method}"
 
     def to_matplotlib(self) -> matplotlib.tri.Triangulation:
         """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
@@ -60,7 +67,7 @@ class TriangleExports:
         """
         if len(self.simplices) == 0:
             raise UsageError("Matplotlib takes no triangulation without triangles")
-        triangulations = optional("matplotlib.tri", "Delaunay.to_matplotlib")
+        triangulations = optional("matplotlib.tri", self._purpose("to_matplotlib"))
         x, y = self.points.T
         result: matplotlib.tri.Triangulation = triangulations.Triangulation(x, y, self.simplices)
         return result
@@ -95,7 +102,7 @@ class TriangleExports:
         """
         of_points = _checked(point_data, len(self.points), "point_data")
         of_cells = _checked(cell_data, len(self.simplices), "cell_data")
-        mesh: meshio.Mesh = optional("meshio", "Delaunay.to_meshio").Mesh(
+        mesh: meshio.Mesh = optional("meshio", self._purpose("to_meshio")).Mesh(
             self.points.copy(),
             [("triangle", self.simplices.copy())],
             point_data=of_points,
@@ -134,7 +141,7 @@ class TriangleExports:
         if heights.shape != (n,):
             raise UsageError(f"z must have the shape ({n},), not {heights.shape}")
         sizes = np.full((len(self.simplices), 1), 3, np.int32)
-        surface: pyvista.PolyData = optional("pyvista", "Delaunay.to_pyvista").PolyData(
+        surface: pyvista.PolyData = optional("pyvista", self._purpose("to_pyvista")).PolyData(
             np.column_stack([self.points, heights]),
             faces=np.hstack([sizes, self.simplices]).ravel(),
         )

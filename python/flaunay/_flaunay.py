@@ -30,6 +30,7 @@ __version__: str = text_of(library.version())
 
 _INT32, _INT64 = np.dtype(np.int32), np.dtype(np.int64)
 _FLOAT64, _FLOAT32, _UINT8 = np.dtype(np.float64), np.dtype(np.float32), np.dtype(np.uint8)
+_BOOL = np.dtype(np.bool_)
 
 
 # ---- Arrays
@@ -90,20 +91,22 @@ def _as_doubles(values: npt.NDArray[Any]) -> _Doubles:
     return np.ascontiguousarray(values)
 
 
-def _as_offsets(segments: Optional[_Offsets], n: int) -> tuple[Optional[_Offsets], int]:
+def _as_offsets(
+    given: Optional[_Offsets], n: int, name: str = "offsets", what: str = "points"
+) -> tuple[Optional[_Offsets], int]:
     """The sets' offsets for n points, and the number of sets; None means one set.
 
     Where they decrease, the library says so.
     """
-    if segments is None:
+    if given is None:
         return None, 0
-    if len(segments) == 0:
-        raise UsageError("segments need one offset at least, 0")
-    offsets = np.array(segments, _INT64)  # a copy, which does not change any more
+    if len(given) == 0:
+        raise UsageError(f"{name} must have one number at least, 0")
+    offsets = np.array(given, _INT64)  # a copy, which does not change any more
     if offsets.min() < 0:
-        raise UsageError("segments must begin with 0 and not decrease")
+        raise UsageError(f"{name} must begin with 0 and not decrease")
     if offsets[-1] != n:
-        raise UsageError(f"segments end with {offsets[-1]}, but there are {n} points")
+        raise UsageError(f"{name} end with {offsets[-1]}, but there are {n} {what}")
     return offsets, len(offsets) - 1
 
 
@@ -236,34 +239,66 @@ def _parts_of(wanted: set[str]) -> int:
 # ---- Points and results in host memory
 
 
+def _arrays_of(owner: Handle, mesh: Any, parts: int) -> dict[str, Any]:
+    """What was computed, by its name; None if an array was not asked for."""
+    triangles, sets = mesh.triangle_count, mesh.set_count
+    rows = (triangles, 3)
+    return {
+        "triangles": _view(owner, mesh.triangles, rows, _INT32),
+        "neighbors": (
+            _view(owner, mesh.neighbors, rows, _INT32) if parts & PARTS["neighbors"] else None
+        ),
+        "halfedges": (
+            _view(owner, mesh.halfedges, (3 * triangles,), _INT32)
+            if parts & PARTS["halfedges"]
+            else None
+        ),
+        "hull": _view(owner, mesh.hull, (mesh.hull_count,), _INT32),
+        "representatives": _view(owner, mesh.representatives, (mesh.point_count,), _INT32),
+        "triangle_offsets": _view(owner, mesh.triangle_offsets, (sets + 1,), _INT64),
+        "hull_offsets": _view(owner, mesh.hull_offsets, (sets + 1,), _INT64),
+        "statistics": _statistics_of(mesh.statistics[0]),
+    }
+
+
 class _Triangulation(Handle):
     _destroy = library.triangulation_destroy
 
     def arrays(self, parts: int) -> dict[str, Any]:
+        return _arrays_of(self, library.triangulation_mesh(self.pointer)[0], parts)
+
+
+class _Constrained(Handle):
+    _destroy = library.constrained_destroy
+
+    def arrays(self, parts: int, labels: bool, is_map: bool = False) -> dict[str, Any]:
         """What was computed, by its name; None if an array was not asked for."""
-        mesh = library.triangulation_mesh(self.pointer)[0]
-        triangles, sets = mesh.triangle_count, mesh.set_count
-        rows = (triangles, 3)
-        return {
-            "triangles": _view(self, mesh.triangles, rows, _INT32),
-            "neighbors": (
-                _view(self, mesh.neighbors, rows, _INT32) if parts & PARTS["neighbors"] else None
-            ),
-            "halfedges": (
-                _view(self, mesh.halfedges, (3 * triangles,), _INT32)
-                if parts & PARTS["halfedges"]
-                else None
-            ),
-            "hull": _view(self, mesh.hull, (mesh.hull_count,), _INT32),
-            "representatives": _view(self, mesh.representatives, (mesh.point_count,), _INT32),
-            "triangle_offsets": _view(self, mesh.triangle_offsets, (sets + 1,), _INT64),
-            "hull_offsets": _view(self, mesh.hull_offsets, (sets + 1,), _INT64),
-            "statistics": _statistics_of(mesh.statistics[0]),
+        result = _arrays_of(self, library.constrained_mesh(self.pointer)[0], parts)
+        given = library.constrained_get_arrays(self.pointer)[0]
+        triangles, sets = len(result["triangles"]), len(result["triangle_offsets"]) - 1
+        shapes: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
+            "added_points": ((given.added_count, 2), _FLOAT64),
+            "added_offsets": ((sets + 1,), _INT64),
+            "constraint_edges": ((given.constraint_count, 2), _INT32),
+            "edge_segments": ((given.constraint_count,), _INT32),
+            "piece_offsets": ((given.segment_count + 1,), _INT32),
+            "piece_edges": ((given.piece_count, 2), _INT32),
+            "constrained": ((triangles, 3), _BOOL),
+            "depths": ((triangles,), _INT32),
+            "regions": ((triangles,), _INT32),
+            "polygons": ((triangles,), _INT32),
         }
+        for name, (shape, dtype) in shapes.items():
+            result[name] = _view(self, getattr(given, name), shape, dtype)
+        if not labels:
+            result["depths"] = result["regions"] = None
+        if not is_map:
+            result["polygons"] = None
+        return result
 
 
 def triangulate_without_device(
-    points: _Doubles, segments: Optional[_Offsets], mode: str, wanted: set[str]
+    points: _Doubles, given_offsets: Optional[_Offsets], mode: str, wanted: set[str]
 ) -> dict[str, Any]:
     """Triangulates points in a mode that runs on the host. wanted: names of the optional arrays."""
     n = _count_points(points)
@@ -271,7 +306,7 @@ def triangulate_without_device(
     parts = _parts_of(wanted) | PARTS["triangles"]
     options = _options_for(mode, parts)
     points = _as_doubles(points)
-    offsets, sets = _as_offsets(segments, n)
+    offsets, sets = _as_offsets(given_offsets, n)
     result = _Triangulation()
     check(
         library.triangulate_on_host(
@@ -325,7 +360,7 @@ class Triangulator(DeviceHandle):
             return self._known(library.triangulator_capacity(self.pointer) or None)
 
     def triangulate(
-        self, points: FloatArray, segments: Optional[_Offsets], mode: str, wanted: set[str]
+        self, points: FloatArray, given_offsets: Optional[_Offsets], mode: str, wanted: set[str]
     ) -> dict[str, Any]:
         """Triangulates points in host memory. wanted: names of the optional arrays."""
         n = _count_points(points)
@@ -337,7 +372,7 @@ class Triangulator(DeviceHandle):
             coordinates = cast(FloatArray, np.ascontiguousarray(points))
         else:
             call, coordinates = library.triangulate, _as_doubles(points)
-        offsets, sets = _as_offsets(segments, n)
+        offsets, sets = _as_offsets(given_offsets, n)
         result = _Triangulation()
         with self.turn:
             check(
@@ -352,6 +387,83 @@ class Triangulator(DeviceHandle):
                 )
             )
         return result.arrays(parts)
+
+    def triangulate_constrained(
+        self,
+        points: _Doubles,
+        given_offsets: Optional[_Offsets],
+        segments: _Indices,
+        holes: _Doubles,
+        hole_offsets: Optional[_Offsets],
+        rules: dict[str, int],
+        wanted: set[str],
+    ) -> dict[str, Any]:
+        """Triangulates points with segments. rules: members of flaunay_constraints that are no arrays."""
+        n = _count_points(points)
+        parts = _parts_of(wanted) | PARTS["triangles"]
+        offsets, sets = _as_offsets(given_offsets, n)
+        kept_holes, hole_sets = _as_offsets(hole_offsets, len(holes), "hole_offsets", "holes")
+        if kept_holes is not None and hole_sets != max(sets, 1):
+            raise UsageError(f"hole_offsets are of {hole_sets} sets, but there are {max(sets, 1)}")
+        points, holes = _as_doubles(points), _as_doubles(holes)
+        constraints = _library.Constraints(
+            segments=_address_of(segments),
+            segment_count=len(segments),
+            holes=_address_of(holes),
+            hole_count=len(holes),
+            hole_offsets=_address_or_none(kept_holes),
+            **rules,
+        )
+        result = _Constrained()
+        with self.turn:
+            check(
+                library.triangulate_constrained(
+                    self.pointer,
+                    _address_of(points),
+                    n,
+                    _address_or_none(offsets),
+                    sets,
+                    ctypes.byref(constraints),
+                    _options_for("blocks", parts),
+                    result.place,
+                )
+            )
+        return result.arrays(parts, bool(rules["labels"]))
+
+    def triangulate_polygons(
+        self,
+        points: _Doubles,
+        ring_offsets: _Offsets,
+        polygon_offsets: _Offsets,
+        rules: dict[str, int],
+        wanted: set[str],
+    ) -> dict[str, Any]:
+        """Triangulates polygons. rules: members of flaunay_polygons that are no arrays."""
+        parts = _parts_of(wanted) | PARTS["triangles"]
+        rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
+        outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
+        points = _as_doubles(points)
+        polygons = _library.Polygons(
+            coordinates=_address_of(points),
+            ring_offsets=_address_or_none(rings),
+            ring_count=ring_count,
+            polygon_offsets=_address_or_none(outer),
+            polygon_count=count,
+            has_outside=1,
+            has_fill_rule=1,
+            **rules,
+        )
+        result = _Constrained()
+        with self.turn:
+            check(
+                library.triangulate_polygons(
+                    self.pointer,
+                    ctypes.byref(polygons),
+                    _options_for("blocks", parts),
+                    result.place,
+                )
+            )
+        return result.arrays(parts, bool(rules["labels"]), bool(rules["map"]))
 
 
 def _encoded(text: str) -> bytes:
@@ -404,8 +516,8 @@ class DevicePoints:
         count: int,
         single: bool,
         first: int,
-        segments: Optional[_Offsets] = None,
-        device_segments: int = 0,
+        given_offsets: Optional[_Offsets] = None,
+        device_offsets: int = 0,
         sets: int = 0,
     ) -> None:
         self.struct = _library.DevicePoints(
@@ -413,10 +525,10 @@ class DevicePoints:
             count=count,
             precision=_library.FLOAT32 if single else _library.FLOAT64,
             first=first,
-            device_offsets=device_segments or None,
+            device_offsets=device_offsets or None,
             sets=sets,
         )
-        self._offsets, host_sets = _as_offsets(segments, count)
+        self._offsets, host_sets = _as_offsets(given_offsets, count)
         if self._offsets is not None:
             self.struct.offsets, self.struct.sets = _address_of(self._offsets), host_sets
 

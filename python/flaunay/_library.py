@@ -41,6 +41,12 @@ INTERPOLATIONS = {"linear": 0, "nearest": 1, "clough_tocher": 2, "sibson": 3, "l
 # The bits of flaunay_part.
 PARTS = {"triangles": 1, "neighbors": 2, "halfedges": 4, "hull": 8, "representatives": 16}
 
+# The values of flaunay_crossings, flaunay_outside, flaunay_fill_rule and flaunay_overlaps.
+CROSSINGS = {"error": 0, "split": 1}
+OUTSIDE = {"keep": 0, "hull": 1, "holes": 2}
+FILL_RULES = {"nesting": 0, "even_odd": 1, "winding": 2}
+OVERLAPS = {"first": 0, "error": 1}
+
 # The bits of flaunay_voronoi_part, and of flaunay_clipped_voronoi_part.
 VORONOI_PARTS = {"circumcentres": 1, "cell_offsets": 2, "cells": 4, "unbounded": 8}
 CLIPPED_VORONOI_PARTS = {"vertices": 1, "offsets": 2, "areas": 4, "centroids": 8}
@@ -211,6 +217,59 @@ class Mesh(ctypes.Structure):
     ]
 
 
+class Constraints(ctypes.Structure):
+    _fields_ = [
+        ("segments", c_void_p),
+        ("segment_count", c_size_t),
+        ("holes", c_void_p),
+        ("hole_count", c_size_t),
+        ("hole_offsets", c_void_p),
+        ("crossings", c_int),
+        ("outside", c_int),
+        ("fill_rule", c_int),
+        ("labels", c_int),
+        ("reserved", c_size_t * 8),
+    ]
+
+
+class Polygons(ctypes.Structure):
+    _fields_ = [
+        ("coordinates", c_void_p),
+        ("ring_offsets", c_void_p),
+        ("ring_count", c_size_t),
+        ("polygon_offsets", c_void_p),
+        ("polygon_count", c_size_t),
+        ("crossings", c_int),
+        ("has_outside", c_int),
+        ("outside", c_int),
+        ("has_fill_rule", c_int),
+        ("fill_rule", c_int),
+        ("labels", c_int),
+        ("map", c_int),
+        ("overlaps", c_int),
+        ("reserved", c_size_t * 8),
+    ]
+
+
+class ConstrainedArrays(ctypes.Structure):
+    _fields_ = [
+        ("added_count", c_size_t),
+        ("constraint_count", c_size_t),
+        ("segment_count", c_size_t),
+        ("piece_count", c_size_t),
+        ("added_points", c_void_p),
+        ("added_offsets", c_void_p),
+        ("constraint_edges", c_void_p),
+        ("edge_segments", c_void_p),
+        ("piece_offsets", c_void_p),
+        ("piece_edges", c_void_p),
+        ("constrained", c_void_p),
+        ("depths", c_void_p),
+        ("regions", c_void_p),
+        ("polygons", c_void_p),
+    ]
+
+
 class ChunkRound(ctypes.Structure):
     _fields_ = [
         ("points", c_uint64),
@@ -298,6 +357,23 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     ),
     "triangulation_destroy": (None, [c_void_p]),
     "triangulation_mesh": (POINTER(Mesh), [c_void_p]),
+    "triangulate_constrained": (
+        c_int,
+        [
+            c_void_p,
+            c_void_p,
+            c_size_t,
+            c_void_p,
+            c_size_t,
+            POINTER(Constraints),
+            POINTER(Options),
+            c_void_p,
+        ],
+    ),
+    "triangulate_polygons": (c_int, [c_void_p, POINTER(Polygons), POINTER(Options), c_void_p]),
+    "constrained_destroy": (None, [c_void_p]),
+    "constrained_mesh": (POINTER(Mesh), [c_void_p]),
+    "constrained_get_arrays": (POINTER(ConstrainedArrays), [c_void_p]),
     "first_triangles": (c_int, [c_void_p, c_size_t, c_size_t, c_void_p]),
     "vertex_neighbors": (
         c_int,

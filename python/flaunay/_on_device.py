@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from flaunay import _device_queries, _device_voronoi, _flaunay, _triangulators
 from flaunay._arrays import names_of, summary
-from flaunay._device_arrays import DeviceCall, Segments, import_pyopencl, queue_for, view
+from flaunay._device_arrays import DeviceCall, Offsets, import_pyopencl, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation
 
@@ -111,7 +111,7 @@ class DeviceTriangulation:
 def triangulate_device(
     points: pyopencl.array.Array,
     queue: Optional[pyopencl.CommandQueue] = None,
-    segments: Segments = None,
+    offsets: Offsets = None,
     neighbors: bool = False,
     halfedges: bool = False,
     hull: bool = False,
@@ -131,7 +131,7 @@ def triangulate_device(
         bytes. Of a ``pyopencl.Buffer``, take ``Array(queue, (n, 2), numpy.float64, data=buffer)``.
     queue : pyopencl.CommandQueue, optional
         Of the points' context, in order or not. Without it, the points' own.
-    segments : array_like of int or pyopencl.array.Array of int32, shape (sets + 1,), optional
+    offsets : array_like of int or pyopencl.array.Array of int32, shape (sets + 1,), optional
         As of `triangulate`. From device memory, they cross to the host.
     neighbors, halfedges, hull, representatives : bool
         Which of these to compute beside the triangles.
@@ -145,7 +145,7 @@ def triangulate_device(
     Raises
     ------
     UsageError
-        For a wrong shape or type, a queue of another context, segments that are none.
+        For a wrong shape or type, a queue of another context, offsets that are none.
     InputError
         For a point that is not finite, magnitudes too different to be exact, or too many points.
     DeviceError
@@ -171,7 +171,7 @@ def triangulate_device(
            [0, 1, 2]], dtype=int32)
     """
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
-    device_points = call.points(points, segments, "points")
+    device_points = call.points(points, offsets, "points")
     wanted = names_of(
         triangles=True,
         neighbors=neighbors,

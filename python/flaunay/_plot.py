@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import matplotlib.patches
 
     from flaunay._alpha_shape import AlphaShape
+    from flaunay._constrained import ConstrainedTriangulation
     from flaunay._delaunay import Delaunay
 
 Doubles = npt.NDArray[np.float64]
@@ -273,3 +274,35 @@ def draw_alpha_shape(
     (dots,) = axes.plot(*points[shape.isolated].T, ".", color=look["edgecolor"], markersize=3)
     axes.autoscale_view()
     return patch, lines, dots
+
+
+ConstrainedArtists = tuple[
+    "matplotlib.collections.LineCollection", "matplotlib.collections.LineCollection"
+]
+
+
+def draw_constrained(
+    result: ConstrainedTriangulation, ax: Optional[matplotlib.axes.Axes], style: dict[str, Any]
+) -> ConstrainedArtists:
+    """As `ConstrainedTriangulation.plot` says."""
+    axes = _axes(ax, f"{type(result).__name__}.plot")
+    look = _with_defaults(style, {_WIDTH: 0.5, _COLOR: "tab:blue"})
+    strong = {
+        "color": look.pop("constraint_color", "tab:red"),
+        "linewidth": look.pop("constraint_linewidth", 1.6),
+        "capstyle": "round",
+    }
+    n = max(len(result.points), 1)
+
+    def keys_of(edges: Indices) -> npt.NDArray[np.int64]:
+        ends = np.sort(edges, axis=1).astype(np.int64)
+        keys: npt.NDArray[np.int64] = ends[:, 0] * n + ends[:, 1]
+        return keys
+
+    is_constraint = np.isin(keys_of(result.edges), keys_of(result.constraint_edges))
+    lines = _segments(result.points, result.edges[~is_constraint], look)
+    constraints = _segments(result.points, result.edges[is_constraint], strong)
+    for collection in (lines, constraints):
+        axes.add_collection(collection)
+    axes.autoscale_view()
+    return lines, constraints

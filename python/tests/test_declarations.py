@@ -70,7 +70,7 @@ def is_pointer(declared):
 
 def fits(declared, cls):
     """Whether a type of the header is that of ctypes."""
-    plain = declared.replace("const", "").replace(" ", "")
+    plain = re.sub(r"\bconst\b", "", declared).replace(" ", "")
     if not is_pointer(declared):
         return NUMBERS[plain] is cls
     if cls is ctypes.c_char_p:
@@ -147,6 +147,26 @@ def test_functions(name):
             "flaunay_interpolation",
             "FLAUNAY_INTERPOLATION_",
             {k.upper(): v for k, v in _library.INTERPOLATIONS.items()},
+        ),
+        (
+            "flaunay_crossings",
+            "FLAUNAY_CROSSINGS_",
+            {k.upper(): v for k, v in _library.CROSSINGS.items()},
+        ),
+        (
+            "flaunay_outside",
+            "FLAUNAY_OUTSIDE_",
+            {k.upper(): v for k, v in _library.OUTSIDE.items()},
+        ),
+        (
+            "flaunay_fill_rule",
+            "FLAUNAY_FILL_RULE_",
+            {k.upper(): v for k, v in _library.FILL_RULES.items()},
+        ),
+        (
+            "flaunay_overlaps",
+            "FLAUNAY_OVERLAPS_",
+            {k.upper(): v for k, v in _library.OVERLAPS.items()},
         ),
         (
             "flaunay_precision",

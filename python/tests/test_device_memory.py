@@ -139,25 +139,25 @@ def test_arrays_that_are_not_contiguous(random, queue):
 
 
 SIZES = [3, 0, 1, 50, 2, 0, 7, 200]
-SEGMENTS = np.concatenate([[0], np.cumsum(SIZES)]).astype(np.int32)
+OFFSETS = np.concatenate([[0], np.cumsum(SIZES)]).astype(np.int32)
 
 
 @pytest.mark.parametrize("where", ["host", "device", "view on the device"])
 def test_many_sets(random, queue, where):
-    points = random.random((SEGMENTS[-1], 2))
-    segments = SEGMENTS
+    points = random.random((OFFSETS[-1], 2))
+    offsets = OFFSETS
     if where == "device":
-        segments = cl_array.to_device(queue, SEGMENTS)
+        offsets = cl_array.to_device(queue, OFFSETS)
     elif where == "view on the device":
-        segments = cl_array.to_device(queue, np.concatenate([np.int32([5, 5, 5]), SEGMENTS]))[3:]
+        offsets = cl_array.to_device(queue, np.concatenate([np.int32([5, 5, 5]), OFFSETS]))[3:]
     array = cl_array.to_device(queue, np.concatenate([random.random((9, 2)), points]))[9:]
-    result = flaunay.triangulate_device(array, segments=segments, **ALL)
-    check_equal(result, flaunay.triangulate(points, segments=SEGMENTS, halfedges=True))
+    result = flaunay.triangulate_device(array, offsets=offsets, **ALL)
+    check_equal(result, flaunay.triangulate(points, offsets=OFFSETS, halfedges=True))
 
 
 @pytest.mark.parametrize("on_device", [False, True])
 @pytest.mark.parametrize(
-    "segments, message",
+    "offsets, message",
     [
         ([0, 3], "end with 3, but there are 4"),
         ([1, 4], "begin with 0"),
@@ -165,18 +165,18 @@ def test_many_sets(random, queue, where):
         ([0, -1, 4], "not decrease"),
     ],
 )
-def test_segments_that_are_none(queue, on_device, segments, message):
+def test_offsets_that_are_none(queue, on_device, offsets, message):
     points = cl_array.zeros(queue, (4, 2), np.float64)
-    given = cl_array.to_device(queue, np.int32(segments)) if on_device else segments
+    given = cl_array.to_device(queue, np.int32(offsets)) if on_device else offsets
     with pytest.raises(flaunay.UsageError, match=message):
-        flaunay.triangulate_device(points, segments=given)
+        flaunay.triangulate_device(points, offsets=given)
 
 
-def test_segments_of_a_wrong_type_or_shape(queue):
+def test_offsets_of_a_wrong_type_or_shape(queue):
     points = cl_array.zeros(queue, (4, 2), np.float64)
-    for segments in np.int64([0, 4]), np.int32([[0, 4]]), np.float32([0, 4]):
+    for offsets in np.int64([0, 4]), np.int32([[0, 4]]), np.float32([0, 4]):
         with pytest.raises(flaunay.UsageError, match="int32 in one dimension"):
-            flaunay.triangulate_device(points, segments=cl_array.to_device(queue, segments))
+            flaunay.triangulate_device(points, offsets=cl_array.to_device(queue, offsets))
 
 
 def test_points_of_a_wrong_type_or_shape(queue):

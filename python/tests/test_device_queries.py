@@ -215,36 +215,36 @@ def test_views_of_values_wait_for_what_the_call_waits_for(random, context, queue
 # ---- Several sets
 
 SIZES = [3, 0, 1, 50, 2, 0, 7, 200]
-SEGMENTS = np.concatenate([[0], np.cumsum(SIZES)]).astype(np.int32)
+OFFSETS = np.concatenate([[0], np.cumsum(SIZES)]).astype(np.int32)
 QUERY_SIZES = [4, 2, 0, 30, 5, 1, 9, 100]
-QUERY_SEGMENTS = np.concatenate([[0], np.cumsum(QUERY_SIZES)]).astype(np.int32)
+QUERY_OFFSETS = np.concatenate([[0], np.cumsum(QUERY_SIZES)]).astype(np.int32)
 
 
 @pytest.mark.parametrize("on_device", [False, True])
 def test_sets_of_queries_are_for_sets_of_points(random, queue, on_device):
-    points, queries = random.random((SEGMENTS[-1], 2)), random.random((QUERY_SEGMENTS[-1], 2))
+    points, queries = random.random((OFFSETS[-1], 2)), random.random((QUERY_OFFSETS[-1], 2))
     values = random.random(len(points))
-    tri = triangulated(queue, points, segments=SEGMENTS)
+    tri = triangulated(queue, points, offsets=OFFSETS)
     locator = tri.locator()
-    given, segments = cl_array.to_device(queue, queries), QUERY_SEGMENTS
+    given, offsets = cl_array.to_device(queue, queries), QUERY_OFFSETS
     if on_device:
-        segments = cl_array.to_device(queue, QUERY_SEGMENTS)
+        offsets = cl_array.to_device(queue, QUERY_OFFSETS)
     numbers = cl_array.to_device(queue, values)
-    triangles = locator.locate(given, segments).get()
-    near = locator.nearest(given, segments=segments).get()
+    triangles = locator.locate(given, offsets).get()
+    near = locator.nearest(given, offsets=offsets).get()
     between = {
-        method: locator.interpolate(numbers, given, method, segments=segments).get()
+        method: locator.interpolate(numbers, given, method, offsets=offsets).get()
         for method in METHODS
     }
     slopes = locator.gradients(numbers).get()
     for s in range(len(SIZES)):
-        mine, theirs = slice(*SEGMENTS[s : s + 2]), slice(*QUERY_SEGMENTS[s : s + 2])
+        mine, theirs = slice(*OFFSETS[s : s + 2]), slice(*QUERY_OFFSETS[s : s + 2])
         host = flaunay.Delaunay(points[mine])
         where = host.find_simplex(queries[theirs])
         first = tri.triangle_offsets[s]
         assert np.array_equal(triangles[theirs], np.where(where < 0, -1, where + first)), s
         closest = host.nearest(queries[theirs])
-        assert np.array_equal(near[theirs], np.where(closest < 0, -1, closest + SEGMENTS[s])), s
+        assert np.array_equal(near[theirs], np.where(closest < 0, -1, closest + OFFSETS[s])), s
         linear = flaunay.LinearInterpolator(host, values[mine])(queries[theirs])
         assert same(between["linear"][theirs], linear), s
         for method in "sibson", "laplace":
@@ -261,16 +261,16 @@ def test_sets_of_queries_are_for_sets_of_points(random, queue, on_device):
 
 
 def test_another_number_of_sets(random, queue):
-    locator = triangulated(queue, random.random((20, 2)), segments=[0, 5, 20]).locator()
+    locator = triangulated(queue, random.random((20, 2)), offsets=[0, 5, 20]).locator()
     queries = cl_array.to_device(queue, random.random((6, 2)))
-    for segments in None, [0, 6], [0, 1, 2, 6]:
+    for offsets in None, [0, 6], [0, 1, 2, 6]:
         with pytest.raises(flaunay.UsageError, match="sets"):
-            locator.locate(queries, segments)
+            locator.locate(queries, offsets)
     with pytest.raises(flaunay.UsageError, match="end with 5, but there are 6"):
         locator.nearest(queries, [0, 3, 5])
-    for segments in np.int64([0, 3, 6]), np.int32([[0, 3, 6]]):
+    for offsets in np.int64([0, 3, 6]), np.int32([[0, 3, 6]]):
         with pytest.raises(flaunay.UsageError, match="int32 in one dimension"):
-            locator.nearest(queries, cl_array.to_device(queue, segments))
+            locator.nearest(queries, cl_array.to_device(queue, offsets))
 
 
 # ---- Errors
@@ -643,27 +643,27 @@ def test_clipped_cells_are_those_of_the_host(random, queue, bounds, n):
 
 
 def test_clipped_cells_of_sets(random, queue):
-    points = random.random((SEGMENTS[-1], 2))
-    cells = triangulated(queue, points, segments=SEGMENTS).clipped_voronoi(BOX).get()
+    points = random.random((OFFSETS[-1], 2))
+    cells = triangulated(queue, points, offsets=OFFSETS).clipped_voronoi(BOX).get()
     for s in range(len(SIZES)):
-        mine = slice(*SEGMENTS[s : s + 2])
+        mine = slice(*OFFSETS[s : s + 2])
         host = flaunay.Voronoi(points[mine]).clipped(BOX)
         for i, polygon in enumerate(host.polygons()):
-            assert np.array_equal(cells.polygon(SEGMENTS[s] + i), polygon)
+            assert np.array_equal(cells.polygon(OFFSETS[s] + i), polygon)
         assert same(cells.areas[mine], host.areas) and same(cells.centroids[mine], host.centroids)
 
 
 def test_duals_of_sets(random, queue):
-    points = random.random((SEGMENTS[-1], 2))
-    tri = triangulated(queue, points, segments=SEGMENTS)
+    points = random.random((OFFSETS[-1], 2))
+    tri = triangulated(queue, points, offsets=OFFSETS)
     dual = tri.voronoi()
     vertices, cells, offsets = dual.vertices.get(), dual.cells.get(), dual.cell_offsets.get()
     for s in range(len(SIZES)):
-        host = flaunay.Voronoi(points[slice(*SEGMENTS[s : s + 2])])
+        host = flaunay.Voronoi(points[slice(*OFFSETS[s : s + 2])])
         first, last = tri.triangle_offsets[s : s + 2]
         assert same(vertices[first:last], host.vertices)
         assert np.array_equal(cells[3 * first : 3 * last] - first, host.cells)
-        mine = offsets[SEGMENTS[s] : SEGMENTS[s + 1] + 1]
+        mine = offsets[OFFSETS[s] : OFFSETS[s + 1] + 1]
         assert np.array_equal(mine - 3 * first, host.cell_offsets)
 
 

@@ -56,8 +56,8 @@ def test_points_that_are_none(call, points, message):
 def test_ragged_lists(call):
     with pytest.raises(flaunay.UsageError, match="points are no array of numbers"):
         call([[0, 1], [2]])
-    with pytest.raises(flaunay.UsageError, match="segments are no array of numbers"):
-        flaunay.triangulate(FOUR, segments=[[0], [1, 4]])
+    with pytest.raises(flaunay.UsageError, match="offsets are no array of numbers"):
+        flaunay.triangulate(FOUR, offsets=[[0], [1, 4]])
 
 
 @pytest.mark.parametrize("call", CALLS)
@@ -76,10 +76,10 @@ def test_magnitudes_that_differ_too_much():
 
 
 @pytest.mark.parametrize(
-    "segments, message",
+    "offsets, message",
     [
         ([], "integers"),
-        (np.empty(0, int), "one offset"),
+        (np.empty(0, int), "one number"),
         ([0], "end with 0, but there are 4"),
         ([0, 3], "end with 3, but there are 4"),
         ([0, 5], "end with 5, but there are 4"),
@@ -93,9 +93,9 @@ def test_magnitudes_that_differ_too_much():
     ],
 )
 @pytest.mark.parametrize("mode", ["blocks", "flattened", "dwyer"])
-def test_segments_that_are_none(segments, message, mode):
+def test_offsets_that_are_none(offsets, message, mode):
     with pytest.raises(flaunay.UsageError, match=message):
-        flaunay.triangulate(FOUR, segments=segments, mode=mode)
+        flaunay.triangulate(FOUR, offsets=offsets, mode=mode)
 
 
 def test_modes():

@@ -181,3 +181,44 @@ def test_endless_ridges_of_points_near_a_line_go_outwards(axes):
     lines = flaunay.Voronoi(points).plot(axes, bounds=(0, 0, 10, 2)).get_segments()
     # Not between the first and the last, where a ridge begins far above.
     assert sorted(line[0, 0].round(6) for line in lines) == [5, 7.5]
+
+
+FRAME = [[0, 0], [6, 0], [6, 6], [0, 6], [2, 2], [4, 2], [4, 4], [2, 4], [9, 3]]
+SIDES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4]]
+
+
+def test_constraints_are_drawn_strongly_and_what_is_outside_is_not(axes):
+    mesh = flaunay.triangulate(FRAME, SIDES, outside="holes")
+    edges, constraints = mesh.plot(axes)
+    assert len(edges.get_segments()) == 8 and len(constraints.get_segments()) == 8
+    assert constraints.get_linewidth()[0] > 2 * edges.get_linewidth()[0]
+    drawn = np.concatenate([*edges.get_segments(), *constraints.get_segments()])
+    assert drawn.max() == 6
+    assert {tuple(sorted(map(tuple, line))) for line in constraints.get_segments()} == {
+        tuple(sorted(tuple(map(float, FRAME[i])) for i in side)) for side in SIDES
+    }
+    assert not is_blank(axes)
+
+
+def test_the_style_of_constraints(axes):
+    mesh = flaunay.triangulate(FRAME, SIDES)
+    edges, constraints = mesh.plot(
+        axes, color="blue", lw=2, constraint_color="red", constraint_linewidth=5
+    )
+    assert np.array_equal(constraints.get_color(), [[1, 0, 0, 1]])
+    assert constraints.get_linewidth() == [5] and edges.get_linewidth() == [2]
+    assert np.array_equal(edges.get_color(), [[0, 0, 1, 1]])
+
+
+def test_polygons_are_drawn(axes):
+    edges, constraints = flaunay.polygons([[FRAME[:4], FRAME[4:8]], []]).plot(axes)
+    assert len(edges.get_segments()) == 8 and len(constraints.get_segments()) == 8
+    edges, constraints = flaunay.polygons([]).plot(axes)
+    assert len(edges.get_segments()) == len(constraints.get_segments()) == 0
+
+
+def test_constrained_triangles_for_tripcolor(axes):
+    mesh = flaunay.polygons([[FRAME[:4], FRAME[4:8]]])
+    collection = axes.tripcolor(mesh.to_matplotlib(), mesh.areas)
+    assert len(collection.get_array()) == 8 and not is_blank(axes)
+    assert mesh.to_matplotlib().get_trifinder()(3, 3) == -1

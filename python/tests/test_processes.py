@@ -23,7 +23,7 @@ def everything_on_the_host(seed):
         tri.interpolate(points[:, 0], queries),
         vor.vertices,
         vor.cells,
-        flaunay.triangulate(points.astype(np.float32), segments=[0, 1000, 3000]).triangles,
+        flaunay.triangulate(points.astype(np.float32), offsets=[0, 1000, 3000]).triangles,
         flaunay.triangulate(points, mode="dwyer").hull,
         flaunay.triangulate_chunks(points, triangles=True, chunk_points=1000).triangles,
     ]

@@ -140,28 +140,26 @@ def test_every_mode_gives_the_same_triangles(random, mode, dtype):
 @pytest.mark.parametrize("mode", MODES)
 def test_many_sets(random, mode):
     sizes = [3, 0, 1, 50, 2, 0, 7, 200]
-    segments = np.concatenate([[0], np.cumsum(sizes)])
-    points = random.random((segments[-1], 2))
-    mesh = flaunay.triangulate(points, segments=segments, mode=mode)
-    assert len(mesh.triangle_offsets) == len(mesh.hull_offsets) == len(segments)
+    offsets = np.concatenate([[0], np.cumsum(sizes)])
+    points = random.random((offsets[-1], 2))
+    mesh = flaunay.triangulate(points, offsets=offsets, mode=mode)
+    assert len(mesh.triangle_offsets) == len(mesh.hull_offsets) == len(offsets)
     for s in range(len(sizes)):
-        alone = flaunay.triangulate(points[segments[s] : segments[s + 1]])
+        alone = flaunay.triangulate(points[offsets[s] : offsets[s + 1]])
         triangles = mesh.triangles[mesh.triangle_offsets[s] : mesh.triangle_offsets[s + 1]]
         hull = mesh.hull[mesh.hull_offsets[s] : mesh.hull_offsets[s + 1]]
-        assert as_set(triangles - segments[s]) == as_set(alone.triangles)
-        assert np.array_equal(hull - segments[s], alone.hull)
+        assert as_set(triangles - offsets[s]) == as_set(alone.triangles)
+        assert np.array_equal(hull - offsets[s], alone.hull)
 
 
-@pytest.mark.parametrize(
-    "segments", [[0, 5, 10], (0, 5, 10), range(0, 11, 5), np.uint8([0, 5, 10])]
-)
-def test_segments_of_any_integer_type(random, segments):
-    mesh = flaunay.triangulate(random.random((10, 2)), segments=segments)
+@pytest.mark.parametrize("offsets", [[0, 5, 10], (0, 5, 10), range(0, 11, 5), np.uint8([0, 5, 10])])
+def test_offsets_of_any_integer_type(random, offsets):
+    mesh = flaunay.triangulate(random.random((10, 2)), offsets=offsets)
     assert len(mesh.triangle_offsets) == 3
 
 
 def test_no_sets_at_all():
-    mesh = flaunay.triangulate(np.empty((0, 2)), segments=[0])
+    mesh = flaunay.triangulate(np.empty((0, 2)), offsets=[0])
     assert mesh.triangle_offsets.tolist() == [0] and mesh.triangles.shape == (0, 3)
 
 
@@ -195,7 +193,7 @@ def test_results_are_short_in_print(random):
     assert (
         repr(flaunay.Voronoi(points)) == f"<flaunay.Voronoi: 100000 points, {triangles} vertices>"
     )
-    two = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5]], segments=[0, 3, 4])
+    two = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5]], offsets=[0, 3, 4])
     assert repr(two) == "<flaunay.Triangulation: 4 points, 1 triangle, 4 hull vertices, 2 sets>"
 
 

@@ -11,9 +11,11 @@
 #include "call/implementation.hpp"
 #include "call/insert_segments.hpp"
 #include "constrained/constrained.hpp"
+#include "constrained/split.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
+#include "host/system_memory.hpp"
 
 namespace flaunay {
 namespace {
@@ -47,8 +49,14 @@ Ids segments_of_edges(std::size_t edges, const Ids& piece_offsets, const Ids& pi
   return owner;
 }
 
-// The coordinates of all points, those that splitting added too. Empty if there are none of these.
-std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added) {
+ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
+                                         const std::vector<std::size_t>& offsets,
+                                         const Constraints& constraints, const ConstrainedOptions& options);
+
+}  // namespace
+
+std::vector<double> call::with_added(const double* coordinates, std::size_t n,
+                                     const std::vector<double>& added) {
   std::vector<double> all;
   if (added.empty()) return all;
   all.assign(coordinates, coordinates + 2 * n);
@@ -56,13 +64,14 @@ std::vector<double> with_added(const double* coordinates, std::size_t n, const s
   return all;
 }
 
-}  // namespace
-
 ConstrainedTriangulation call::constrain(Implementation& self, const double* coordinates,
                                          const std::vector<std::size_t>& offsets,
                                          const Constraints& constraints, const ConstrainedOptions& options) {
   geometry::check_offsets(offsets);
   geometry::check_coordinates(coordinates, offsets.back());
+  if (options.crossings == Crossings::split) {
+    return constrain_split(self, coordinates, offsets, constraints, options);
+  }
   const Ids segments = checked_segments(constraints);
   Options plain = options;
   plain.neighbors = true;
@@ -86,6 +95,49 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
   end_phase("constrain", begin, result.statistics);
   return result;
 }
+
+namespace {
+
+// Triangulates all points with the pieces as segments, and then numbers the added points after all others.
+ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
+                                         const std::vector<std::size_t>& offsets,
+                                         const Constraints& constraints, const ConstrainedOptions& options) {
+  // What splitting and triangulating take for each pair of pieces that cross.
+  constexpr std::size_t kBytesPerCrossing = 1024;
+  const double begin = host::now();
+  constrained::SplitLimits limits;
+  limits.crossings = std::min(limits.crossings, host::memory_left().bytes / kBytesPerCrossing);
+  constrained::Split split = constrained::split(coordinates, offsets, checked_segments(constraints), limits);
+  const constrained::AllPoints all = constrained::join_added(coordinates, offsets, split);
+  for (std::int32_t& v : split.pieces) v = all.place[v];
+  const double seconds = host::now() - begin;
+
+  Constraints pieces = constraints;
+  pieces.segments = split.pieces.data();
+  pieces.segment_count = split.pieces.size() / 2;
+  ConstrainedOptions without = options;
+  without.crossings = Crossings::error;
+  ConstrainedTriangulation result =
+      call::constrain(self, all.coordinates.data(), all.offsets, pieces, without);
+  for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
+    for (std::int32_t& v : *vertices) v = all.index[v];
+  }
+  Ids representatives(result.representatives.size());
+  for (std::size_t i = 0; i < representatives.size(); ++i) {
+    representatives[all.index[i]] = result.representatives[i];
+  }
+  result.representatives.swap(representatives);
+  result.piece_offsets = std::move(split.piece_offsets);
+  result.edge_segments =
+      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
+  result.added_points = std::move(split.added_points);
+  result.added_offsets = std::move(split.added_offsets);
+  result.statistics.seconds += seconds;
+  result.statistics.phases.insert(result.statistics.phases.begin(), {"split", seconds});
+  return result;
+}
+
+}  // namespace
 
 void call::end_phase(const char* name, double begin, Statistics& statistics) {
   const double seconds = host::now() - begin;

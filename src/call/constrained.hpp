@@ -21,6 +21,9 @@ ConstrainedTriangulation constrain_and_leave(Implementation& self, const double*
                                              const Constraints& constraints,
                                              const ConstrainedOptions& options, bool are_closed);
 
+/// The coordinates of n points and of those that splitting added. Empty if there are none of these.
+std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added);
+
 /// Makes half-edges, or leaves out neighbours, as the options say, and counts the triangles.
 void finish(const Options& options, ConstrainedTriangulation& result);
 

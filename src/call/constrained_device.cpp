@@ -11,7 +11,8 @@ using host::Arena;
 using host::Buffer;
 
 void Triangulator::constrained(const DevicePoints& points, const DeviceSegments& segments,
-                               DeviceConstrainedTriangulation& result, const Enqueue& enqueue) {
+                               DeviceTriangulation& mesh, DeviceConstraintEdges& edges,
+                               const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue, [&] {
     call::Engine& engine = implementation_->on_device();
     host::Runtime& runtime = engine.runtime;
@@ -20,36 +21,36 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
                        "segments");
     Enqueue first = enqueue;
     first.event = nullptr;
-    call::triangulate(
-        engine, points, result.mesh,
-        {.triangles = true, .neighbors = true, .halfedges = false, .hull = true, .representatives = true},
-        first);
+    Parts parts;
+    parts.neighbors = parts.hull = parts.representatives = true;
+    call::triangulate(engine, points, mesh, parts, first);
 
     Enqueue rest = enqueue;
     rest.wait_for.clear();
     call::QueuedCall queued(runtime, rest);
     Arena::Scope scope(runtime.arena());
-    const points::DeviceMesh mesh = call::mesh_of(runtime, points, result.mesh);
+    const points::DeviceMesh delaunay = call::mesh_of(runtime, points, mesh);
+    mesh.is_constrained = true;
     constrained::ConstrainedBuffers buffers;
-    buffers.triangles = mesh.triangles;
-    buffers.neighbors = mesh.neighbors;
-    buffers.constrained = call::result_buffer<cl_uchar>(runtime, result.constrained, 6 * points.count,
+    buffers.triangles = delaunay.triangles;
+    buffers.neighbors = delaunay.neighbors;
+    buffers.constrained = call::result_buffer<cl_uchar>(runtime, edges.constrained, 6 * points.count,
                                                         "constrained edges", made);
     buffers.segment_edges =
-        call::result_buffer<cl_int>(runtime, result.piece_edges, 2 * segments.count, "pieces' edges", made);
+        call::result_buffer<cl_int>(runtime, edges.piece_edges, 2 * segments.count, "pieces' edges", made);
     constrained::constrain(
-        runtime, mesh, call::given_buffer<cl_int>(runtime, segments.memory, 2 * segments.count, "segments"),
-        segments.count, buffers, [&](std::size_t edges) {
-          result.edge_count = edges;
-          const auto buffer = call::result_buffer<cl_int>(runtime, result.constraint_edges, 2 * edges,
+        runtime, delaunay,
+        call::given_buffer<cl_int>(runtime, segments.memory, 2 * segments.count, "segments"), segments.count,
+        buffers, [&](std::size_t count) {
+          edges.edge_count = count;
+          const auto buffer = call::result_buffer<cl_int>(runtime, edges.constraint_edges, 2 * count,
                                                           "constraint edges", made);
-          call::check_distinct({points.memory, segments.memory, mesh.triangles.memory(),
-                                mesh.neighbors.memory(), mesh.hull.memory(), mesh.representatives.memory(),
-                                buffers.constrained.memory(), buffers.segment_edges.memory(),
-                                buffer.memory()});
+          call::check_distinct({points.memory, segments.memory, delaunay.triangles.memory(),
+                                delaunay.neighbors.memory(), delaunay.hull.memory(),
+                                delaunay.representatives.memory(), buffers.constrained.memory(),
+                                buffers.segment_edges.memory(), buffer.memory()});
           return buffer;
         });
-    result.mesh.is_constrained = true;
     queued.end();
   });
 }

@@ -82,10 +82,11 @@ ConstrainedTriangulation make_map(call::Implementation& self, const Polygons& po
   for (std::size_t p = 0; p + 1 < points.size(); ++p) {
     polygon_of_segment.resize(points[p + 1], static_cast<std::int32_t>(p));
   }
+  const std::vector<double> all = call::with_added(polygons.coordinates, points.back(), result.added_points);
   constrained::HostRegions regions = constrained::find_regions_on_host(result);
-  constrained::MapLabels labels =
-      constrained::label_map(polygons.coordinates, result, regions.of_triangles, regions.left.size(),
-                             segments, polygon_of_segment, options.fill_rule, options.overlaps);
+  constrained::MapLabels labels = constrained::label_map(
+      all.empty() ? polygons.coordinates : all.data(), result, regions.of_triangles, regions.left.size(),
+      segments, polygon_of_segment, options.fill_rule, options.overlaps);
   if (options.outside != Outside::keep) {
     for (std::size_t r = 0; r < regions.left.size(); ++r) regions.left[r] = labels.polygons[r] >= 0 ? 1 : 0;
   }

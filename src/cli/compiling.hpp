@@ -9,6 +9,9 @@
 
 namespace flaunay::cli {
 
+/// What the progress says while a device is being prepared, if that takes long.
+constexpr const char* kCompiling = "compiling kernels, cached for next time";
+
 /// Calls `call` with a number of points, and returns how many seconds that took. Drivers may compile a kernel
 /// when it runs for the first time, so only a call that has run all kernels makes the next one free of
 /// compiling.

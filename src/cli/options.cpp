@@ -11,7 +11,9 @@ namespace flaunay::cli {
 void add_input(CLI::App* command, std::string& path) {
   command
       ->add_option("input", path,
-                   "Points: .npy, .node, .xy, .txt, .csv, .bin, .las, or - for text from standard input")
+                   "Points: .npy, .node, .xy, .txt, .csv, .bin, .las, or - for text from standard input; or "
+                   "a map: .poly, "
+                   ".geojson")
       ->required();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -44,20 +45,38 @@ void add_quiet(CLI::App* command, bool& quiet);
 /// Throws Error(usage) with the reason if the option was given on the command line.
 void refuse(const CLI::App& command, const std::string& option, const std::string& reason);
 
-/// An option whose values are the names of enumerators.
+/// Names of values.
+template <typename Choice>
+using NamedChoices = std::vector<std::pair<std::string, Choice>>;
+
+/// The name of a value that is among the choices.
+template <typename Choice>
+std::string name_of(const NamedChoices<Choice>& choices, Choice value) {
+  const auto is_it = [value](const auto& choice) { return choice.second == value; };
+  return std::find_if(choices.begin(), choices.end(), is_it)->first;
+}
+
+/// An option whose values are names.
+template <typename Choice>
+CLI::Option* add_named_choice(CLI::App* command, const std::string& option, Choice& value,
+                              const std::string& description, const NamedChoices<Choice>& choices) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.push_back(choice.first);
+  const auto choose = [&value, choices](const std::string& name) {
+    for (const auto& choice : choices) {
+      if (choice.first == name) value = choice.second;
+    }
+  };
+  return command->add_option_function<std::string>(option, choose, description)->check(CLI::IsMember(names));
+}
+
+/// An option whose values are the names of enumerators; the first one is the default.
 template <typename Choice>
 void add_choice(CLI::App* command, const std::string& option, Choice& value, const std::string& description,
                 const std::vector<Choice>& choices) {
-  std::vector<std::string> names;
-  for (const Choice choice : choices) names.emplace_back(to_string(choice));
-  const auto choose = [&value, choices](const std::string& name) {
-    for (const Choice choice : choices) {
-      if (to_string(choice) == name) value = choice;
-    }
-  };
-  command->add_option_function<std::string>(option, choose, description)
-      ->check(CLI::IsMember(names))
-      ->default_str(names.front());
+  NamedChoices<Choice> named;
+  for (const Choice choice : choices) named.emplace_back(to_string(choice), choice);
+  add_named_choice(command, option, value, description, named)->default_str(named.front().first);
 }
 
 }  // namespace flaunay::cli

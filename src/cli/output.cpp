@@ -23,14 +23,18 @@ bool print(const std::string& text) {
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 
-OutputFiles::OutputFiles(const std::string& input) : input_(input) {}
+OutputFiles::OutputFiles(const std::string& input, const std::vector<std::string>& more) : inputs_(more) {
+  inputs_.push_back(input);
+}
 
 void OutputFiles::reserve(const std::string& path) {
   const io::Target target = io::find_target(path);
-  struct stat input {};
-  const bool is_file = input_ != "-" && ::stat(input_.c_str(), &input) == 0;
-  if (is_file && target.exists && target.id == io::file_id(input)) {
-    throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the input", path));
+  for (const std::string& name : inputs_) {
+    struct stat input {};
+    const bool is_file = name != "-" && ::stat(name.c_str(), &input) == 0;
+    if (is_file && target.exists && target.id == io::file_id(input)) {
+      throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the input", path));
+    }
   }
   for (const io::Target& other : announced_) {
     if (io::is_same(target, other)) {
@@ -40,12 +44,10 @@ void OutputFiles::reserve(const std::string& path) {
   announced_.push_back(target);
 }
 
-void OutputFiles::add_mesh(const std::string& path) {
+void OutputFiles::add_mesh(const std::string& path, bool with_constraints) {
   if (path.empty()) return;
-  io::check_mesh_output(path);
-  reserve(path);
-  const std::string ending = io::ending_of(path);
-  if (ending == ".ele") reserve(path.substr(0, path.size() - ending.size()) + ".node");
+  io::check_mesh_output(path, with_constraints);
+  for (const std::string& file : io::mesh_files(path, with_constraints)) reserve(file);
 }
 
 void OutputFiles::add(const std::string& path, const std::string& ending) {

@@ -17,13 +17,13 @@ bool print(const std::string& text);
 /// they are written, and committed together.
 class OutputFiles {
  public:
-  /// input: a file that no output may overwrite; "-" for none.
-  explicit OutputFiles(const std::string& input);
+  /// input and more: files that no output may overwrite; "-" for none.
+  explicit OutputFiles(const std::string& input, const std::vector<std::string>& more = {});
 
   /// Announces a mesh in one of the formats of write_mesh. An empty path means that there is none. Throws
   /// Error(usage) if the ending is unknown or another file of this run has the path, Error(input) if the file
   /// cannot be created.
-  void add_mesh(const std::string& path);
+  void add_mesh(const std::string& path, bool with_constraints = false);
   /// Announces a file whose ending must be `ending`, with the same errors.
   void add(const std::string& path, const std::string& ending);
   /// Announces points in one of the formats of write_points, with the same errors. "-" is standard output.
@@ -35,7 +35,7 @@ class OutputFiles {
  private:
   void reserve(const std::string& path);
 
-  std::string input_;
+  std::vector<std::string> inputs_;
   std::vector<io::Target> announced_;
   io::Outputs files_;
 };

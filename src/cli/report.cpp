@@ -64,6 +64,17 @@ std::string counts(const AnyStatistics& statistics) {
                      counted(statistics.hull_vertices, "hull vertex", "hull vertices"));
 }
 
+std::string constraint_counts(const std::optional<ConstraintFacts>& constraints) {
+  if (!constraints) return "";
+  std::string text = fmt::format(", {}, {}", counted(constraints->segments, "segment", "segments"),
+                                 counted(constraints->edges, "constraint edge", "constraint edges"));
+  if (constraints->added_points > 0) {
+    text += ", " + counted(constraints->added_points, "added point", "added points");
+  }
+  if (constraints->sets > 1) text += ", " + counted(constraints->sets, "set", "sets");
+  return text;
+}
+
 std::uint64_t count_chunks(const ChunkStatistics& statistics) {
   std::uint64_t chunks = 0;
   for (const ChunkRound& round : statistics.rounds) chunks += round.chunks;
@@ -71,6 +82,19 @@ std::uint64_t count_chunks(const ChunkStatistics& statistics) {
 }
 
 using Json = nlohmann::ordered_json;
+
+Json constraints_json(const std::optional<ConstraintFacts>& constraints) {
+  if (!constraints) return Json();
+  return {{"segments", constraints->segments},
+          {"pieces", constraints->pieces},
+          {"constraint_edges", constraints->edges},
+          {"added_points", constraints->added_points},
+          {"holes", constraints->holes},
+          {"sets", constraints->sets},
+          {"crossings", constraints->crossings},
+          {"outside", constraints->outside},
+          {"fill", constraints->fill}};
+}
 
 Json phases_json(const std::vector<PhaseStatistics>& phases) {
   Json list = Json::array();
@@ -103,7 +127,8 @@ std::string work_row(const char* name, const OperationCounts& counts, std::size_
 }  // namespace
 
 std::string summary(const Statistics& statistics, const RunFacts& facts) {
-  return fmt::format("{}; {}", counts(statistics), times_and_speed(statistics, facts));
+  return fmt::format("{}{}; {}", counts(statistics), constraint_counts(facts.constraints),
+                     times_and_speed(statistics, facts));
 }
 
 std::string chunk_summary(const ChunkStatistics& statistics, const RunFacts& facts) {
@@ -220,6 +245,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["duplicates"] = statistics.duplicates;
   json["triangles"] = statistics.triangles;
   json["hull_vertices"] = statistics.hull_vertices;
+  json["constraints"] = constraints_json(facts.constraints);
   json["seconds"] = {{"reading", facts.reading_seconds},
                      {"opening_device", facts.opening_seconds},
                      {"building_programs", compiling_seconds(statistics, facts)},

@@ -1,12 +1,20 @@
 // Statistics of a triangulation as text for people and as JSON for programs.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 
 #include "flaunay/chunks.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::cli {
+
+/// What a triangulation with constraints has, and others do not.
+struct ConstraintFacts {
+  std::size_t sets = 0, segments = 0, pieces = 0, edges = 0, added_points = 0, holes = 0;
+  std::string crossings, outside, fill;  // as the options call them
+};
 
 /// What the command itself knows about a run, besides the library's statistics.
 struct RunFacts {
@@ -16,6 +24,7 @@ struct RunFacts {
   std::string dividing_paths;  // empty if the mode has none
   bool counted = false;        ///< Triangulation::work is filled
   std::string what_was_done = "triangulated";
+  std::optional<ConstraintFacts> constraints;
   double reading_seconds = 0;
   double opening_seconds = 0;    ///< choosing the device and testing it, which compiles a few kernels
   double compiling_seconds = 0;  ///< the call of compile_kernels

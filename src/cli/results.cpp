@@ -14,7 +14,7 @@ std::vector<std::string> ResultPaths::all() const {
 
 void add_results(CLI::App* command, ResultPaths& paths) {
   add_path(command, "-o,--output", paths.mesh,
-           "Mesh: .ele (with .node beside it), .off, .ply, .vtu, .obj, .npy or .svg");
+           "Mesh: .ele (with .node beside it), .off, .ply, .vtu, .obj, .npy, .geojson or .svg");
   add_result_arrays(command, paths);
 }
 
@@ -32,10 +32,25 @@ void ask_for(const ResultPaths& paths, Options& options) {
   }
 }
 
-void announce(OutputFiles& outputs, const ResultPaths& paths) {
-  outputs.add_mesh(paths.mesh);
+void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constraints) {
+  outputs.add_mesh(paths.mesh, with_constraints);
   for (const std::string& path : paths.arrays) outputs.add(path, ".npy");
   outputs.add(paths.stats, ".json");
+}
+
+void write_arrays(const ResultPaths& paths, const Triangulation& mesh, OutputFiles& outputs,
+                  io::IndexType index) {
+  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
+    const ArrayFile& file = kArrayFiles[k];
+    if (paths.arrays[k].empty()) continue;
+    io::write_npy_indices(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns, index);
+  }
+}
+
+void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
+                            const RunFacts& facts, OutputFiles& outputs) {
+  if (!paths.stats.empty()) outputs.files().open(paths.stats).print("{}", statistics_json(mesh, facts));
+  outputs.files().commit();
 }
 
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
@@ -43,15 +58,10 @@ void write_results(const ResultPaths& paths, const io::Points& points, const res
   Stopwatch stopwatch;
   progress.update("writing");
   if (!paths.mesh.empty()) io::write_mesh(outputs.files(), paths.mesh, points, mesh);
-  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
-    const ArrayFile& file = kArrayFiles[k];
-    if (paths.arrays[k].empty()) continue;
-    io::write_npy_indices(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns, index);
-  }
+  write_arrays(paths, mesh, outputs, index);
   outputs.files().write_out();
   facts.writing_seconds = stopwatch.seconds();
-  if (!paths.stats.empty()) outputs.files().open(paths.stats).print("{}", statistics_json(mesh, facts));
-  outputs.files().commit();
+  commit_with_statistics(paths, mesh, facts, outputs);
   progress.finish();
 }
 

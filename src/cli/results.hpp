@@ -51,7 +51,14 @@ void add_result_arrays(CLI::App* command, ResultPaths& paths);
 void ask_for(const ResultPaths& paths, Options& options);
 
 /// Announces the files to `outputs`, which checks their paths.
-void announce(OutputFiles& outputs, const ResultPaths& paths);
+void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constraints = false);
+
+/// Writes those of kArrayFiles that have a path.
+void write_arrays(const ResultPaths& paths, const Triangulation& mesh, OutputFiles& outputs,
+                  io::IndexType index);
+/// Writes the statistics of `mesh`, if they have a path, and commits all files.
+void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
+                            const RunFacts& facts, OutputFiles& outputs);
 
 /// Writes and commits the files, and ends the progress. The statistics come last, because they say how long
 /// writing the others took.

@@ -9,6 +9,7 @@
 #include "cli/chunks.hpp"
 #include "cli/commands.hpp"
 #include "cli/compiling.hpp"
+#include "cli/constraints.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
@@ -37,9 +38,9 @@ struct TriangulateRequest {
   bool quiet = false;
   bool in_chunks = false;  ///< the options ask for it
   ChunkRequest chunks;     ///< without what the other members say, too
+  bool has_constraints = false;
+  ConstraintRequest constraints;
 };
-
-constexpr const char* kCompiling = "compiling kernels, cached for next time";
 
 const research::ModeInfo& info_of(Mode mode) {
   const std::vector<research::ModeInfo>& modes = research::list_modes();
@@ -144,6 +145,11 @@ int triangulate(const TriangulateRequest& request) {
   // The request is checked before any work begins, and the input before a device is opened.
   io::check_points_ending(request.input);
   if (request.in_chunks) return triangulate_in_chunks(chunk_request(request), "");
+  if (request.has_constraints) {
+    return triangulate_with_constraints({request.input, request.results, request.device, request.chunks.index,
+                                         request.profile, request.quiet},
+                                        request.constraints);
+  }
   OutputFiles outputs(request.input);
   announce(outputs, request.results);
   const std::uint64_t about = io::estimate_points(request.input);
@@ -227,6 +233,7 @@ void add_triangulate(CLI::App& app, Action& action) {
       ->description(
           "Device: a part of its name, or #k for the k-th that flaunay devices lists; several with commas "
           "between them, or all: triangulates in chunks, on each of them");
+  add_constraint_options(command, request->constraints);
   add_chunk_options(command, request->chunks);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
   command->add_flag("--count", request->count, "Count operations, for a table and for the statistics (slow)");
@@ -234,7 +241,10 @@ void add_triangulate(CLI::App& app, Action& action) {
   command->footer(mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
+    request->has_constraints = has_constraints(*command, request->input, request->constraints);
     request->in_chunks = asks_for_chunks(*command, request->device);
+    if (request->in_chunks && request->has_constraints)
+      refuse(*command, "--device", "constraints need one device");
     if (request->in_chunks) check_chunk_options(*command, to_string(request->mode));
     action = [request] { return triangulate(*request); };
   });

@@ -10,17 +10,21 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/constraints.hpp"
 #include "cli/errors.hpp"
 #include "cli/options.hpp"
 #include "cli/output.hpp"
 #include "cli/progress.hpp"
 #include "host/system_memory.hpp"
 #include "io/file.hpp"
+#include "io/map.hpp"
 #include "io/mesh.hpp"
+#include "io/npy.hpp"
 #include "io/point_stream.hpp"
 #include "io/points.hpp"
 #include "io/rows.hpp"
 #include "verify/chunks.hpp"
+#include "verify/constrained.hpp"
 
 namespace flaunay::cli {
 
@@ -32,6 +36,9 @@ struct VerifyRequest {
   std::string neighbors;
   std::uint64_t memory_bytes = 0;  // 0: as much as there is
   std::string scratch;
+  bool has_constraints = false;
+  ConstraintRequest constraints;
+  std::string constraint_edges;
 };
 
 /// 0 if it is no regular file.
@@ -101,13 +108,41 @@ Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Pro
   return {report, stopwatch.seconds(), how};
 }
 
-int verify(const VerifyRequest& request) {
-  io::check_points_ending(request.points);
+Checked verify_with_constraints(const VerifyRequest& request, Progress& progress) {
+  ConstraintRequest asked = request.constraints;
+  const io::Map map = read_domain(request.points, asked);
+  const std::vector<std::int32_t> segments = all_segments(map, asked.fill);
+  const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
+  std::vector<std::int32_t> neighbors, edges;
+  if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);
+  VerifyConstraints constraints;
+  constraints.segments = &segments;
+  constraints.outside = asked.outside;
+  constraints.fill_rule = asked.fill;
+  if (!map.holes.empty()) constraints.holes = &map.holes;
+  if (!request.constraint_edges.empty()) {
+    edges = io::read_npy_segments(request.constraint_edges, map.points.size());
+    constraints.edges = &edges;
+  }
+  progress.update("verifying");
+  const Stopwatch stopwatch;
+  const VerifyReport report =
+      verify_constrained(map.points.coordinates.data(), map.points.size(), triangles,
+                         request.neighbors.empty() ? nullptr : &neighbors, constraints);
+  return {report, stopwatch.seconds(), fmt::format("; {} constraint edges", report.constraint_edges)};
+}
+
+Checked check(const VerifyRequest& request, Progress& progress) {
+  if (request.has_constraints) return verify_with_constraints(request, progress);
   const std::uint64_t memory = memory_for_chunks(request);
+  return memory > 0 ? verify_in_chunks(request, memory, progress) : verify_in_memory(request, progress);
+}
+
+int verify(const VerifyRequest& request) {
+  if (!io::is_map(request.points)) io::check_points_ending(request.points);
   Progress progress(true);
   progress.update("reading");
-  const auto [report, seconds, how] =
-      memory > 0 ? verify_in_chunks(request, memory, progress) : verify_in_memory(request, progress);
+  const auto [report, seconds, how] = check(request, progress);
   progress.finish();
 
   // The problem goes to standard error first, because standard output may be closed.
@@ -122,17 +157,41 @@ int verify(const VerifyRequest& request) {
   return report.ok ? kSuccess : kFailure;
 }
 
+/// Whether segments are given. Throws Error(usage) for options that do not go together.
+bool has_constraints(const CLI::App& command, VerifyRequest& request) {
+  if (!io::is_map(request.points) && request.constraints.segments.empty()) {
+    for (const char* option : {"--outside", "--fill", "--hole", "--constraint-edges"}) {
+      refuse(command, option, "needs segments: --constraints, or a .poly or .geojson file with the points");
+    }
+    return false;
+  }
+  check_domain_options(command, request.points, request.constraints);
+  for (const char* option : {"--memory", "--scratch"}) {
+    refuse(command, option, "constraints are checked in memory, not in chunks");
+  }
+  if (!request.constraint_edges.empty() && io::ending_of(request.constraint_edges) != ".npy") {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: --constraint-edges needs an .npy file", request.constraint_edges));
+  }
+  return true;
+}
+
 }  // namespace
 
 void add_verify(CLI::App& app, Action& action) {
   auto request = std::make_shared<VerifyRequest>();
   CLI::App* command =
-      app.add_subcommand("verify", "Check with exact arithmetic that triangles are a Delaunay triangulation");
+      app.add_subcommand("verify",
+                         "Check with exact arithmetic that triangles are a Delaunay triangulation, or a "
+                         "constrained one");
   command->add_option("points", request->points, "The points, in any format that triangulate reads")
       ->required();
   command->add_option("triangles", request->triangles, "The triangles: .npy, .ele, .off, .obj or .ply")
       ->required();
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
+  add_domain_options(command, request->constraints);
+  add_path(command, "--constraint-edges", request->constraint_edges,
+           "Constraint edges to check too, as triangulate writes them: .npy");
   add_memory(command, request->memory_bytes,
              "Check in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024; needs .npy "
              "triangles. Default: hold everything if it fits");
@@ -140,8 +199,14 @@ void add_verify(CLI::App& app, Action& action) {
       command, "--scratch", request->scratch,
       "Chunks: the folder for about 24 bytes per point, in files without names; default: TMPDIR, or /tmp")
       ->check(CLI::ExistingDirectory);
-  command->callback([request, &action] { action = [request] { return verify(*request); }; });
-  command->footer("The exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not.");
+  command->callback([request, command, &action] {
+    request->has_constraints = has_constraints(*command, *request);
+    action = [request] { return verify(*request); };
+  });
+  command->footer(
+      "The exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not. With segments, "
+      "they must be "
+      "the canonical constrained Delaunay triangulation.");
 }
 
 }  // namespace flaunay::cli

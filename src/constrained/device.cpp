@@ -212,12 +212,13 @@ class Insertion {
                                                     .status = status_});
   }
   void place_vertices() {
-    runtime_.map(rows_, kernels::start_rows{.triangles = result_.triangles,
-                                            .marks = marks_,
-                                            .places = places_,
-                                            .claims = claims_,
-                                            .flags = flags_,
-                                            .changed = changed_});
+    runtime_.chunks(rows_, runtime_.sizes().chunk(rows_),
+                    kernels::start_rows{.triangles = result_.triangles,
+                                        .marks = marks_,
+                                        .places = places_,
+                                        .claims = claims_,
+                                        .flags = flags_,
+                                        .changed = changed_});
     const auto& triangle_offsets = delaunay_.triangle_offsets;
     if (std::adjacent_find(triangle_offsets.begin(), triangle_offsets.end()) == triangle_offsets.end())
       return;
@@ -329,12 +330,12 @@ class Insertion {
     runtime_.map(waiting.count, kernels::choose_constraints{.bound = points_.bounds.orient,
                                                             .list = waiting.list,
                                                             .offsets = waiting.offsets,
-                                                            .walks = walks.walks,
                                                             .points = points_.coordinates,
                                                             .triangles = result_.triangles,
                                                             .neighbors = result_.neighbors,
                                                             .claims = claims_,
                                                             .flags = flags_,
+                                                            .walks = walks.walks,
                                                             .outcomes = waiting.outcomes,
                                                             .lefts = waiting.lefts,
                                                             .entries = entries,
@@ -360,13 +361,13 @@ class Insertion {
     runtime_.map(waiting.count, kernels::join_cavities{.mark = waiting.mark,
                                                        .list = waiting.list,
                                                        .offsets = waiting.offsets,
-                                                       .outcomes = waiting.outcomes,
                                                        .lefts = waiting.lefts,
                                                        .walks = walks.walks,
                                                        .claims = claims_,
                                                        .marks = marks_,
                                                        .new_corners = new_corners_,
                                                        .entries = entries,
+                                                       .outcomes = waiting.outcomes,
                                                        .neighbors = result_.neighbors,
                                                        .places = places_});
     if (winners.count > 0) {
@@ -625,7 +626,7 @@ Buffer<T> in_place(host::Runtime& runtime, std::vector<T>& values) {
 }  // namespace
 
 Result constrain(host::Runtime& runtime, const double* coordinates, const std::vector<std::size_t>& offsets,
-                 Triangulation delaunay, const std::vector<std::int32_t>& segments, bool with_halfedges) {
+                 Triangulation& delaunay, const std::vector<std::int32_t>& segments, bool with_halfedges) {
   geometry::check_offsets(offsets);
   geometry::check_coordinates(coordinates, offsets.back());
   if (delaunay.neighbors.size() != delaunay.triangles.size()) {

@@ -47,8 +47,12 @@ struct Weights {
 };
 
 // Throws if segments are no closed curves.
-void check_closed(host::Runtime& runtime, const DomainMesh& mesh, FillRule rule,
-                  const Buffer<cl_uint>& balances) {
+void check_closed(host::Runtime& runtime, const DomainMesh& mesh, FillRule rule) {
+  const auto balances = filled(runtime, mesh.points, cl_uint{0});
+  runtime.map(mesh.segments, kernels::count_ends{.rule = rule,
+                                                 .segments = mesh.segment_ends,
+                                                 .representatives = mesh.representatives,
+                                                 .balances = balances});
   const auto bad = filled(runtime, 1, kNone);
   runtime.map(mesh.points, kernels::find_unbalanced{.rule = rule, .balances = balances, .bad = bad});
   const cl_int point = runtime.read_one(bad, 0);
@@ -64,7 +68,6 @@ Weights weigh_edges(host::Runtime& runtime, const DomainMesh& mesh, const DepthR
   if (rules.fill == FillRule::nesting) return weights;
   // One place more at the end, where segments along the last edge end.
   weights.sums = filled(runtime, mesh.edges + 2, cl_uint{0});
-  const auto balances = filled(runtime, mesh.points, cl_uint{0});
   runtime.map(mesh.segments, kernels::cover_edges{.rule = rules.fill,
                                                   .input = mesh.coordinates,
                                                   .segments = mesh.segment_ends,
@@ -72,13 +75,12 @@ Weights weigh_edges(host::Runtime& runtime, const DomainMesh& mesh, const DepthR
                                                   .piece_offsets = mesh.piece_offsets,
                                                   .piece_edges = mesh.piece_edges,
                                                   .edges = mesh.constraint_edges,
-                                                  .changes = weights.sums,
-                                                  .balances = balances});
-  if (!rules.are_closed) check_closed(runtime, mesh, rules.fill, balances);
+                                                  .changes = weights.sums});
+  if (!rules.are_closed) check_closed(runtime, mesh, rules.fill);
   host::exclusive_scan(runtime, weights.sums, mesh.edges + 1, weights.sums);
   runtime.map(mesh.edges,
               kernels::find_even{.rule = rules.fill, .sums = weights.sums, .needed = weights.needed});
-  std::size_t size = 2;
+  std::size_t size = 8;
   while (size < 2 * mesh.edges) size *= 2;
   weights.mask = static_cast<cl_int>(size - 1);
   weights.slots = filled(runtime, size, cl_int{-1});
@@ -196,12 +198,14 @@ Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
     Arena::Scope scope(runtime.arena());
     const auto parents = runtime.arena().allocate<cl_int>(triangles);
     const auto numbers = runtime.arena().allocate<cl_uint>(triangles + 1);
-    runtime.map(triangles,
-                kernels::start_regions{
-                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
-    runtime.map(triangles,
-                kernels::join_regions{
-                    .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    const std::size_t chunk = runtime.sizes().chunk(triangles);
+    runtime.chunks(triangles, chunk,
+                   kernels::start_regions{
+                       .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+    runtime.map(triangles, kernels::join_regions{.length = chunk,
+                                                 .neighbors = mesh.neighbors,
+                                                 .constrained = mesh.constrained,
+                                                 .parents = parents});
     runtime.map(triangles,
                 kernels::find_roots{.parents = parents, .regions = regions.of_triangles, .counts = numbers});
     host::exclusive_scan(runtime, numbers, triangles, numbers);

@@ -18,7 +18,7 @@ struct MapLabels {
 /// Goes through all regions from outside, each time over one edge, whose segments lead into polygons or out
 /// of them. mesh: of one set, complete. regions: by triangle; count: their number. segments: 2 points per
 /// segment; polygons: the polygon of each segment, whose segments are closed curves. Throws Error(input) for
-/// the first region in several polygons if that is an error. coordinates: of the segments' points. O(n +
+/// the first region in several polygons if that is an error. coordinates: of all points. O(n +
 /// log p) per segment on an edge over which it goes, where p polygons are around; usually there is one such
 /// edge per segment at most.
 MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& mesh,

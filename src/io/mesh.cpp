@@ -2,21 +2,23 @@
 
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string_view>
 
 #include "io/file.hpp"
 #include "io/npy.hpp"
+#include "io/poly.hpp"
 #include "io/svg.hpp"
 #include "io/text.hpp"
 
 namespace flaunay::io {
 namespace {
 
-constexpr std::string_view kOutputEndings = ".ele, .off, .ply, .vtu, .obj, .npy, .svg";
+constexpr std::string_view kOutputEndings = ".ele, .off, .ply, .vtu, .obj, .npy, .geojson, .svg";
 constexpr std::string_view kTriangleEndings = ".npy, .ele, .off, .obj, .ply";
 constexpr long long kIndexLimit = std::numeric_limits<std::int32_t>::max();
 
-enum class Format { ele, off, ply, vtu, obj, npy, svg };
+enum class Format { ele, off, ply, vtu, obj, npy, geojson, svg };
 
 Format output_format(const std::string& path) {
   const std::string ending = ending_of(path);
@@ -26,24 +28,49 @@ Format output_format(const std::string& path) {
   if (ending == ".vtu") return Format::vtu;
   if (ending == ".obj") return Format::obj;
   if (ending == ".npy") return Format::npy;
+  if (ending == ".geojson") return Format::geojson;
   if (ending == ".svg") return Format::svg;
   fail_ending(path, kOutputEndings);
 }
 
 std::size_t triangle_count(const Triangulation& mesh) { return mesh.triangles.size() / 3; }
 
-/// x.ele to x.node.
-std::string node_path_beside(const std::string& ele_path) {
-  return ele_path.substr(0, ele_path.size() - std::strlen(".ele")) + ".node";
+/// What a mesh with constraints has, and others do not.
+struct ConstraintParts {
+  std::span<const std::int32_t> edges;            ///< 2 points each
+  std::span<const std::int32_t> segments;         ///< one per edge: the segment that has it
+  std::span<const double> holes;                  ///< x and y each
+  std::span<const std::int32_t> regions, depths;  ///< one per triangle, or none
+  bool present = false;                           ///< whether the mesh has constraints, if only none of them
+
+  std::size_t edge_count() const { return edges.size() / 2; }
+  bool has_labels() const { return !regions.empty() && !depths.empty(); }
+};
+
+/// The constraint edges, whose vertices are in the .node file.
+void write_poly(OutputFile& file, const ConstraintParts& constraints) {
+  file.print("0 2 0 0\n{} 1\n", constraints.edge_count());
+  for (std::size_t e = 0; e < constraints.edge_count(); ++e) {
+    file.print("{} {} {} {}\n", e, constraints.edges[2 * e], constraints.edges[2 * e + 1],
+               constraints.segments[e] + 1LL);
+  }
+  file.print("{}\n", constraints.holes.size() / 2);
+  for (std::size_t k = 0; 2 * k < constraints.holes.size(); ++k) {
+    file.print("{} {} {}\n", k, constraints.holes[2 * k], constraints.holes[2 * k + 1]);
+  }
 }
 
-void write_ele(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_ele(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
+               const ConstraintParts& constraints) {
   OutputFile& ele = outputs.open(path);
-  print_node(outputs.open(node_path_beside(path)), points);
-  ele.print("{} 3 0\n", triangle_count(mesh));
+  print_node(outputs.open(path_beside(path, ".node")), points);
+  if (constraints.present) write_poly(outputs.open(path_beside(path, ".poly")), constraints);
+  ele.print("{} 3 {}\n", triangle_count(mesh), constraints.has_labels() ? 2 : 0);
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
     const std::int32_t* corner = &mesh.triangles[3 * t];
-    ele.print("{} {} {} {}\n", t, corner[0], corner[1], corner[2]);
+    ele.print("{} {} {} {}", t, corner[0], corner[1], corner[2]);
+    if (constraints.has_labels()) ele.print(" {} {}", constraints.regions[t], constraints.depths[t]);
+    ele.print("\n");
   }
 }
 
@@ -59,7 +86,8 @@ void write_off(Outputs& outputs, const std::string& path, const Points& points, 
   }
 }
 
-void write_obj(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_obj(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
+               const ConstraintParts& constraints) {
   OutputFile& file = outputs.open(path);
   file.print("# {} vertices, {} triangles\n", points.size(), triangle_count(mesh));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -68,6 +96,9 @@ void write_obj(Outputs& outputs, const std::string& path, const Points& points, 
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
     const std::int32_t* corner = &mesh.triangles[3 * t];
     file.print("f {} {} {}\n", corner[0] + 1LL, corner[1] + 1LL, corner[2] + 1LL);
+  }
+  for (std::size_t e = 0; e < constraints.edge_count(); ++e) {
+    file.print("l {} {}\n", constraints.edges[2 * e] + 1LL, constraints.edges[2 * e + 1] + 1LL);
   }
 }
 
@@ -79,21 +110,28 @@ void write_spatial_points(OutputFile& file, const Points& points) {
   }
 }
 
-void write_ply(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_ply(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
+               const ConstraintParts& constraints) {
   OutputFile& file = outputs.open(path);
   file.print(
       "ply\nformat binary_little_endian 1.0\ncomment flaunay\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      "element face {}\nproperty list uchar int vertex_indices\n",
       points.size(), triangle_count(mesh));
+  if (constraints.present) {
+    file.print("element edge {}\nproperty int vertex1\nproperty int vertex2\n", constraints.edge_count());
+  }
+  file.print("end_header\n");
   write_spatial_points(file, points);
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
     file.write_value(std::uint8_t{3});
     file.write(&mesh.triangles[3 * t], 3 * sizeof(std::int32_t));
   }
+  file.write(constraints.edges.data(), constraints.edges.size_bytes());
 }
 
-void write_vtu(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_vtu(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
+               const ConstraintParts& constraints) {
   constexpr std::uint8_t kVtkTriangle = 5;
   const std::uint64_t point_bytes = points.size() * 3 * sizeof(double);
   const std::uint64_t corner_bytes = mesh.triangles.size() * sizeof(std::int32_t);
@@ -105,6 +143,8 @@ void write_vtu(Outputs& outputs, const std::string& path, const Points& points, 
   const std::uint64_t corners_at = prefix + point_bytes;
   const std::uint64_t ends_at = corners_at + prefix + corner_bytes;
   const std::uint64_t types_at = ends_at + prefix + end_bytes;
+  const std::uint64_t regions_at = types_at + prefix + type_bytes;
+  const std::uint64_t label_bytes = constraints.regions.size_bytes();
 
   OutputFile& file = outputs.open(path);
   file.print(
@@ -121,6 +161,13 @@ void write_vtu(Outputs& outputs, const std::string& path, const Points& points, 
       "<DataArray type=\"Int64\" Name=\"offsets\" format=\"appended\" offset=\"{}\"/>\n"
       "<DataArray type=\"UInt8\" Name=\"types\" format=\"appended\" offset=\"{}\"/>\n</Cells>\n",
       corners_at, ends_at, types_at);
+  if (constraints.has_labels()) {
+    file.print(
+        "<CellData Scalars=\"region\">\n<DataArray type=\"Int32\" Name=\"region\" format=\"appended\" "
+        "offset=\"{}\"/>\n<DataArray type=\"Int32\" Name=\"depth\" format=\"appended\" offset=\"{}\"/>\n"
+        "</CellData>\n",
+        regions_at, regions_at + prefix + label_bytes);
+  }
   file.print("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
   file.write_value(point_bytes);
   write_spatial_points(file, points);
@@ -131,7 +178,34 @@ void write_vtu(Outputs& outputs, const std::string& path, const Points& points, 
     file.write_value(static_cast<std::int64_t>(3 * (t + 1)));
   file.write_value(type_bytes);
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) file.write_value(kVtkTriangle);
+  if (constraints.has_labels()) {
+    for (const auto& labels : {constraints.regions, constraints.depths}) {
+      file.write_value(label_bytes);
+      file.write(labels.data(), label_bytes);
+    }
+  }
   file.print("\n</AppendedData>\n</VTKFile>\n");
+}
+
+/// A feature per triangle, with its corners as a ring.
+void write_geojson(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
+                   const ConstraintParts& constraints) {
+  OutputFile& file = outputs.open(path);
+  file.print("{{\"type\":\"FeatureCollection\",\"features\":[");
+  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
+    file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{\"triangle\":{}", t == 0 ? "" : ",", t);
+    if (constraints.has_labels()) {
+      file.print(",\"region\":{},\"depth\":{}", constraints.regions[t], constraints.depths[t]);
+    }
+    file.print("}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[");
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto corner = static_cast<std::size_t>(mesh.triangles[3 * t + k % 3]);
+      file.print("{}[{},{}]", k == 0 ? "" : ",", points.coordinates[2 * corner],
+                 points.coordinates[2 * corner + 1]);
+    }
+    file.print("]]}}}}");
+  }
+  file.print("\n]}}\n");
 }
 
 std::vector<std::int32_t> read_ele(const std::string& path) {
@@ -260,8 +334,8 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
   Lines lines(path, std::string_view(bytes).substr(0, header_end), Lines::Separator::blanks);
   lines.next();
   std::string_view element;
-  std::size_t vertex_bytes = 0;
-  long long vertices = -1, faces = -1;
+  std::size_t vertex_bytes = 0, edge_bytes = 0;
+  long long vertices = -1, faces = -1, edges = -1;
   bool binary = false, corner_list = false;
   while (lines.next()) {
     std::string_view word[5];
@@ -279,13 +353,15 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
         vertices = count;
       } else if (element == "face" && vertices >= 0 && faces < 0) {
         faces = count;
+      } else if (element == "edge" && faces >= 0 && edges < 0) {
+        edges = count;
       } else {
-        lines.fail_line("element {}; expected vertex, then face", quoted(element));
+        lines.fail_line("element {}; expected vertex, then face, and perhaps edge", quoted(element));
       }
-    } else if (word[0] == "property" && element == "vertex") {
+    } else if (word[0] == "property" && (element == "vertex" || element == "edge")) {
       const std::size_t size = ply_type_bytes(word[1]);
-      if (size == 0) lines.fail_line("vertex property of type {}; expected a number's", quoted(word[1]));
-      vertex_bytes += size;
+      if (size == 0) lines.fail_line("{} property of type {}; expected a number's", element, quoted(word[1]));
+      (element == "vertex" ? vertex_bytes : edge_bytes) += size;
     } else if (word[0] == "property" && element == "face") {
       const bool known = word[1] == "list" && ply_type_bytes(word[2]) == 1 && ply_type_bytes(word[3]) == 4 &&
                          word[3] != "float" && word[3] != "float32";
@@ -327,37 +403,70 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
       triangles.push_back(v);
     }
   }
-  if (face_room != face_count * kFaceBytes) {
-    fail(path, "has {} bytes after its {} faces; expected none", face_room - face_count * kFaceBytes, faces);
+  // Edges are not read, but they must be there.
+  const std::size_t rest = face_room - face_count * kFaceBytes;
+  const auto edge_count = static_cast<std::size_t>(std::max(edges, 0LL));
+  if (edge_bytes > 0 ? rest % edge_bytes != 0 || rest / edge_bytes != edge_count : rest != 0) {
+    fail(path, "has {} bytes after its {} faces; expected {}", rest, faces,
+         edges < 0 ? "none" : fmt::format("{} edges of {} bytes", edges, edge_bytes));
   }
   return triangles;
+}
+
+/// All formats but pictures.
+void write_format(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
+                  const ConstraintParts& constraints) {
+  switch (output_format(path)) {
+    case Format::ele:
+      return write_ele(outputs, path, points, mesh, constraints);
+    case Format::off:
+      return write_off(outputs, path, points, mesh);
+    case Format::ply:
+      return write_ply(outputs, path, points, mesh, constraints);
+    case Format::vtu:
+      return write_vtu(outputs, path, points, mesh, constraints);
+    case Format::obj:
+      return write_obj(outputs, path, points, mesh, constraints);
+    case Format::geojson:
+      return write_geojson(outputs, path, points, mesh, constraints);
+    case Format::npy:
+      return write_npy_indices(outputs, path, mesh.triangles, 3);
+    case Format::svg:
+      break;
+  }
 }
 
 }  // namespace
 
 void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
-  switch (output_format(path)) {
-    case Format::ele:
-      return write_ele(outputs, path, points, mesh);
-    case Format::off:
-      return write_off(outputs, path, points, mesh);
-    case Format::ply:
-      return write_ply(outputs, path, points, mesh);
-    case Format::vtu:
-      return write_vtu(outputs, path, points, mesh);
-    case Format::obj:
-      return write_obj(outputs, path, points, mesh);
-    case Format::npy:
-      return write_npy_indices(outputs, path, mesh.triangles, 3);
-    case Format::svg:
-      return write_svg(outputs, path, points, mesh);
-  }
+  if (output_format(path) == Format::svg) return write_svg(outputs, path, points, mesh);
+  write_format(outputs, path, points, mesh, {});
 }
 
-void check_mesh_output(const std::string& path) {
+void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
+                const ConstrainedTriangulation& mesh, FillRule fill_rule, const std::vector<double>& holes) {
+  if (output_format(path) == Format::svg) return write_svg(outputs, path, points, mesh, fill_rule);
+  write_format(outputs, path, points, mesh,
+               {mesh.constraint_edges, mesh.edge_segments, holes, mesh.regions, mesh.depths, true});
+}
+
+std::vector<std::string> mesh_files(const std::string& path, bool with_constraints) {
+  std::vector<std::string> files = {path};
+  if (output_format(path) == Format::ele) {
+    files.push_back(path_beside(path, ".node"));
+    if (with_constraints) files.push_back(path_beside(path, ".poly"));
+  }
+  return files;
+}
+
+void check_mesh_output(const std::string& path, bool with_constraints) {
+  for (const std::string& file : mesh_files(path, with_constraints)) OutputFile::check(file);
+}
+
+bool shows_labels(const std::string& path) {
+  if (path.empty()) return false;
   const Format format = output_format(path);
-  OutputFile::check(path);
-  if (format == Format::ele) OutputFile::check(node_path_beside(path));
+  return format == Format::ele || format == Format::vtu || format == Format::geojson || format == Format::svg;
 }
 
 std::vector<std::int32_t> read_triangles(const std::string& path) {

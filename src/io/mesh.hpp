@@ -5,20 +5,37 @@
 #include <string>
 #include <vector>
 
-#include "flaunay/flaunay.hpp"
+#include "flaunay/constrained.hpp"
 #include "io/output.hpp"
 #include "io/points.hpp"
 
 namespace flaunay::io {
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
-/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .svg (a picture).
+/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .geojson (a polygon per triangle), .svg (a
+/// picture).
 /// Throws Error(input) naming path and the system's reason if it cannot be written.
 void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh);
 
+/// The same with constraints, as far as the format can have them. points: the added ones follow those of the
+/// input; fill_rule: what depths mean; holes: x and y each.
+///   .ele             region and depth as attributes, and beside it a .poly with the constraint edges, whose
+///                    markers are the numbers of their segments, from 1, and the holes
+///   .obj .ply        the constraint edges, as lines and edges
+///   .vtu .geojson    region and depth of each triangle
+///   .svg             the constraint edges, and the inside in other colours than the outside
+void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
+                const ConstrainedTriangulation& mesh, FillRule fill_rule, const std::vector<double>& holes);
+
+/// The files that write_mesh writes for path: some formats have more than one.
+std::vector<std::string> mesh_files(const std::string& path, bool with_constraints);
+
 /// Checks a path before any work. Throws Error(usage) for an unknown ending, Error(input) if the file cannot
 /// be created. Leaves no new file behind.
-void check_mesh_output(const std::string& path);
+void check_mesh_output(const std::string& path, bool with_constraints = false);
+
+/// Whether the format of path has regions and depths.
+bool shows_labels(const std::string& path);
 
 /// Writes an .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
 void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,

@@ -1,5 +1,6 @@
 #include "io/npy.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -142,22 +143,30 @@ Header read_header(const std::string& path, InputFile& file) {
   return header;
 }
 
-/// What a reader accepts: an array of shape (rows, columns) whose dtype is one of the two.
+/// What a reader accepts: an array of shape (rows, columns) with one of these dtypes.
 struct Layout {
   const char* rows_name;
   std::size_t columns;
-  std::string first_dtype, second_dtype;
+  std::vector<std::string> dtypes;
 };
+
+std::string dtypes_text(const Layout& layout) {
+  std::string text;
+  for (std::size_t i = 0; i < layout.dtypes.size(); ++i) {
+    text += i == 0 ? "'" : i + 1 < layout.dtypes.size() ? ", '" : " or '";
+    text += layout.dtypes[i] + "'";
+  }
+  return text;
+}
 
 /// Checks the header. Returns the number of bytes of all values.
 std::size_t check_header(const std::string& path, const Header& header, const Layout& layout) {
-  const std::string expected = fmt::format("expected '{}' or '{}'", layout.first_dtype, layout.second_dtype);
   if (!header.descr.empty() && header.descr[0] == '>') {
-    fail(path, "has big-endian dtype '{}'; {} (numpy converts: array.astype('{}'))", header.descr, expected,
-         layout.first_dtype);
+    fail(path, "has big-endian dtype '{}'; expected {} (numpy converts: array.astype('{}'))", header.descr,
+         dtypes_text(layout), layout.dtypes.front());
   }
-  if (header.descr != layout.first_dtype && header.descr != layout.second_dtype) {
-    fail(path, "has dtype '{}'; {}", header.descr, expected);
+  if (std::find(layout.dtypes.begin(), layout.dtypes.end(), header.descr) == layout.dtypes.end()) {
+    fail(path, "has dtype '{}'; expected {}", header.descr, dtypes_text(layout));
   }
   if (header.shape.size() != 2 || header.shape[1] != layout.columns) {
     fail(path, "has shape {}; expected ({}, {})", shape_text(header.shape), layout.rows_name, layout.columns);
@@ -229,7 +238,7 @@ class Array {
 };
 
 const Layout& point_layout() {
-  static const Layout layout = {"n", 2, "<f8", "<f4"};
+  static const Layout layout = {"n", 2, {"<f8", "<f4"}};
   return layout;
 }
 
@@ -259,7 +268,7 @@ namespace {
 /// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
 std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
   InputFile file(path, "a NumPy array of shape (m, 3)");
-  const Layout layout = {"m", 3, "<i4", "<i8"};
+  const Layout layout = {"m", 3, {"<i4", "<i8"}};
   Array array(path, file, layout);
   std::vector<std::int32_t> triangles;
   const auto check = [&](auto value, std::size_t i) {
@@ -279,13 +288,27 @@ std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t
   return triangles;
 }
 
+/// The values of an array of segments, converted to indices of points.
+template <typename Value>
+std::vector<std::int32_t> segments_of(const std::string& path, Array& array, std::size_t points) {
+  const std::vector<Value> values = array.values<Value>();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    // A negative value is large without its sign.
+    if (static_cast<std::uint64_t>(values[i]) >= points) {
+      fail(path, "segment {} has index {}, but there are {} points, with indices from 0", i / 2, +values[i],
+           points);
+    }
+  }
+  return {values.begin(), values.end()};
+}
+
 class NpyRows : public RowSource {
  public:
   explicit NpyRows(const std::string& path) : path_(path), file_(path, "a NumPy array of shape (m, 3)") {
     file_.first(1);  // an error if there is none
     if (file_.size() < 0)
       fail(path, "is no regular file; expected one, because its rows are not read in order");
-    const Layout layout = {"m", 3, "<i4", "<i8"};
+    const Layout layout = {"m", 3, {"<i4", "<i8"}};
     const Array array(path_, file_, layout);
     array.check_size();
     is_wide_ = array.dtype() == "<i8";
@@ -322,6 +345,21 @@ std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::
 
 std::vector<std::int32_t> read_npy_triangles(const std::string& path) {
   return read_npy_indices(path, 0, "vertex");
+}
+
+std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t points) {
+  InputFile file(path, "a NumPy array of shape (s, 2)");
+  const Layout layout = {"s", 2, {"<i4", "<i8", "<u4", "<u8", "<i2", "<u2", "|i1", "|u1"}};
+  Array array(path, file, layout);
+  const std::string& dtype = array.dtype();
+  if (dtype == "<i4") return segments_of<std::int32_t>(path, array, points);
+  if (dtype == "<i8") return segments_of<std::int64_t>(path, array, points);
+  if (dtype == "<u4") return segments_of<std::uint32_t>(path, array, points);
+  if (dtype == "<u8") return segments_of<std::uint64_t>(path, array, points);
+  if (dtype == "<i2") return segments_of<std::int16_t>(path, array, points);
+  if (dtype == "<u2") return segments_of<std::uint16_t>(path, array, points);
+  if (dtype == "|i1") return segments_of<std::int8_t>(path, array, points);
+  return segments_of<std::uint8_t>(path, array, points);
 }
 
 std::vector<std::int32_t> read_neighbors(const std::string& path) {

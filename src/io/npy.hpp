@@ -29,4 +29,7 @@ NpyPoints find_npy_points(const std::string& path, InputFile& file);
 /// Reads an array of m x 3 indices, int32 or int64.
 std::vector<std::int32_t> read_npy_triangles(const std::string& path);
 
+/// Reads an array of s x 2 indices of `points` points, of any type of integers.
+std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t points);
+
 }  // namespace flaunay::io

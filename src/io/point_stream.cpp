@@ -120,18 +120,35 @@ class TextFile : public PointSource {
   ScratchFile file_;
 };
 
+/// Points that were read at once.
+class ReadPoints : public PointSource {
+ public:
+  explicit ReadPoints(const std::string& path) : points_(read_points(path)) {}
+
+  std::uint64_t size() const override { return points_.size(); }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    std::memcpy(coordinates, points_.coordinates.data() + 2 * first, count * kPair);
+  }
+
+ private:
+  const Points points_;
+};
+
 bool is_text(PointFormat format) { return format == PointFormat::text || format == PointFormat::node; }
 
 }  // namespace
 
 std::unique_ptr<PointSource> open_point_stream(const std::string& path, const std::string& scratch) {
-  if (is_text(point_format(path))) return std::make_unique<TextFile>(path, scratch);
+  const PointFormat format = point_format(path);
+  if (format == PointFormat::map) return std::make_unique<ReadPoints>(path);
+  if (is_text(format)) return std::make_unique<TextFile>(path, scratch);
   return std::make_unique<RecordFile>(path);
 }
 
 std::uint64_t estimate_points(const std::string& path) {
   constexpr std::size_t kBeginning = std::size_t{1} << 16;
   const PointFormat format = point_format(path);
+  if (format == PointFormat::map) return 0;
   // A pipe is not opened, since it can be read only once.
   struct stat status {};
   if (path == "-" || (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))) return 0;

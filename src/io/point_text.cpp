@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
+#include "io/node_vertices.hpp"
 #include "io/text.hpp"
 
 namespace flaunay::io {
@@ -48,93 +48,29 @@ class PairText : public PointText {
   std::string_view hint_;  // how messages about the first line of points end
 };
 
-/// Reads a vertex's first attribute as an index.
-std::int32_t read_index_attribute(Lines& lines) {
-  constexpr long long kMostIndices = std::numeric_limits<std::int32_t>::max();
-  return checked_index(lines, "index", lines.integer("the index of a point"), 0, kMostIndices);
-}
-
 /// Triangle's format.
 class NodeText : public PointText {
  public:
-  /// indices: where the first attribute of each vertex goes, which must be an index; null for none.
-  NodeText(const std::string& path, std::vector<std::int32_t>* indices) : path_(path), indices_(indices) {}
+  NodeText(const std::string& path, std::vector<std::int32_t>* indices) : path_(path), vertices_(indices) {}
 
   void parse(std::string_view text, std::vector<double>& coordinates) override {
     Lines lines(path_, text, Lines::Separator::blanks, lines_);
-    if (header_line_ == 0) read_header(lines);
-    if (header_line_ > 0) {
-      const std::size_t left = std::min(static_cast<std::size_t>(vertices_ - read_), lines.lines_left());
-      coordinates.reserve(coordinates.size() + 2 * left);
-      for (; lines.next(); ++read_) read_vertex(lines, coordinates);
+    if (!vertices_.has_header() && lines.next()) vertices_.read_header(lines);
+    if (vertices_.has_header()) {
+      coordinates.reserve(coordinates.size() + 2 * std::min(vertices_.left(), lines.lines_left()));
+      while (lines.next()) vertices_.read_vertex(lines, coordinates);
     }
     lines_ = lines.number();
   }
 
-  void finish() override {
-    if (header_line_ == 0) fail(path_, "has no header line; expected \"vertices 2 attributes markers\"");
-    if (read_ != vertices_) {
-      fail(path_, "line {}: the header says {} vertices, but the file ends after {}", header_line_, vertices_,
-           read_);
-    }
-  }
+  void finish() override { vertices_.check_complete(path_); }
 
-  long long base() const { return base_; }
+  long long base() const { return vertices_.base(); }
 
  private:
-  void read_header(Lines& lines) {
-    if (!lines.next()) return;
-    const std::size_t fields = lines.count_fields();
-    if (fields > 4) {
-      lines.fail_line("the header has {} fields; expected up to 4: vertices, 2, attributes, markers", fields);
-    }
-    // As in Triangle, the defaults of a short header are two dimensions, no attributes and no markers.
-    vertices_ = lines.integer("the number of vertices");
-    const long long dimensions = fields > 1 ? lines.integer("the number of dimensions") : 2;
-    attributes_ = fields > 2 ? attribute_count(lines) : 0;
-    markers_ = fields > 3 ? lines.integer("the number of boundary markers") : 0;
-    if (vertices_ < 0) lines.fail_line("{} vertices; expected 0 or more", vertices_);
-    if (dimensions != 2) lines.fail_line("{} dimensions; expected 2", dimensions);
-    if (markers_ != 0 && markers_ != 1) lines.fail_line("{} boundary markers; expected 0 or 1", markers_);
-    if (indices_ != nullptr && attributes_ == 0) lines.fail_line("no attributes; expected one, an index");
-    header_line_ = lines.number();
-  }
-
-  void read_vertex(Lines& lines, std::vector<double>& coordinates) {
-    if (read_ == vertices_) {
-      lines.fail_line("more vertices than the {} of the header (line {})", vertices_, header_line_);
-    }
-    const long long number = lines.integer("a vertex number");
-    if (read_ == 0) {
-      if (number != 0 && number != 1)
-        lines.fail_line("expected vertex number 0 or 1 first, found {}", number);
-      base_ = number;
-    }
-    if (number != base_ + read_) {
-      lines.fail_line("expected vertex number {}, found {}", base_ + read_, number);
-    }
-    std::string_view x, y, extra;
-    const bool complete = lines.field(x) && lines.field(y);
-    if (complete && indices_ != nullptr) indices_->push_back(read_index_attribute(lines));
-    while (complete && lines.field(extra)) {
-    }
-    const auto expected_fields = static_cast<std::size_t>(3 + attributes_ + markers_);
-    if (!complete || lines.fields_taken() != expected_fields) {
-      lines.fail_line("expected {} fields (vertex number, x, y, {} attributes, {} markers), found {}",
-                      expected_fields, attributes_, markers_, lines.fields_taken());
-    }
-    const auto point = static_cast<std::size_t>(read_);
-    coordinates.push_back(lines.coordinate(x, point));
-    coordinates.push_back(lines.coordinate(y, point));
-  }
-
   std::string path_;
-  std::vector<std::int32_t>* indices_;
-  std::size_t lines_ = 0;        // read before
-  std::size_t header_line_ = 0;  // 0: not read yet
-  long long vertices_ = 0, attributes_ = 0, markers_ = 0;
-  long long base_ = 0;  // the first vertex's number
-  long long read_ = 0;  // vertices
+  NodeVertices vertices_;
+  std::size_t lines_ = 0;  // read before
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "io/file.hpp"
 #include "io/las.hpp"
+#include "io/map.hpp"
 #include "io/npy.hpp"
 #include "io/point_text.hpp"
 #include "io/text.hpp"
@@ -15,7 +16,7 @@ namespace flaunay::io {
 namespace {
 
 constexpr std::string_view kPointInputEndings =
-    ".npy, .node, .xy, .txt, .csv, .bin, .las, or \"-\" for standard input";
+    ".npy, .node, .xy, .txt, .csv, .bin, .las, .poly, .geojson, .json, or \"-\" for standard input";
 constexpr std::string_view kPointOutputEndings =
     ".npy, .node, .xy, .txt, .csv, .bin, or \"-\" for standard output";
 /// The first line of a .node file.
@@ -29,12 +30,13 @@ PointFormat format_of(const std::string& path, std::string_view expected) {
   if (ending == ".xy" || ending == ".txt" || ending == ".csv") return PointFormat::text;
   if (ending == ".bin") return PointFormat::binary;
   if (ending == ".las") return PointFormat::las;
+  if (is_map(path)) return PointFormat::map;
   fail_ending(path, expected);
 }
 
 PointFormat point_output_format(const std::string& path) {
   const PointFormat format = format_of(path, kPointOutputEndings);
-  if (format == PointFormat::las) fail_ending(path, kPointOutputEndings);
+  if (format == PointFormat::las || format == PointFormat::map) fail_ending(path, kPointOutputEndings);
   return format;
 }
 
@@ -97,6 +99,7 @@ std::uint64_t count_pairs(const std::string& path, std::uint64_t bytes) {
 Points read_points(const std::string& path) {
   const PointFormat format = point_format(path);
   if (format == PointFormat::node || format == PointFormat::text) return read_text(path);
+  if (format == PointFormat::map) return read_map(path).points;
   Points points = format == PointFormat::npy   ? read_npy_points(path)
                   : format == PointFormat::las ? read_las_points(path)
                                                : read_binary(path);

@@ -23,6 +23,7 @@ struct Points {
 ///                    '#' comments, blank lines, and one optional header line
 ///   .bin             raw little-endian float64 pairs
 ///   .las             LAS 1.0 to 1.4, uncompressed: x and y of each point record
+///   .poly .geojson .json   the points of a map, see read_map
 ///   "-"              text from standard input
 /// Zero points are valid only where the format says so (an .npy of shape (0, 2), a .node of 0 points, or a
 /// text file with only comments or a header); a file of zero bytes is an error.
@@ -35,7 +36,7 @@ void check_points_ending(const std::string& path);
 /// The same for write_points.
 void check_points_output(const std::string& path);
 
-enum class PointFormat { npy, node, text, binary, las };
+enum class PointFormat { npy, node, text, binary, las, map };
 /// The format in which read_points reads path. Throws what check_points_ending throws.
 PointFormat point_format(const std::string& path);
 /// How many points a .bin file of this many bytes has. Throws Error(input) if it is no whole number.

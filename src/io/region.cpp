@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "io/file.hpp"
+#include "io/poly.hpp"
 #include "io/text.hpp"
 
 namespace flaunay::io {
@@ -29,31 +30,6 @@ void write_poly(OutputFile& file, const research::Region& region) {
   file.print("0\n");
 }
 
-/// The segments of a .poly without vertices of its own: two positions each.
-std::vector<std::int32_t> read_segments(const std::string& path, const NodeFile& nodes) {
-  const std::string text = read_file(path, "Triangle's .poly format");
-  Lines lines(path, text, Lines::Separator::blanks);
-  if (!lines.next()) fail(path, "has no header line; expected \"0 2 1 1\"");
-  if (lines.integer("the number of vertices") != 0) lines.fail_line("expected no vertices");
-  if (!lines.next()) fail(path, "has no line with the number of segments");
-  const long long count = lines.integer("the number of segments");
-  if (count < 0) lines.fail_line("{} segments; expected 0 or more", count);
-  std::vector<std::int32_t> segments;
-  const auto vertices = static_cast<long long>(nodes.points.size());
-  for (long long k = 0; k < count; ++k) {
-    if (!lines.next()) fail(path, "expected {} segments, but the file ends after {}", count, k);
-    const long long number = lines.integer("a segment number");
-    if (number != nodes.base + k) {
-      lines.fail_line("expected segment number {}, found {}", nodes.base + k, number);
-    }
-    for (int end = 0; end < 2; ++end) {
-      segments.push_back(
-          checked_index(lines, "vertex", lines.integer("a vertex number"), nodes.base, vertices));
-    }
-  }
-  return segments;
-}
-
 void check_count(const std::string& path, const char* what, std::size_t found, std::size_t expected) {
   if (found != expected) fail(path, "has {} {}; expected {}", found, what, expected);
 }
@@ -70,7 +46,7 @@ StoredRegion read_region(const std::string& stem, std::size_t points, std::size_
   NodeFile nodes = read_node(stem + ".node", true);
   check_count(stem + ".node", "vertices", nodes.points.size(), points);
   StoredRegion stored;
-  stored.region.border = read_segments(stem + ".poly", nodes);
+  stored.region.border = read_poly(stem + ".poly", &nodes).segments;
   check_count(stem + ".poly", "segments", stored.region.border.size() / 2, border_edges);
   stored.region.points = std::move(nodes.indices);
   stored.points = std::move(nodes.points);

@@ -18,20 +18,31 @@ namespace {
 constexpr int kShades = 24;
 constexpr std::size_t kDotsUpTo = 1000;  // points of larger sets are not drawn, because edges show them
 
-/// A colour between blue (shade 0), sand and coral (shade kShades - 1).
-std::string shade_color(int shade) {
-  constexpr std::array<std::array<double, 3>, 6> kRamp = {{{0x6f, 0x9f, 0xc4},
-                                                           {0x93, 0xc4, 0xcb},
-                                                           {0xcb, 0xe2, 0xc9},
-                                                           {0xf7, 0xec, 0xc2},
-                                                           {0xf6, 0xc8, 0x9c},
-                                                           {0xe3, 0x93, 0x8a}}};
-  const double at = static_cast<double>(shade) / (kShades - 1) * (kRamp.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(at), kRamp.size() - 2);
+/// Colours from shade 0 to shade kShades - 1, in equal steps.
+template <std::size_t count>
+using Ramp = std::array<std::array<double, 3>, count>;
+/// From blue over sand to coral.
+constexpr Ramp<6> kRamp = {{{0x6f, 0x9f, 0xc4},
+                            {0x93, 0xc4, 0xcb},
+                            {0xcb, 0xe2, 0xc9},
+                            {0xf7, 0xec, 0xc2},
+                            {0xf6, 0xc8, 0x9c},
+                            {0xe3, 0x93, 0x8a}}};
+/// Inside of constraints, which are orange: blues alone, so that everybody can tell them from the lines.
+constexpr Ramp<3> kInsideRamp = {{{0x7f, 0xb0, 0xd8}, {0xae, 0xd0, 0xe6}, {0xdc, 0xea, 0xf3}}};
+constexpr const char* kEdgeColor = "#4a5d73";
+constexpr const char* kInnerEdgeColor = "#6d8299";
+constexpr const char* kConstraintColor = "#c84c09";
+constexpr const char* kOutsideColor = "#eeece6";
+constexpr int kOutsideShade = kShades;
+
+template <std::size_t count>
+std::string ramp_color(const Ramp<count>& ramp, int shade) {
+  const double at = static_cast<double>(shade) / (kShades - 1) * (count - 1);
+  const auto low = std::min(static_cast<std::size_t>(at), count - 2);
   std::array<int, 3> rgb{};
   for (std::size_t c = 0; c < 3; ++c) {
-    const double value =
-        kRamp[low][c] + (at - static_cast<double>(low)) * (kRamp[low + 1][c] - kRamp[low][c]);
+    const double value = ramp[low][c] + (at - static_cast<double>(low)) * (ramp[low + 1][c] - ramp[low][c]);
     rgb[c] = static_cast<int>(std::lround(value));
   }
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
@@ -39,16 +50,29 @@ std::string shade_color(int shade) {
 
 class Picture {
  public:
-  Picture(OutputFile& file, const Points& points, const Triangulation& mesh)
-      : file_(file), path_(file_), points_(points), mesh_(mesh), page_(points) {
+  /// constraints: the same mesh if it has some, otherwise null.
+  Picture(OutputFile& file, const Points& points, const Triangulation& mesh,
+          const ConstrainedTriangulation* constraints = nullptr, FillRule fill_rule = FillRule::nesting)
+      : file_(file),
+        path_(file_),
+        points_(points),
+        mesh_(mesh),
+        constraints_(constraints),
+        fill_rule_(fill_rule),
+        page_(points) {
     choose_units();
   }
 
   void write() {
-    page_.open(file_, "Delaunay triangulation of " + counted(point_count(), "point"), units_);
+    const char* kind = constraints_ == nullptr ? "Delaunay" : "Constrained Delaunay";
+    page_.open(file_, fmt::format("{} triangulation of {}", kind, counted(point_count(), "point")), units_);
     write_triangles();
     write_edges();
-    write_hull();
+    if (constraints_ == nullptr) {
+      write_hull();
+    } else {
+      write_constraints();
+    }
     write_dots();
     page_.close(file_, caption());
   }
@@ -91,7 +115,7 @@ class Picture {
     for (std::size_t t = 0; t < triangle_count(); ++t) {
       if (!visible(t)) continue;
       const Position center = clamped_center(t);
-      const int shade = choose_shade(center, area(t), areas);
+      const int shade = is_inside(t) ? choose_shade(center, area(t), areas) : kOutsideShade;
       const auto row = static_cast<std::uint64_t>(center.y / tile);
       auto column = static_cast<std::uint64_t>(center.x / tile);
       if (row % 2) column = 0xffff - column;  // every other row from right to left
@@ -102,13 +126,24 @@ class Picture {
     });
     for (std::size_t begin = 0; begin < shaded.size();) {
       const std::uint64_t shade = shaded[begin].order >> 32;
-      file_.print("<path fill=\"{}\" d=\"", shade_color(static_cast<int>(shade)));
+      file_.print("<path fill=\"{}\" d=\"", color(static_cast<int>(shade)));
       path_.restart();
       for (; begin < shaded.size() && shaded[begin].order >> 32 == shade; ++begin) {
         write_triangle(shaded[begin].triangle);
       }
       file_.print("\"/>\n");
     }
+  }
+
+  /// Whether a triangle is inside, as far as that is known.
+  bool is_inside(std::size_t t) const {
+    if (constraints_ == nullptr || constraints_->depths.empty()) return true;
+    const std::int32_t depth = constraints_->depths[t];
+    return fill_rule_ == FillRule::nesting ? depth % 2 == 1 : depth != 0;
+  }
+  std::string color(int shade) const {
+    if (shade == kOutsideShade) return kOutsideColor;
+    return constraints_ == nullptr ? ramp_color(kRamp, shade) : ramp_color(kInsideRamp, shade);
   }
 
   struct Areas {
@@ -215,11 +250,19 @@ class Picture {
     path_.restart();
   }
 
+  /// Whether the edge from corner i is at the border of a mesh whose hull is not drawn, and from its larger
+  /// index to its smaller.
+  bool is_border(std::size_t i) const {
+    return constraints_ != nullptr && !mesh_.neighbors.empty() &&
+           mesh_.neighbors[i % 3 == 0 ? i + 2 : i - 1] < 0;
+  }
+
   /// Every edge once: of the two triangles at an inner edge, one has it from its smaller index to its larger.
-  /// The hull's other edges are in the hull's own path. Edges inside the view are joined to long trails,
-  /// which takes half the characters of single segments.
+  /// Without constraints, the hull's other edges are in the hull's own path. Edges inside the view are joined
+  /// to long trails, which takes half the characters of single segments.
   void write_edges() {
     if (mesh_.triangles.empty()) return;
+    const char* color = constraints_ == nullptr ? kEdgeColor : kInnerEdgeColor;
     struct Neighbor {
       std::int32_t vertex;
       std::uint32_t edge;
@@ -229,14 +272,14 @@ class Picture {
     const auto for_each_edge = [&](auto&& visit) {
       for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
         const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[i % 3 == 2 ? i - 2 : i + 1];
-        if (v < w) visit(v, w);
+        if (v < w || is_border(i)) visit(v, w);
       }
     };
     const auto shown_whole = [&](std::int32_t v, std::int32_t w) {
       const Position &p = position(v), &q = position(w);
       return inside(v) && inside(w) && (unit(p.x) != unit(q.x) || unit(p.y) != unit(q.y));
     };
-    open_stroke("edges", "#4a5d73", line_width_);
+    open_stroke("edges", color, line_width_);
     for_each_edge([&](std::int32_t v, std::int32_t w) {
       if (shown_whole(v, w)) {
         ++begin[static_cast<std::size_t>(v) + 1];
@@ -268,7 +311,7 @@ class Picture {
       while (next_edge(v)) {
         if (++trails_ % kTrailsPerPath == 0) {
           file_.print("\"/>\n");
-          open_stroke(fmt::format("edges-{}", trails_ / kTrailsPerPath).c_str(), "#4a5d73", line_width_);
+          open_stroke(fmt::format("edges-{}", trails_ / kTrailsPerPath).c_str(), color, line_width_);
         }
         path_.move_to(unit(positions_[v].x), unit(positions_[v].y));
         for (std::size_t from = v; next_edge(from);) {
@@ -296,11 +339,24 @@ class Picture {
     file_.print("\"/>\n");
   }
 
+  void write_constraints() {
+    open_stroke("constraints", kConstraintColor, std::clamp(2.8 * line_width_, 1.2, 3.0));
+    const std::vector<std::int32_t>& edges = constraints_->constraint_edges;
+    for (std::size_t e = 0; e < edges.size(); e += 2) write_segment(edges[e], edges[e + 1]);
+    file_.print("\"/>\n");
+  }
+
   void write_dots() {
     if (point_count() > kDotsUpTo) return;
+    const double size = std::clamp(0.14 * typical_edge_, 2.0, 7.0);
+    const std::size_t added = constraints_ == nullptr ? 0 : constraints_->added_points.size() / 2;
+    write_dots("points", "#24405f", size, 0, point_count());
+    if (added > 0) write_dots("added", "#ffffff", 0.6 * size, point_count() - added, point_count());
+  }
+  void write_dots(const char* name, std::string_view color, double size, std::size_t begin, std::size_t end) {
     // A line of no length with round ends is a dot.
-    open_stroke("points", "#24405f", std::clamp(0.14 * typical_edge_, 2.0, 7.0));
-    for (std::size_t i = 0; i < point_count(); ++i) {
+    open_stroke(name, color, size);
+    for (std::size_t i = begin; i < end; ++i) {
       if (!page_.contains(positions_[i])) continue;
       path_.move_to(unit(positions_[i].x), unit(positions_[i].y));
       file_.print("h0");
@@ -309,8 +365,14 @@ class Picture {
   }
 
   std::string caption() const {
-    std::string text = counted(point_count(), "point") + " · " + counted(triangle_count(), "triangle") +
-                       " · " + with_thousands(mesh_.hull.size()) + " on the hull";
+    std::string text = counted(point_count(), "point") + " · " + counted(triangle_count(), "triangle");
+    if (constraints_ == nullptr) {
+      text += " · " + with_thousands(mesh_.hull.size()) + " on the hull";
+    } else {
+      text += " · " + counted(constraints_->constraint_edges.size() / 2, "constraint edge");
+      const std::size_t added = constraints_->added_points.size() / 2;
+      if (added > 0) text += " · " + counted(added, "point") + " added where segments cross";
+    }
     std::size_t duplicates = 0;
     for (std::size_t i = 0; i < mesh_.representatives.size(); ++i) {
       duplicates += mesh_.representatives[i] != static_cast<std::int32_t>(i);
@@ -326,6 +388,8 @@ class Picture {
   PathData path_;
   const Points& points_;
   const Triangulation& mesh_;
+  const ConstrainedTriangulation* constraints_;
+  const FillRule fill_rule_;
   const Page page_;
   const std::vector<Position>& positions_ = page_.positions();
   const double width_ = page_.width(), height_ = page_.height();
@@ -340,6 +404,11 @@ class Picture {
 
 void write_svg(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
   Picture(outputs.open(path), points, mesh).write();
+}
+
+void write_svg(Outputs& outputs, const std::string& path, const Points& points,
+               const ConstrainedTriangulation& mesh, FillRule fill_rule) {
+  Picture(outputs.open(path), points, mesh, &mesh, fill_rule).write();
 }
 
 }  // namespace flaunay::io

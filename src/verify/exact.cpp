@@ -92,6 +92,25 @@ int incircle_sign(const Scaled<4>& points) {
                       c_lift * (adx * bdy - bdx * ady)));
 }
 
+/// Twice the area of the triangle of points i, j and k.
+template <typename Integer>
+Integer area(const Scaled<5>& points, int i, int j, int k) {
+  const Integer x = points.difference<Integer>(k, 0), y = points.difference<Integer>(k, 1);
+  return (points.difference<Integer>(i, 0) - x) * (points.difference<Integer>(j, 1) - y) -
+         (points.difference<Integer>(i, 1) - y) * (points.difference<Integer>(j, 0) - x);
+}
+
+/// Points a0, a1, b0, b1, p. Needs 3 * bits + 5 bits and a sign: areas are below 2 d^2 with d = 2^(bits + 1),
+/// and the sum is below 4 d^3.
+template <typename Integer>
+int crossing_sign(const Scaled<5>& points, int axis) {
+  Integer at_a0 = area<Integer>(points, 2, 3, 0), at_a1 = area<Integer>(points, 2, 3, 1);
+  if (at_a0 < 0) at_a0 = -at_a0;
+  if (at_a1 < 0) at_a1 = -at_a1;
+  return -sign(
+      Integer(points.difference<Integer>(0, axis) * at_a1 + points.difference<Integer>(1, axis) * at_a0));
+}
+
 }  // namespace
 
 int ExactPredicates::exact_orient2d(const double* a, const double* b, const double* c) {
@@ -106,6 +125,14 @@ int ExactPredicates::exact_incircle(const double* a, const double* b, const doub
   if (4 * points.bits + 8 <= 127) return incircle_sign<Int128>(points);
   if (4 * points.bits + 8 <= 512) return incircle_sign<Int512>(points);
   return incircle_sign<BigInt>(points);
+}
+
+int ExactPredicates::exact_side_of_crossing(const double* a0, const double* a1, const double* b0,
+                                            const double* b1, const double* p, int axis) {
+  const Scaled<5> points({a0, a1, b0, b1, p});
+  if (3 * points.bits + 5 <= 127) return crossing_sign<Int128>(points, axis);
+  if (3 * points.bits + 5 <= 512) return crossing_sign<Int512>(points, axis);
+  return crossing_sign<BigInt>(points, axis);
 }
 
 }  // namespace flaunay

@@ -9,6 +9,7 @@ namespace flaunay::voronoi {
 
 using geometry::Magnitudes;
 using geometry::Point;
+using geometry::operator==;
 
 namespace {
 

@@ -1091,31 +1091,34 @@ TEST(SmallConstrainedOnDevice, IsThatOfTheHost) {
   const ConstrainedTriangulation expected = triangulator().constrained(points.data(), n, constraints);
 
   const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
-  DeviceConstrainedTriangulation result;
-  embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, result);
-  embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, result);
+  DeviceTriangulation mesh;
+  DeviceConstraintEdges edges;
+  for (int call = 0; call < 2; ++call) {
+    embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, mesh, edges);
+  }
   const auto read = [](const DeviceBuffer& buffer, std::size_t count) {
     return embedder().download<std::int32_t>(buffer.memory(), count, embedded().queue());
   };
-  EXPECT_EQ(result.edge_count, expected.constraint_edges.size() / 2);
-  EXPECT_EQ(read(result.mesh.triangles, expected.triangles.size()), expected.triangles);
-  EXPECT_EQ(read(result.mesh.neighbors, expected.neighbors.size()), expected.neighbors);
-  EXPECT_EQ(read(result.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
-  EXPECT_EQ(read(result.piece_edges, expected.piece_edges.size()), expected.piece_edges);
-  EXPECT_EQ(embedder().download<std::uint8_t>(result.constrained.memory(), expected.constrained.size(),
+  EXPECT_EQ(edges.edge_count, expected.constraint_edges.size() / 2);
+  EXPECT_EQ(read(mesh.triangles, expected.triangles.size()), expected.triangles);
+  EXPECT_EQ(read(mesh.neighbors, expected.neighbors.size()), expected.neighbors);
+  EXPECT_EQ(read(edges.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
+  EXPECT_EQ(read(edges.piece_edges, expected.piece_edges.size()), expected.piece_edges);
+  EXPECT_EQ(embedder().download<std::uint8_t>(edges.constrained.memory(), expected.constrained.size(),
                                               embedded().queue()),
             expected.constrained);
   DeviceVoronoi dual;
-  EXPECT_THROW(embedded().voronoi({memory.get(), n}, result.mesh, dual), Error);
+  EXPECT_THROW(embedded().voronoi({memory.get(), n}, mesh, dual), Error);
 }
 
 TEST(SmallConstrainedOnDevice, CrossingSegmentsAreNamed) {
   const std::vector<double> points = {0, 0, 2, 2, 0, 2, 2, 0};
   const std::vector<std::int32_t> segments = {0, 1, 2, 3};
   const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
-  DeviceConstrainedTriangulation result;
+  DeviceTriangulation mesh;
+  DeviceConstraintEdges edges;
   try {
-    embedded().constrained({memory.get(), 4}, {ends.get(), 2}, result);
+    embedded().constrained({memory.get(), 4}, {ends.get(), 2}, mesh, edges);
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::input);

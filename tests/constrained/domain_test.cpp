@@ -209,7 +209,7 @@ TEST(SmallDomains, AsDefined) {
 // others are left out.
 TEST(SmallDomains, RectanglesAsDefined) {
   FixtureRandom random(2);
-  for (int round = 0; round < (is_simulated() ? 5 : 100); ++round) {
+  for (int round = 0; round < (is_simulated() ? 5 : 40); ++round) {
     Case input;
     input.points = grid_points(6, 6);
     input.offsets = {0, 36};
@@ -237,7 +237,7 @@ TEST(SmallDomains, RectanglesAsDefined) {
 
 TEST(SmallDomains, KernelsAsPlain) {
   FixtureRandom random(3);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 30); ++round) {
+  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 10); ++round) {
     const Case input = random_sets(random, round, 8);
     for (const FillRule rule : kRules) {
       for (const Outside outside : kOutsides) {
@@ -252,7 +252,7 @@ TEST(SmallDomains, KernelsAsPlain) {
 // Segments that end anywhere: nesting is defined, the other rules name the first point that is wrong.
 TEST(SmallDomains, OpenSegments) {
   FixtureRandom random(4);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 5 : 60); ++round) {
+  for (std::uint64_t round = 0; round < (is_simulated() ? 5 : 30); ++round) {
     Case input;
     input.points = random_integer_points(14, 6, round);
     input.offsets = {0, 14};
@@ -299,7 +299,7 @@ TEST(SmallDomains, CurvesThatAreNotClosed) {
 // Holes at random places of a grid's cells: where they are is known.
 TEST(SmallDomains, Holes) {
   FixtureRandom random(5);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 4 : 60); ++round) {
+  for (std::uint64_t round = 0; round < (is_simulated() ? 4 : 20); ++round) {
     Case input = random_sets(random, round, 5);
     const ConstrainedTriangulation mesh = input.triangulate();
     // In the middle of some triangles.

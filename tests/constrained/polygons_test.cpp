@@ -244,6 +244,72 @@ TEST(SmallPolygons, Shapes) {
             (std::vector<std::size_t>{0, 0}));
 }
 
+// Whether a place is so near to a segment that rounded crossings may have moved it to the other side.
+bool is_near(const Rings& input, const Segments& segments, const RationalPlace& place) {
+  for (std::size_t s = 0; s < segments.size(); s += 2) {
+    const double* a = &input.coordinates[2 * static_cast<std::size_t>(segments[s])];
+    const double* b = &input.coordinates[2 * static_cast<std::size_t>(segments[s + 1])];
+    if (a[0] == b[0] && a[1] == b[1]) continue;
+    const mpq_class area =
+        (mpq_class(b[0]) - a[0]) * (place.y - a[1]) - (mpq_class(b[1]) - a[1]) * (place.x - a[0]);
+    if (abs(area) < 1e-9) return true;
+  }
+  return false;
+}
+
+TEST(SmallPolygons, CrossingsThatAreSplit) {
+  FixtureRandom random(4);
+  std::size_t all = 0, checked = 0;
+  for (int round = 0; round < (is_simulated() ? 2 : 40); ++round) {
+    Rings input;
+    for (std::int64_t p = random.integer(1, 3); p > 0; --p) {
+      std::vector<Coordinates> rings;
+      for (std::int64_t r = random.integer(1, 2); r > 0; --r) {
+        rings.push_back(random_integer_points(static_cast<std::size_t>(random.integer(3, 7)), 9,
+                                              static_cast<std::uint64_t>(100 * round + 10 * p + r)));
+      }
+      input.add(rings);
+    }
+    const Segments segments = input.segments();
+    for (const bool map : {false, true}) {
+      for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+        PolygonOptions options = options_of(rule, Outside::keep, map);
+        options.crossings = Crossings::split;
+        const ConstrainedTriangulation mesh = triangulator().polygons(input.view(), options);
+        Coordinates points = input.coordinates;
+        points.insert(points.end(), mesh.added_points.begin(), mesh.added_points.end());
+        for (std::size_t t = 0, set = 0; t < mesh.triangles.size() / 3; ++t) {
+          while (mesh.triangle_offsets[set + 1] <= t) ++set;
+          const RationalPlace place = centroid(points, &mesh.triangles[3 * t]);
+          if (is_near(input, segments, place)) continue;
+          ++checked;
+          std::int32_t count = 0, first = -1;
+          for (std::size_t p = input.count(); p-- > 0;) {
+            if (!is_in(input.around(p, place), rule)) continue;
+            first = static_cast<std::int32_t>(p);
+            ++count;
+          }
+          if (map) {
+            ASSERT_EQ(mesh.polygons[t], first);
+            ASSERT_EQ(mesh.depths[t], count);
+          } else {
+            const Around at = input.around(set, place);
+            ASSERT_EQ(mesh.depths[t], rule == FillRule::winding ? at.winding : at.crossings % 2);
+          }
+        }
+        all += mesh.triangles.size() / 3;
+        options.outside = Outside::holes;
+        const ConstrainedTriangulation left = triangulator().polygons(input.view(), options);
+        const auto is_inside = [&](std::int32_t depth) { return depth != 0; };
+        EXPECT_EQ(static_cast<std::ptrdiff_t>(left.triangles.size() / 3),
+                  std::count_if(mesh.depths.begin(), mesh.depths.end(), is_inside));
+        EXPECT_EQ(left.added_points, mesh.added_points);
+      }
+    }
+  }
+  EXPECT_GT(10 * checked, 8 * all);
+}
+
 TEST(SmallPolygons, SharedBordersOfMaps) {
   // Two squares side by side, of which one has a point more on the border; a third one lies in the first.
   Rings map;

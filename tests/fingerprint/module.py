@@ -5,6 +5,7 @@ name of the default mode, which older versions call otherwise.
 """
 
 import hashlib
+import inspect
 import os
 
 import numpy as np
@@ -13,6 +14,8 @@ import flaunay
 
 DEFAULT_MODE = os.environ["FLAUNAY_FINGERPRINT_MODE"]
 MODES = [DEFAULT_MODE, "flattened", "recursive-device", "recursive", "partition", "dwyer"]
+# Older versions call the offsets of sets segments.
+OFFSETS = "offsets" if "offsets" in inspect.signature(flaunay.triangulate).parameters else "segments"
 random = np.random.RandomState(1)  # its numbers never change
 
 SETS = {
@@ -85,7 +88,7 @@ def show_triangulations(name, points):
             key = f"triangulate/{mode}/{kind}/{name}"
             made = show_attributes(
                 key,
-                lambda: flaunay.triangulate(points, segments=given, halfedges=True, mode=mode),
+                lambda: flaunay.triangulate(points, **{OFFSETS: given}, halfedges=True, mode=mode),
                 TRIANGULATION,
             )
             show(f"{key}/statistics", lambda: [made.statistics.get(name) for name in STATISTICS.split()])
@@ -106,7 +109,7 @@ def show_on_device(name, points):
             f"triangulate_device/{kind.__name__}/{name}",
             lambda: flaunay.triangulate_device(
                 array,
-                segments=[0, len(points) // 2, len(points)],
+                **{OFFSETS: [0, len(points) // 2, len(points)]},
                 neighbors=True,
                 halfedges=True,
                 hull=True,
@@ -128,8 +131,8 @@ show("wrong/shape", lambda: flaunay.triangulate(np.zeros((4, 3))))
 show("wrong/type", lambda: flaunay.Delaunay([["a", "b"]]))
 show("wrong/nan", lambda: flaunay.Delaunay([[0, 0], [np.nan, 1]]))
 show("wrong/magnitudes", lambda: flaunay.Delaunay([[1e-300, 0], [1e300, 1], [0, 1]]))
-show("wrong/segments", lambda: flaunay.triangulate(SQUARE, segments=[0, 5, 3, len(SQUARE)]))
-show("wrong/segments-end", lambda: flaunay.triangulate(SQUARE, segments=[0, 5]))
+show("wrong/segments", lambda: flaunay.triangulate(SQUARE, **{OFFSETS: [0, 5, 3, len(SQUARE)]}))
+show("wrong/segments-end", lambda: flaunay.triangulate(SQUARE, **{OFFSETS: [0, 5]}))
 show("wrong/device", lambda: flaunay.triangulate(SQUARE, device="no such device"))
 show("wrong/host-device", lambda: flaunay.triangulate(SQUARE, mode="dwyer", device="#0"))
 show("wrong/queries", lambda: flaunay.Delaunay(SQUARE).find_simplex([[0, 0, 0]]))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,13 @@ using testing::Coordinates;
 
 /// One entry per set: x0 y0 x1 y1 ...
 using Batch = std::vector<Coordinates>;
+
+/// Points, and segments between them: 2 indices each.
+struct SegmentSet {
+  Coordinates points;
+  std::vector<std::int32_t> segments;
+};
+using SegmentBatch = std::vector<SegmentSet>;
 
 inline std::size_t points_of(const Batch& batch) {
   std::size_t points = 0;

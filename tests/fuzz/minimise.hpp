@@ -16,8 +16,16 @@ using Fails = std::function<bool(const Batch&)>;
 /// Calls `fails` at most `most_calls` times. The batch itself must fail.
 Batch minimise(Batch batch, const Fails& fails, std::size_t most_calls = 20'000);
 
+using SegmentsFail = std::function<bool(const SegmentBatch&)>;
+
+/// The same with segments. Removes segments too. A point takes the segments with it that end there.
+SegmentBatch minimise(SegmentBatch batch, const SegmentsFail& fails, std::size_t most_calls = 20'000);
+
 /// The batch as an .xy file: one point per line. `comment` may have several lines; the sets of a batch are
 /// told apart by comments.
 std::string fixture_text(const Batch& batch, const std::string& comment);
+
+/// The batch as a statement of tests/constrained/constrained_test.cpp.
+std::string test_text(const SegmentBatch& batch, const std::string& comment);
 
 }  // namespace flaunay::fuzz

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/constrained/segments.hpp"
 #include "tests/fuzz/degenerate.hpp"
 
 namespace flaunay::fuzz {
@@ -47,6 +48,36 @@ TEST(Minimise, FindsTheLeastPointsThatFail) {
   ASSERT_EQ(least.size(), 1u);
   EXPECT_EQ(points_of(least), 3u);
   EXPECT_LE(fixture_text(least, "").size(), 3 * std::string("0.8 0\n").size());
+}
+
+TEST(Minimise, FindsTheLeastSegmentsThatFail) {
+  // Two segments that cross, among many.
+  const auto cross = [](const SegmentSet& set) {
+    testing::Plane plane(set.points);
+    const auto& s = set.segments;
+    for (std::size_t i = 0; i < s.size(); i += 2) {
+      for (std::size_t j = 0; j < i; j += 2) {
+        if (plane.cross(s[i], s[i + 1], s[j], s[j + 1])) return true;
+      }
+    }
+    return false;
+  };
+  const SegmentsFail fails = [&](const SegmentBatch& batch) {
+    return std::any_of(batch.begin(), batch.end(), cross);
+  };
+  SegmentBatch batch;
+  FixtureRandom random(3);
+  for (const Coordinates& points : some_batch(3, 4, 30))
+    batch.push_back({points, testing::random_segments(random, 30, 20)});
+  ASSERT_TRUE(fails(batch));
+  const SegmentBatch least = minimise(batch, fails);
+  ASSERT_EQ(least.size(), 1u);
+  EXPECT_EQ(least[0].points.size() / 2, 4u);
+  EXPECT_EQ(least[0].segments.size() / 2, 2u);
+  EXPECT_TRUE(cross(least[0]));
+  const std::string text = test_text(least, "why");
+  EXPECT_EQ(text.rfind("// why\nexpect_right(Sets({", 0), 0u) << text;
+  EXPECT_NE(text.find("}, {0, 4}), {"), std::string::npos) << text;
 }
 
 TEST(Minimise, KeepsPointsThatFailTogetherOnly) {

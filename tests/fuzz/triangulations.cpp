@@ -6,11 +6,7 @@
 //
 // Each case depends on the seed and its number alone, so --first repeats one.
 #include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
 
-#include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -23,6 +19,7 @@
 #include "flaunay/research.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/minimise.hpp"
+#include "tests/fuzz/run.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/reference.hpp"
 #include "verify/verify.hpp"
@@ -31,24 +28,6 @@ namespace flaunay::fuzz {
 namespace {
 
 using research::Mode;
-
-// -----------------------------------------------------------------------------------------------------------
-// When the process ends within a case
-
-constexpr unsigned kLongestCheck = 120;  // seconds
-
-char case_name[80];
-
-/// Names the case if the library ends the process or does not return.
-void report_signal(int number) {
-  const char* const what = number == SIGALRM ? "\nfuzz_triangulations: does not end: "
-                                             : "\nfuzz_triangulations: ends the process: ";
-  for (const char* text : {what, static_cast<const char*>(case_name), "\n"}) {
-    if (::write(STDERR_FILENO, text, std::char_traits<char>::length(text)) < 0) break;
-  }
-  ::signal(number, SIG_DFL);
-  ::raise(number);
-}
 
 // -----------------------------------------------------------------------------------------------------------
 // One mode's result
@@ -194,7 +173,6 @@ struct Verdict {
 };
 
 Verdict judge(const Batch& batch, const std::vector<Execution>& executions) {
-  ::alarm(kLongestCheck);
   const Flat points = flat(batch);
   std::optional<Outcome> expected;
   for (const Execution& execution : executions) {
@@ -222,70 +200,51 @@ Verdict judge(const Batch& batch, const std::vector<Execution>& executions) {
   return {"", !expected->error.empty()};
 }
 
-struct Request {
-  double seconds = 60;
-  std::uint64_t seed = 1;
-  std::uint64_t first = 0;
-};
-
-int report(const Batch& batch, const std::vector<Execution>& executions) {
-  const auto fails = [&](const Batch& smaller) { return !judge(smaller, executions).problem.empty(); };
-  fmt::print("{}\n{}\n{} points in {} sets; shrinking them\n", case_name, judge(batch, executions).problem,
-             points_of(batch), batch.size());
-  std::fflush(stdout);
-  const Batch smallest = minimise(batch, fails);
-  fmt::print("A fixture for tests/data:\n{}",
-             fixture_text(smallest, fmt::format("{}\n{}", case_name, judge(smallest, executions).problem)));
-  return 1;
-}
-
-int run(const Request& request) {
-  Triangulators triangulators;
-  // Not earlier, since PoCL installs handlers of its own; its handler for SIGFPE is needed by kernels.
-  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGILL, SIGALRM, SIGTERM})
-    ::signal(number, report_signal);
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                   std::chrono::duration<double>(request.seconds));
-  std::uint64_t number = request.first;
-  std::size_t sets = 0, points = 0, refused = 0;
-  do {
-    constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;  // tells the seeds of neighbouring cases apart
-    testing::FixtureRandom random(request.seed + kOdd * (number + 1));
-    fmt::format_to_n(case_name, sizeof case_name - 1, "fuzz_triangulations --seed {} --first {}",
-                     request.seed, number);
+class Triangulations : public Fuzzer {
+ public:
+  bool run(testing::FixtureRandom& random) override {
     const Batch batch = degenerate_batch(random);
-    const std::vector<Execution> executions = triangulators.executions(random, points_of(batch));
+    const std::vector<Execution> executions = triangulators_.executions(random, points_of(batch));
     const Verdict verdict = judge(batch, executions);
-    if (!verdict.problem.empty()) return report(batch, executions);
-    refused += verdict.refused;
-    sets += batch.size();
-    points += points_of(batch);
-    ++number;
-  } while (Clock::now() < end);
-  ::alarm(0);
-  fmt::print(
-      "{} cases with {} sets and {} points are right in all modes, {} of them refused by all (seed {})\n",
-      number - request.first, sets, points, refused, request.seed);
-  return 0;
-}
+    if (!verdict.problem.empty()) {
+      report(batch, executions);
+      return false;
+    }
+    refused_ += verdict.refused;
+    sets_ += batch.size();
+    points_ += points_of(batch);
+    return true;
+  }
+
+  std::string summary() const override {
+    return fmt::format("{} sets and {} points are right in all modes, {} of them refused by all", sets_,
+                       points_, refused_);
+  }
+
+ private:
+  static void report(const Batch& batch, const std::vector<Execution>& executions) {
+    const auto problem_of = [&](const Batch& smaller) {
+      start_check();
+      return judge(smaller, executions).problem;
+    };
+    const auto fails = [&](const Batch& smaller) { return !problem_of(smaller).empty(); };
+    fmt::print("{}\n{}\n{} points in {} sets; shrinking them\n", case_name(), problem_of(batch),
+               points_of(batch), batch.size());
+    std::fflush(stdout);
+    const Batch smallest = minimise(batch, fails);
+    fmt::print("A fixture for tests/data:\n{}",
+               fixture_text(smallest, fmt::format("{}\n{}", case_name(), problem_of(smallest))));
+  }
+
+  Triangulators triangulators_;
+  std::size_t sets_ = 0, points_ = 0, refused_ = 0;
+};
 
 }  // namespace
 }  // namespace flaunay::fuzz
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  return flaunay::fuzz::run_fuzzer<flaunay::fuzz::Triangulations>(
+      argc, argv, "fuzz_triangulations",
       "Triangulates degenerate point sets in all modes until a result is wrong or the time is over.");
-  flaunay::fuzz::Request request;
-  app.add_option("--seconds", request.seconds, "How long; at least one case is run")->capture_default_str();
-  app.add_option("--seed", request.seed, "Decides, with the number of a case, its points")
-      ->capture_default_str();
-  app.add_option("--first", request.first, "The number of the first case")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return flaunay::fuzz::run(request);
-  } catch (const flaunay::Error& error) {
-    fmt::print(stderr, "fuzz_triangulations: {}\n", error.what());
-    return 4;
-  }
 }

@@ -584,8 +584,8 @@ TEST_F(IoTest, CheckingLeavesEverythingAsItWas) {
 
 TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
   for (const char* name : {"a.stl", "a", "-", "a.node"}) {
-    expect_error(ErrorKind::usage, std::string(name) + ": ", {".ele, .off, .ply, .vtu, .obj, .npy, .svg"},
-                 [&] { check_mesh_output(name); });
+    expect_error(ErrorKind::usage, std::string(name) + ": ",
+                 {".ele, .off, .ply, .vtu, .obj, .npy, .geojson, .svg"}, [&] { check_mesh_output(name); });
     expect_error(ErrorKind::usage, std::string(name) + ": ", {".svg"}, [&] { write_mesh(name, {}, {}); });
   }
   expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},

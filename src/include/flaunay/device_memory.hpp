@@ -90,7 +90,7 @@ struct DeviceTriangulation {
   DeviceBuffer representatives;  ///< 1 per point
   /// The arrays that the last call computed.
   Parts parts{false, false, false, false, false};
-  bool is_constrained = false;  ///< whether it is part of a DeviceConstrainedTriangulation
+  bool is_constrained = false;  ///< whether segments were made edges of it
   std::size_t points = 0;       ///< number of points over all sets
   /// sets + 1 values in host memory, known when the call returns: set s has points [point_offsets[s],
   /// point_offsets[s + 1]).
@@ -112,15 +112,15 @@ struct DeviceSegments {
   std::size_t count = 0;  ///< number of segments
 };
 
-/// A ConstrainedTriangulation in device memory. The caller's buffers must have the sizes given here.
-struct DeviceConstrainedTriangulation {
-  /// The triangles with the segments as edges, with all parts but halfedges. Voronoi diagrams and locators
-  /// refuse it.
-  DeviceTriangulation mesh;
-  DeviceBuffer constrained;       ///< ConstrainedTriangulation::constrained, uchar, 6 bytes per point
-  DeviceBuffer piece_edges;       ///< ConstrainedTriangulation::piece_edges, int32, 8 bytes per segment
-  DeviceBuffer constraint_edges;  ///< ConstrainedTriangulation::constraint_edges, int32, 8 bytes per edge
-  std::size_t edge_count = 0;     ///< number of constraint edges, known when the call returns
+/// What a ConstrainedTriangulation has besides its triangles, in device memory. The caller's buffers must
+/// have the sizes given here.
+struct DeviceConstraintEdges {
+  DeviceBuffer constrained;  ///< ConstrainedTriangulation::constrained, uchar, 6 bytes per point
+  DeviceBuffer piece_edges;  ///< ConstrainedTriangulation::piece_edges, int32, 8 bytes per segment
+  /// ConstrainedTriangulation::constraint_edges, int32, 8 bytes per edge: one per segment at least, and as
+  /// many more as there are points on segments.
+  DeviceBuffer constraint_edges;
+  std::size_t edge_count = 0;  ///< number of constraint edges, known when the call returns
 };
 
 /// The Voronoi diagram of n points in device memory.

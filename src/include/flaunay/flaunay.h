@@ -118,6 +118,40 @@ typedef enum flaunay_clipped_voronoi_part {
   FLAUNAY_CLIPPED_VORONOI_CENTROIDS = 8  ///< double2, 16 n
 } flaunay_clipped_voronoi_part;
 
+/// What becomes of two segments that cross where no point is.
+typedef enum flaunay_crossings {
+  FLAUNAY_CROSSINGS_ERROR = 0,  ///< FLAUNAY_ERROR_INPUT, whose message names both segments and the place
+  FLAUNAY_CROSSINGS_SPLIT = 1   ///< both are split there; the place is rounded and becomes a point of its own
+} flaunay_crossings;
+
+/// Which triangles a constrained triangulation has.
+typedef enum flaunay_outside {
+  FLAUNAY_OUTSIDE_KEEP = 0,  ///< all, up to the convex hull
+  FLAUNAY_OUTSIDE_HULL = 1,  ///< without those outside: of depth 0
+  FLAUNAY_OUTSIDE_HOLES = 2  ///< without those outside and those in holes
+} flaunay_outside;
+
+/// How it is decided what is outside and what is a hole. A path from beyond the hull to a triangle, through
+/// no point, crosses segments. Where segments lie on each other, each counts.
+typedef enum flaunay_fill_rule {
+  /// The depth of a triangle is the least number of constraint edges that such a path crosses. Holes have an
+  /// even depth. This is defined for any segments; those that end without closing a curve do not count.
+  FLAUNAY_FILL_RULE_NESTING = 0,
+  /// The depth is 1 if the path crosses an odd number of segments, otherwise 0. Segments must form closed
+  /// curves: an even number ends at each point.
+  FLAUNAY_FILL_RULE_EVEN_ODD = 1,
+  /// The depth is the winding number of the directed segments: those that the path crosses from their right
+  /// to their left, less those from left to right. Only a depth of 0 is outside, and there are no other
+  /// holes. Segments must form closed curves: as many begin as end at each point.
+  FLAUNAY_FILL_RULE_WINDING = 2
+} flaunay_fill_rule;
+
+/// What becomes of places that are in several polygons of a map.
+typedef enum flaunay_overlaps {
+  FLAUNAY_OVERLAPS_FIRST = 0,  ///< they belong to the polygon with the smallest index
+  FLAUNAY_OVERLAPS_ERROR = 1  ///< FLAUNAY_ERROR_INPUT, whose message names a triangle and two of its polygons
+} flaunay_overlaps;
+
 /// How values are computed between points.
 typedef enum flaunay_interpolation {
   FLAUNAY_INTERPOLATION_LINEAR = 0,   ///< linearly in each triangle; continuous
@@ -137,6 +171,10 @@ typedef enum flaunay_interpolation {
 typedef struct flaunay_triangulator flaunay_triangulator;
 /// The triangulations of one or more point sets, in host memory.
 typedef struct flaunay_triangulation flaunay_triangulation;
+/// The triangulations of one or more point sets with constraints, in host memory.
+typedef struct flaunay_constrained flaunay_constrained;
+/// Constraint edges in device memory.
+typedef struct flaunay_device_constraints flaunay_device_constraints;
 /// The triangulations of one or more point sets, in device memory.
 typedef struct flaunay_device_triangulation flaunay_device_triangulation;
 /// The dual of a triangulation, in host memory.
@@ -364,6 +402,79 @@ typedef struct flaunay_mesh {
   const flaunay_statistics* statistics;  ///< what the call did and how long it took
 } flaunay_mesh;
 
+/// Segments that are to be edges, and what is to be left out. {0}: no segments.
+typedef struct flaunay_constraints {
+  const int32_t* segments;  ///< 2 indices of points of the same set per segment
+  size_t segment_count;     ///< number of segments
+  /// x and y per hole: what is connected to this place without crossing a constraint is left out, whatever
+  /// `outside` says.
+  const double* holes;
+  size_t hole_count;  ///< number of holes
+  /// Set s has holes [hole_offsets[s], hole_offsets[s + 1]): sets + 1 offsets from 0 to hole_count. May be
+  /// NULL if there is one set, or if there are no holes.
+  const size_t* hole_offsets;
+  int crossings;          ///< a flaunay_crossings
+  int outside;            ///< a flaunay_outside
+  int fill_rule;          ///< a flaunay_fill_rule
+  int labels;             ///< other than 0: depths and regions are computed
+  uintptr_t reserved[8];  ///< 0
+} flaunay_constraints;
+
+/// Polygons with holes, as rings with offsets, in the layout of GeoArrow. {0}: no polygons. A ring may repeat
+/// its first point at its end, and may have any orientation. Rings without area, such as those of fewer than
+/// 3 points, have no triangles. A polygon may have several outer rings.
+typedef struct flaunay_polygons {
+  const double* coordinates;  ///< x and y per point
+  /// ring_count + 1 values from 0: ring r has points [ring_offsets[r], ring_offsets[r + 1]). It has a segment
+  /// from each of its points to the next one, and from the last one to the first. Segment i begins at point
+  /// i. NULL if there are no rings.
+  const size_t* ring_offsets;
+  size_t ring_count;  ///< number of rings
+  /// polygon_count + 1 values from 0 to ring_count: polygon p has rings
+  /// [polygon_offsets[p], polygon_offsets[p + 1]). NULL: each ring is a polygon, and polygon_count is
+  /// ignored.
+  const size_t* polygon_offsets;
+  size_t polygon_count;  ///< number of polygons
+  int crossings;         ///< a flaunay_crossings
+  int has_outside;       ///< other than 0: `outside` counts; 0: FLAUNAY_OUTSIDE_HOLES, what is inside is kept
+  int outside;           ///< a flaunay_outside
+  int has_fill_rule;     ///< other than 0: `fill_rule` counts; 0: FLAUNAY_FILL_RULE_EVEN_ODD
+  int fill_rule;         ///< a flaunay_fill_rule
+  int labels;            ///< other than 0: depths and regions are computed
+  /// Other than 0: all polygons are one map: a single set, in which polygons share the edges of common
+  /// borders. The result says which triangle is in which polygon. The fill rule decides for each polygon what
+  /// is inside of it, and must not be nesting. Depths are numbers of polygons.
+  int map;
+  int overlaps;           ///< a flaunay_overlaps
+  uintptr_t reserved[8];  ///< 0
+} flaunay_polygons;
+
+/// What a constrained triangulation has besides its triangles. Arrays are NULL if they are empty.
+typedef struct flaunay_constrained_arrays {
+  size_t added_count;           ///< a, the number of points that splitting added
+  size_t constraint_count;      ///< e, the number of constraint edges
+  size_t segment_count;         ///< s, the number of segments
+  size_t piece_count;           ///< p, the number of pieces of segments
+  const double* added_points;   ///< 2 a values. The k-th added point has the index n + k.
+  const size_t* added_offsets;  ///< sets + 1 values: set s has added points [offsets[s], offsets[s + 1])
+  /// 2 e values: the edges that segments are made of, each once, the lexicographically smaller point first.
+  /// Edges that follow each other on a segment follow each other here.
+  const int32_t* constraint_edges;
+  const int32_t* edge_segments;  ///< e values: the smallest index of a segment that has the edge
+  /// s + 1 values: segment i has pieces [piece_offsets[i], piece_offsets[i + 1]), which lie on it from its
+  /// lexicographically smaller end to the other one. Without splitting, each segment is one piece.
+  const int32_t* piece_offsets;
+  /// 2 p values: a piece has edges [first, second) of constraint_edges. 0, 0 if its ends have the same
+  /// coordinates.
+  const int32_t* piece_edges;
+  const uint8_t* constrained;  ///< 3 t values: 1 if the edge opposite to this corner is a constraint
+  const int32_t* depths;       ///< t values: depths by fill_rule; NULL without labels
+  /// t values: a region is what is connected without crossing a constraint. Regions are numbered from 0 by
+  /// their first triangles. NULL without labels.
+  const int32_t* regions;
+  const int32_t* polygons;  ///< t values: the polygon of a map, -1 if it is in none; NULL if there is no map
+} flaunay_constrained_arrays;
+
 /// A round of chunks.
 typedef struct flaunay_chunk_round {
   uint64_t points;     ///< distinct points of the round; of the first one, with duplicates
@@ -578,6 +689,40 @@ FLAUNAY_API flaunay_status flaunay_first_triangles(const int32_t* triangles, siz
 FLAUNAY_API flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, const int32_t* hull,
                                                     size_t h, size_t n, int32_t* starts, int32_t* neighbors);
 
+// ---- Constrained triangulations
+
+/// Triangulates points with segments as edges: the canonical constrained Delaunay triangulation, a function
+/// of the sets of points and of segments. coordinates, n, offsets, sets: as for flaunay_triangulate.
+/// constraints: NULL for none. options: NULL for the defaults; the mode must be FLAUNAY_MODE_BLOCKS. The
+/// caller destroys the result. The errors are those of flaunay_triangulate, and: FLAUNAY_ERROR_USAGE for an
+/// index that is no point and for a segment between sets; FLAUNAY_ERROR_INPUT for segments that cross where
+/// no point is, unless they are to be split, for a hole that is in no triangle or on a constraint, and for
+/// segments that are no closed curves if the fill rule needs such.
+FLAUNAY_API flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulator,
+                                                           const double* coordinates, size_t n,
+                                                           const size_t* offsets, size_t sets,
+                                                           const flaunay_constraints* constraints,
+                                                           const flaunay_options* options,
+                                                           flaunay_constrained** result);
+/// Triangulates the insides of polygons, all at once. Each polygon is a set of its own, or all are one map.
+/// options: as for flaunay_triangulate_constrained. FLAUNAY_ERROR_USAGE if the offsets do not fit each other;
+/// the other errors are those of flaunay_triangulate_constrained. If segments cross, the message names the
+/// polygon, too.
+FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
+                                                        const flaunay_polygons* polygons,
+                                                        const flaunay_options* options,
+                                                        flaunay_constrained** result);
+/// Frees the arrays.
+FLAUNAY_API void flaunay_constrained_destroy(flaunay_constrained* result);
+/// The triangles with their neighbours and the other arrays of a triangulation. point_count, hull and
+/// representatives include points that splitting added. Where triangles are left out, neighbours and
+/// halfedges are -1; the hull remains that of the points. Voronoi diagrams and locators need
+/// Delaunay triangulations, so they do not take this handle, and must not be given its arrays.
+FLAUNAY_API const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result);
+/// What the result has besides.
+FLAUNAY_API const flaunay_constrained_arrays* flaunay_constrained_get_arrays(
+    const flaunay_constrained* result);
+
 // ---- Points and results in device memory
 
 /// Makes an empty result, which can be computed any number of times. Its buffers are made by flaunay when
@@ -635,6 +780,36 @@ FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* tria
                                                       const flaunay_device_points* points, unsigned parts,
                                                       const flaunay_enqueue* enqueue,
                                                       flaunay_device_triangulation* result);
+
+/// The arrays of constraint edges in device memory, as bits, with their types and their sizes in bytes for n
+/// points, s segments and e constraint edges.
+typedef enum flaunay_constraint_part {
+  FLAUNAY_CONSTRAINT_CONSTRAINED = 1,  ///< uchar, 6 n
+  FLAUNAY_CONSTRAINT_PIECE_EDGES = 2,  ///< int32, 8 s
+  FLAUNAY_CONSTRAINT_EDGES = 4         ///< int32, 8 e
+} flaunay_constraint_part;
+
+/// Makes an empty result, like flaunay_device_triangulation_create.
+FLAUNAY_API flaunay_status flaunay_device_constraints_create(flaunay_device_constraints** edges);
+/// Releases its buffers; what is enqueued with them goes on.
+FLAUNAY_API void flaunay_device_constraints_destroy(flaunay_device_constraints* edges);
+/// Like flaunay_device_triangulation_set_buffer, for one part (one bit of flaunay_constraint_part).
+FLAUNAY_API flaunay_status flaunay_device_constraints_set_buffer(flaunay_device_constraints* edges,
+                                                                 unsigned part, cl_mem memory);
+/// Like flaunay_device_triangulation_buffer.
+FLAUNAY_API cl_mem flaunay_device_constraints_buffer(const flaunay_device_constraints* edges, unsigned part);
+/// e, the number of constraint edges, known when the call returns.
+FLAUNAY_API size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges);
+/// flaunay_triangulate_constrained for points and segments in device memory, into device memory. segments: 2
+/// int32 per segment. FLAUNAY_ERROR_INPUT if segments cross where no point is; no triangles are left out. The
+/// mesh has all parts but halfedges; Voronoi diagrams and locators refuse it. The work is enqueued like that
+/// of flaunay_triangulate_device, with the same errors; the host waits once more per round of segments.
+FLAUNAY_API flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
+                                                                  const flaunay_device_points* points,
+                                                                  cl_mem segments, size_t segment_count,
+                                                                  const flaunay_enqueue* enqueue,
+                                                                  flaunay_device_triangulation* mesh,
+                                                                  flaunay_device_constraints* edges);
 
 // ---- More points than fit memory
 

@@ -1,0 +1,320 @@
+"""Triangulations of points with segments that are edges."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _triangulators
+from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
+from flaunay._errors import UsageError
+from flaunay._export import TriangleExports
+from flaunay._library import CROSSINGS, FILL_RULES, OUTSIDE
+from flaunay._optional import optional
+from flaunay._plot import ConstrainedArtists, draw_constrained
+from flaunay._triangulation import Triangulation
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+Indices = npt.NDArray[np.int32]
+Doubles = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ConstrainedTriangulation(Triangulation, TriangleExports):
+    """Triangulations with segments as edges: `triangulate` makes them if there are segments.
+
+    Every edge that is no constraint is locally Delaunay, and of cocircular points the triangles are
+    always the same ones. Where triangles are left out, neighbors and halfedges are -1. The hull remains
+    that of the points.
+
+    Attributes
+    ----------
+    triangles, neighbors, halfedges, hull, representatives, triangle_offsets, hull_offsets, statistics
+        As of `Triangulation`, for all of `points`.
+    points : ndarray of float64, shape (n + a, 2)
+        A copy of the points, and after them those that splitting added.
+    added_offsets : ndarray of int64, shape (sets + 1,)
+        Of the points that were added, set s has those from ``added_offsets[s]`` to ``added_offsets[s + 1]``.
+    constraint_edges : ndarray of int32, shape (e, 2)
+        The edges that segments are made of, each once, the lexicographically smaller point first. Edges
+        that follow each other on a segment follow each other here.
+    edge_segments : ndarray of int32, shape (e,)
+        For each of these the smallest index of a segment that has it.
+    piece_offsets : ndarray of int32, shape (k + 1,)
+        Segment i has the pieces ``piece_offsets[i]`` to ``piece_offsets[i + 1]``, from its
+        lexicographically smaller end to the other one. Without splitting, each segment is one piece.
+    piece_edges : ndarray of int32, shape (pieces, 2)
+        Each piece has the constraint edges from the first to the second number, the latter excluded. Both
+        are 0 if its ends have equal coordinates.
+    constrained : ndarray of bool, shape (m, 3)
+        Whether the edge opposite to a corner is a constraint.
+    depths : ndarray of int32, shape (m,), or None
+        By `fill_rule`; None without ``labels=True``.
+    regions : ndarray of int32, shape (m,), or None
+        The region of each triangle: what is connected without crossing a constraint. They are numbered
+        from 0 by their first triangles. None without ``labels=True``.
+
+    Notes
+    -----
+    `Voronoi`, the interpolators and other queries need a Delaunay triangulation, and raise `UsageError` for
+    this one: a walk may not end in it, and its dual is no Voronoi diagram. The nearest point has nothing
+    to do with segments, so ``flaunay.Delaunay(result.points).nearest`` finds it. To locate and interpolate
+    in floating point, ``result.to_matplotlib()`` has ``get_trifinder()``, and there is
+    `matplotlib.tri.LinearTriInterpolator`.
+    """
+
+    points: Doubles
+    added_offsets: npt.NDArray[np.int64]
+    constraint_edges: Indices
+    edge_segments: Indices
+    piece_offsets: Indices
+    piece_edges: Indices
+    constrained: npt.NDArray[np.bool_]
+    depths: Optional[Indices]
+    regions: Optional[Indices]
+
+    why_no_array = (
+        "are needed, or a Delaunay triangulation of them, not one with constraints: "
+        "its attribute `points` has them"
+    )
+
+    def __repr__(self) -> str:
+        return summary(
+            self,
+            points=len(self.points),
+            triangles=len(self.triangles),
+            constraint_edges=len(self.constraint_edges),
+            sets=len(self.hull_offsets) - 1,
+        )
+
+    @property
+    def simplices(self) -> Indices:
+        """The same as `triangles`, by the name that `Delaunay` has."""
+        return self.triangles
+
+    @property
+    def added_points(self) -> Doubles:
+        """The points that splitting added, float64, shape (a, 2): the last ones of `points`."""
+        added: Doubles = self.points[len(self.points) - int(self.added_offsets[-1]) :]
+        return added
+
+    @cached_property
+    def edges(self) -> Indices:
+        """The edges of the triangles, each once, int32, shape (e, 2).
+
+        In each row the smaller index first; the rows in increasing order. O(m log m) work.
+        """
+        first, second = (np.roll(self.triangles, -k, axis=1).ravel() for k in (1, 2))
+        return _unique_pairs(first, second, len(self.points))
+
+    @cached_property
+    def areas(self) -> Doubles:
+        """The area of each triangle, float64, shape (m,), rounded."""
+        a, b, c = (self.points[self.triangles[:, k]] for k in range(3))
+        u, v = b - a, c - a
+        areas: Doubles = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
+        return areas
+
+    def edges_of(self, segment: int) -> Indices:
+        """The edges of a segment, int32, shape (k, 2), from its lexicographically smaller end to the other one.
+
+        Raises
+        ------
+        IndexError
+            If there is no such segment.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> points = [[0, 0], [2, 0], [1, 0], [1, 1]]
+        >>> flaunay.triangulate(points, segments=[[1, 0]]).edges_of(0)
+        array([[0, 2],
+               [2, 1]], dtype=int32)
+        """
+        segments = len(self.piece_offsets) - 1
+        if not -segments <= segment < segments:
+            raise IndexError(f"segment {segment} is none of the {segments} segments")
+        first, last = self.piece_offsets[segment % segments + np.arange(2)]
+        ranges = [np.arange(*piece) for piece in self.piece_edges[first:last]]
+        places = np.concatenate([np.empty(0, np.intp), *ranges])
+        edges: Indices = self.constraint_edges[places]
+        return edges
+
+    def plot(self, ax: Optional[matplotlib.axes.Axes] = None, **style: Any) -> ConstrainedArtists:
+        """Draws the edges of the triangles, and constraints strongly.
+
+        What was left out is not drawn, nor are constraints in it.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        **style
+            Of the other edges, as `matplotlib.collections.LineCollection` takes it, such as ``color``.
+            ``constraint_color`` and ``constraint_linewidth`` are those of the constraints.
+
+        Returns
+        -------
+        edges, constraints : matplotlib.collections.LineCollection
+
+        Raises
+        ------
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay, matplotlib
+        >>> matplotlib.use("Agg")
+        >>> square = flaunay.triangulate([[0, 0], [1, 0], [1, 1], [0, 1]], segments=[[1, 3]])
+        >>> edges, constraints = square.plot(constraint_color="black")
+        >>> len(edges.get_segments()), len(constraints.get_segments())
+        (4, 1)
+        """
+        return draw_constrained(self, ax, style)
+
+    def to_shapely(self) -> npt.NDArray[Any]:
+        """The triangles as geometries of Shapely, one collection for each set.
+
+        Returns
+        -------
+        ndarray of shapely.GeometryCollection, shape (sets,)
+            Of the triangles as polygons, as `shapely.constrained_delaunay_triangles` returns them.
+
+        Raises
+        ------
+        ImportError
+            Without Shapely 2.
+        """
+        shapely = optional("shapely", f"{type(self).__name__}.to_shapely")
+        rings = self.points[self.triangles[:, [0, 1, 2, 0]]]
+        sizes = np.diff(self.triangle_offsets)
+        collections: npt.NDArray[Any] = np.full(len(sizes), shapely.GeometryCollection(), object)
+        shapely.geometrycollections(
+            shapely.polygons(rings),
+            indices=np.repeat(np.arange(len(sizes)), sizes),
+            out=collections,
+        )
+        return collections
+
+    def find_simplex(self, xi: object = None, *_: object, **__: object) -> Indices:
+        """Raises UsageError: only in a Delaunay triangulation do exact walks always end."""
+        raise UsageError(
+            "find_simplex needs a Delaunay triangulation; in one with constraints, "
+            "to_matplotlib().get_trifinder() finds triangles, in floating point"
+        )
+
+    def interpolate(self, values: object = None, *_: object, **__: object) -> Doubles:
+        """Raises UsageError, as `find_simplex`."""
+        raise UsageError(
+            "interpolate needs a Delaunay triangulation; in one with constraints, there is "
+            "matplotlib.tri.LinearTriInterpolator(result.to_matplotlib(), values)"
+        )
+
+    def nearest(self, xi: object = None, *_: object, **__: object) -> Indices:
+        """Raises UsageError: constraints do not change which point is nearest."""
+        raise UsageError(
+            "constraints do not change which point is nearest: "
+            "flaunay.Delaunay(result.points).nearest finds it"
+        )
+
+
+def collections_of(
+    result: ConstrainedTriangulation, triangles: Indices, owners: Indices, count: int
+) -> npt.NDArray[Any]:
+    """Collections of triangles as polygons of Shapely. owners: that of each triangle, in increasing order."""
+    shapely = optional("shapely", f"{type(result).__name__}.to_shapely")
+    shapes = shapely.polygons(result.points[triangles[:, [0, 1, 2, 0]]])
+    collections: npt.NDArray[Any] = np.full(count, shapely.GeometryCollection(), object)
+    shapely.geometrycollections(shapes, indices=owners.astype(np.intp), out=collections)
+    return collections
+
+
+def _unique_pairs(first: Indices, second: Indices, n: int) -> Indices:
+    """Pairs of indices of n points without order, each once, sorted, the smaller one first."""
+    low, high = np.minimum(first, second).astype(np.int64), np.maximum(first, second)
+    keys = np.unique(low * max(n, 1) + high)
+    pairs: Indices = np.stack(np.divmod(keys, max(n, 1)), axis=1).astype(np.int32)
+    return pairs
+
+
+def number_of(names: Mapping[str, int], given: object, name: str) -> int:
+    """The number of a choice; UsageError for what is none."""
+    if not isinstance(given, str) or given not in names:
+        choices = ", ".join(repr(key) for key in names)
+        raise UsageError(f"{name} must be one of {choices}, not {given!r}")
+    return names[given]
+
+
+def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict[str, int]:
+    """The members of flaunay_constraints that are no arrays; UsageError for unknown names."""
+    return {
+        "crossings": number_of(CROSSINGS, crossings, "crossings"),
+        "outside": number_of(OUTSIDE, outside, "outside"),
+        "fill_rule": number_of(FILL_RULES, fill_rule, "fill_rule"),
+        "labels": int(bool(labels)),
+    }
+
+
+def _as_segments(given: npt.ArrayLike, n: int) -> Indices:
+    """Pairs of indices of n points; UsageError for what is none."""
+    segments = as_integers(given, "segments")
+    if segments.size == 0:
+        return np.empty((0, 2), np.int32)
+    if segments.ndim != 2 or segments.shape[1] != 2:
+        hint = "; offsets of sets are given as offsets" if segments.ndim == 1 else ""
+        raise UsageError(f"segments must have the shape (k, 2), not {segments.shape}{hint}")
+    if segments.min() < 0 or segments.max() >= n:
+        row, column = np.argwhere((segments < 0) | (segments >= n))[0].tolist()
+        index = segments[row, column]
+        raise UsageError(f"segments[{row}, {column}] = {index} is none of the {n} points")
+    return np.ascontiguousarray(segments, np.int32)
+
+
+def _as_holes(given: Optional[npt.ArrayLike]) -> Doubles:
+    if given is None:
+        return np.empty((0, 2))
+    holes = np.asarray(as_floats(given, "holes"), np.float64)
+    if holes.size == 0:
+        return np.empty((0, 2))
+    if holes.ndim != 2 or holes.shape[1] != 2:
+        raise UsageError(f"holes must have the shape (h, 2), not {holes.shape}")
+    return holes
+
+
+def with_points(result: dict[str, Any], given: Doubles) -> dict[str, Any]:
+    """What the library computed, with all points in place of those that it added."""
+    added = result.pop("added_points")
+    result["points"] = np.concatenate([given, added])
+    return result
+
+
+def arrays_of_constrained(
+    points: ArrayLike,
+    segments: npt.ArrayLike,
+    holes: Optional[npt.ArrayLike],
+    offsets: Optional[npt.NDArray[np.int64]],
+    hole_offsets: Optional[npt.ArrayLike],
+    rules: dict[str, int],
+    wanted: set[str],
+    device: Optional[str],
+) -> dict[str, Any]:
+    """What a `ConstrainedTriangulation` consists of, by its names. wanted: the optional arrays to compute."""
+    coordinates = np.asarray(as_points(points), np.float64)
+    pairs, places = _as_segments(segments, len(coordinates)), _as_holes(holes)
+    sets_of_holes = None if hole_offsets is None else as_offsets(hole_offsets, "hole_offsets")
+    if sets_of_holes is None and offsets is not None and len(offsets) != 2 and len(places):
+        raise UsageError("holes of several sets need hole_offsets")
+    triangulator = _triangulators.of_device(device)
+    result = triangulator.triangulate_constrained(
+        coordinates, offsets, pairs, places, sets_of_holes, rules, wanted
+    )
+    del result["polygons"]
+    return with_points(result, coordinates)

@@ -1,0 +1,240 @@
+"""The plain call for points in host memory, with or without constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Optional, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
+from flaunay._constrained import ConstrainedTriangulation, arrays_of_constrained, rules_of
+from flaunay._errors import UsageError
+from flaunay._triangulation import Triangulation, arrays_of_mesh
+
+Indices = npt.NDArray[np.int32]
+Out = Union[Mapping[str, Indices], Triangulation, None]
+
+# The shapes of the arrays that `out` can have; None is the number of rows.
+_SHAPES: dict[str, tuple[Optional[int], ...]] = {
+    "triangles": (None, 3),
+    "neighbors": (None, 3),
+    "halfedges": (None,),
+    "hull": (None,),
+    "representatives": (None,),
+}
+
+
+def _attributes(out: object) -> dict[str, Any]:
+    return {name: getattr(out, name, None) for name in _SHAPES}
+
+
+def _arrays_of(
+    out: Union[Mapping[str, Indices], Triangulation], wanted: set[str]
+) -> dict[str, Indices]:
+    """The arrays to write to; UsageError for one that nothing can be written to, or that nothing is written to."""
+    given: Mapping[str, Any] = out if isinstance(out, Mapping) else _attributes(out)
+    arrays = {name: array for name, array in given.items() if array is not None}
+    for name, array in arrays.items():
+        if name not in _SHAPES:
+            raise UsageError(f"out has {name!r}; there are {', '.join(_SHAPES)}")
+        if name in ("neighbors", "halfedges") and name not in wanted:
+            raise UsageError(f"out has {name}, but {name}=False")
+        check_out(array, np.int32, _SHAPES[name], f"out[{name!r}]")
+    return arrays
+
+
+def _write(result: dict[str, Any], arrays: dict[str, Indices]) -> None:
+    """Copies results to the caller's arrays and has their first rows in place of them."""
+    for name, array in arrays.items():
+        rows = len(result[name])
+        if len(array) < rows:
+            raise UsageError(f"out[{name!r}] has {len(array)} rows, but there are {rows}")
+    for name, array in arrays.items():
+        view = array[: len(result[name])]
+        view[...] = result[name]
+        result[name] = view
+
+
+@overload
+def triangulate(
+    points: ArrayLike,
+    segments: None = None,
+    holes: None = None,
+    *,
+    offsets: Optional[npt.ArrayLike] = None,
+    device: Optional[str] = None,
+    neighbors: bool = True,
+    halfedges: bool = False,
+    mode: str = "blocks",
+    out: Out = None,
+) -> Triangulation: ...
+
+
+@overload
+def triangulate(
+    points: ArrayLike,
+    segments: npt.ArrayLike,
+    holes: Optional[npt.ArrayLike] = None,
+    *,
+    offsets: Optional[npt.ArrayLike] = None,
+    hole_offsets: Optional[npt.ArrayLike] = None,
+    outside: str = "keep",
+    crossings: str = "error",
+    fill_rule: str = "nesting",
+    labels: bool = False,
+    device: Optional[str] = None,
+    neighbors: bool = True,
+    halfedges: bool = False,
+    mode: str = "blocks",
+    out: Out = None,
+) -> ConstrainedTriangulation: ...
+
+
+def triangulate(
+    points: ArrayLike,
+    segments: Optional[npt.ArrayLike] = None,
+    holes: Optional[npt.ArrayLike] = None,
+    *,
+    offsets: Optional[npt.ArrayLike] = None,
+    hole_offsets: Optional[npt.ArrayLike] = None,
+    outside: str = "keep",
+    crossings: str = "error",
+    fill_rule: str = "nesting",
+    labels: bool = False,
+    device: Optional[str] = None,
+    neighbors: bool = True,
+    halfedges: bool = False,
+    mode: str = "blocks",
+    out: Out = None,
+) -> Triangulation:
+    """Triangulates one set of points, or many sets in one call, with segments as edges if there are any.
+
+    Every triangle is exact, whatever the points: grids, duplicates, points on one line. Fewer than
+    three distinct points, and points on one line, have no triangles; that is no error.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Coordinates. C-contiguous arrays of float64 and float32 are taken as they are; other numbers
+        become float64, and must be one exactly.
+    segments : array_like of int, shape (k, 2), optional
+        Two points each, of the same set, that are to be joined by edges. The result is the constrained
+        Delaunay triangulation, which is a function of the sets of points and of segments. A segment through
+        other points is a chain of edges; equal segments, overlapping ones and segments between points of
+        equal coordinates are allowed.
+    holes : array_like, shape (h, 2), optional
+        With segments: what is connected to one of these places without crossing a segment is left out.
+    offsets : array_like of int, shape (sets + 1,), optional
+        Set s has the points ``offsets[s]`` to ``offsets[s + 1]``. Begins with 0, does not decrease
+        and ends with n. Without it, there is one set. Segments have indices over all sets.
+    hole_offsets : array_like of int, shape (sets + 1,), optional
+        Set s has the holes ``hole_offsets[s]`` to ``hole_offsets[s + 1]``. Needed for holes of several sets.
+    outside : {"keep", "hull", "holes"}
+        With segments, the triangles to keep: all up to the convex hull; those that are not outside, of
+        depth 0; or those that are neither outside nor in holes.
+    crossings : {"error", "split"}
+        What becomes of segments that cross where no point is: an `InputError` that names them and the place,
+        or a point more, at the rounded place.
+    fill_rule : {"nesting", "even_odd", "winding"}
+        What depths are: the least number of constraint edges on a path to the outside, of which
+        even ones are holes; whether the number of segments on a path is odd; or the winding number. The
+        last two need segments that form closed curves.
+    labels : bool
+        Whether to compute `ConstrainedTriangulation.depths` and `regions`.
+    device : str, optional
+        A part of a device's or platform's name, ``"#k"``, the k-th of `devices`, or ``"host"`` for the
+        host's cores without OpenCL. Without it, the one that the environment variable FLAUNAY_DEVICE
+        names, else the first GPU with fp64, else the host. The results are the same.
+    neighbors, halfedges : bool
+        Which of these to compute.
+    mode : str
+        How to divide and conquer, by a name in `modes`. The triangles are the same in each mode; the
+        order of the rows differs. Some modes run on the host and need no device. With segments,
+        ``"blocks"`` alone.
+    out : mapping of str to ndarray of int32, or an object with such attributes, optional
+        Arrays for ``triangles``, ``neighbors``, ``halfedges``, ``hull`` and ``representatives``, or some of
+        them, with as many rows as there are results or more. n points have fewer than 2 n triangles. The
+        result has views of their first rows; it costs one copy.
+
+    Returns
+    -------
+    Triangulation
+        With segments, a `ConstrainedTriangulation`.
+
+    Raises
+    ------
+    UsageError
+        For a wrong shape, what is no number, offsets that are none, an unknown mode, arrays in `out`
+        that results cannot be written to, and segments of what is no point or of two sets.
+    InputError
+        For a point that is not finite, magnitudes too different to be exact, or too many points; for segments
+        that cross, unless they are to be split, segments that are no closed curves where the fill rule
+        needs them, and a hole that is in no triangle or on a segment.
+    DeviceError
+        If there is no such device, or a call of OpenCL failed.
+
+    Notes
+    -----
+    O(n log n) work. With s segments, expected O(n log n + s log(s)^2), besides the number of triangles
+    that they cross. The interpreter's lock is released meanwhile.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> mesh = flaunay.triangulate([[0, 0], [4, 0], [4, 3], [0, 4]])
+    >>> mesh
+    <flaunay.Triangulation: 4 points, 2 triangles, 4 hull vertices>
+    >>> mesh.triangles
+    array([[0, 2, 3],
+           [0, 1, 2]], dtype=int32)
+    >>> mesh.neighbors
+    array([[-1, -1,  1],
+           [-1,  0, -1]], dtype=int32)
+
+    Two sets at once, the second of them without triangles:
+
+    >>> meshes = flaunay.triangulate([[0, 0], [1, 0], [0, 1], [5, 5], [6, 6]], offsets=[0, 3, 5])
+    >>> meshes.triangle_offsets
+    array([0, 1, 1])
+
+    A square, and the diagonal that it would not have otherwise:
+
+    >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> flaunay.triangulate(square, segments=[[1, 3]]).triangles
+    array([[0, 1, 3],
+           [1, 2, 3]], dtype=int32)
+
+    A frame, of two rings of segments:
+
+    >>> frame = [[0, 0], [6, 0], [6, 6], [0, 6], [2, 2], [4, 2], [4, 4], [2, 4]]
+    >>> rings = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4]]
+    >>> flaunay.triangulate(frame, segments=rings, outside="holes")
+    <flaunay.ConstrainedTriangulation: 8 points, 8 triangles, 8 constraint edges>
+    """
+    wanted = names_of(neighbors=neighbors, halfedges=halfedges)
+    places = None if out is None else _arrays_of(out, wanted)
+    sets = None if offsets is None else as_offsets(offsets)
+    rules = rules_of(crossings, outside, fill_rule, labels)
+    if segments is None:
+        for name, is_given in {
+            "holes": holes is not None,
+            "hole_offsets": hole_offsets is not None,
+            "outside": outside != "keep",
+            "crossings": crossings != "error",
+            "fill_rule": fill_rule != "nesting",
+            "labels": labels,
+        }.items():
+            if is_given:
+                raise UsageError(f"{name} is for segments, of which there are none")
+        result = arrays_of_mesh(as_points(points), sets, wanted, device, mode)
+    else:
+        if mode != "blocks":
+            raise UsageError(f"mode {mode!r} has no segments; mode 'blocks' has")
+        result = arrays_of_constrained(
+            points, segments, holes, sets, hole_offsets, rules, wanted, device
+        )
+    if places:
+        _write(result, places)
+    return Triangulation(**result) if segments is None else ConstrainedTriangulation(**result)

@@ -1,0 +1,225 @@
+// The C interface to triangulations with constraints.
+#include "flaunay/constrained.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <numeric>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::elements;
+using c::guarded;
+using c::read;
+using c::required;
+
+struct flaunay_device_constraints {
+  DeviceConstraintEdges cpp;
+};
+
+namespace {
+
+template <typename Handle>
+auto& buffer_of(Handle& edges, unsigned part) {
+  switch (part) {
+    case FLAUNAY_CONSTRAINT_CONSTRAINED:
+      return edges.cpp.constrained;
+    case FLAUNAY_CONSTRAINT_PIECE_EDGES:
+      return edges.cpp.piece_edges;
+    case FLAUNAY_CONSTRAINT_EDGES:
+      return edges.cpp.constraint_edges;
+  }
+  throw Error(ErrorKind::usage, fmt::format("{} is not one part of constraint edges", part));
+}
+
+flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
+  flaunay_constrained_arrays view{};
+  view.added_count = result.added_points.size() / 2;
+  view.constraint_count = result.constraint_edges.size() / 2;
+  view.segment_count = result.piece_offsets.size() - 1;
+  view.piece_count = result.piece_edges.size() / 2;
+  view.added_points = elements(result.added_points);
+  view.added_offsets = elements(result.added_offsets);
+  view.constraint_edges = elements(result.constraint_edges);
+  view.edge_segments = elements(result.edge_segments);
+  view.piece_offsets = elements(result.piece_offsets);
+  view.piece_edges = elements(result.piece_edges);
+  view.constrained = elements(result.constrained);
+  view.depths = elements(result.depths);
+  view.regions = elements(result.regions);
+  view.polygons = elements(result.polygons);
+  return view;
+}
+
+// The enumerator of a number, of which there are `count` from 0.
+template <typename Enum>
+Enum to_enum(int value, int count, const char* name) {
+  if (value >= 0 && value < count) return static_cast<Enum>(value);
+  throw Error(ErrorKind::usage, fmt::format("{} is no {}", value, name));
+}
+
+static_assert(FLAUNAY_CROSSINGS_SPLIT == static_cast<int>(Crossings::split));
+static_assert(FLAUNAY_OUTSIDE_HULL == static_cast<int>(Outside::hull) &&
+              FLAUNAY_OUTSIDE_HOLES == static_cast<int>(Outside::holes));
+static_assert(FLAUNAY_FILL_RULE_EVEN_ODD == static_cast<int>(FillRule::even_odd) &&
+              FLAUNAY_FILL_RULE_WINDING == static_cast<int>(FillRule::winding));
+static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
+
+Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
+  Constraints result;
+  result.segments = given.segments;
+  result.segment_count = given.segment_count;
+  result.holes = given.holes;
+  result.hole_count = given.hole_count;
+  if (given.hole_offsets != nullptr) {
+    result.hole_offsets.assign(given.hole_offsets, given.hole_offsets + sets + 1);
+  }
+  return result;
+}
+
+// The options that are the same for segments and for polygons, without the defaults that differ.
+template <typename Result, typename Given>
+Result to_options(const Given& given, const flaunay_options* options) {
+  const research::Options plain = c::to_options(options);
+  if (plain.mode != research::Mode::blocks) {
+    throw Error(ErrorKind::usage, fmt::format("mode {} has no constraints; mode {} has",
+                                              to_string(plain.mode), to_string(research::Mode::blocks)));
+  }
+  Result result;
+  static_cast<Options&>(result) = plain;
+  result.crossings = to_enum<Crossings>(given.crossings, 2, "flaunay_crossings");
+  result.labels = given.labels != 0;
+  return result;
+}
+
+Outside to_outside(int outside) { return to_enum<Outside>(outside, 3, "flaunay_outside"); }
+FillRule to_fill_rule(int rule) { return to_enum<FillRule>(rule, 3, "flaunay_fill_rule"); }
+
+ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
+  auto result = to_options<ConstrainedOptions>(given, options);
+  result.outside = to_outside(given.outside);
+  result.fill_rule = to_fill_rule(given.fill_rule);
+  return result;
+}
+
+PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_options* options) {
+  auto result = to_options<PolygonOptions>(given, options);
+  if (given.has_outside != 0) result.outside = to_outside(given.outside);
+  if (given.has_fill_rule != 0) result.fill_rule = to_fill_rule(given.fill_rule);
+  result.map = given.map != 0;
+  result.overlaps = to_enum<Overlaps>(given.overlaps, 2, "flaunay_overlaps");
+  return result;
+}
+
+Polygons to_polygons(const flaunay_polygons& given) {
+  Polygons result;
+  result.coordinates = given.coordinates;
+  result.ring_offsets = {0};
+  if (given.ring_count > 0) {
+    const std::size_t* const first = &required(given.ring_offsets, "the offsets of rings");
+    result.ring_offsets.assign(first, first + given.ring_count + 1);
+  }
+  if (given.polygon_offsets != nullptr) {
+    result.polygon_offsets.assign(given.polygon_offsets, given.polygon_offsets + given.polygon_count + 1);
+  } else {
+    result.polygon_offsets.resize(given.ring_count + 1);
+    std::iota(result.polygon_offsets.begin(), result.polygon_offsets.end(), 0);
+  }
+  return result;
+}
+
+}  // namespace
+
+struct flaunay_constrained {
+  explicit flaunay_constrained(ConstrainedTriangulation computed) : cpp(std::move(computed)) {
+    statistics.show(cpp.statistics);
+    mesh = c::view_of(cpp, statistics);
+    arrays = view_of(cpp);
+  }
+  // The views refer to the other members.
+  flaunay_constrained(const flaunay_constrained&) = delete;
+  flaunay_constrained& operator=(const flaunay_constrained&) = delete;
+
+  ConstrainedTriangulation cpp;
+  c::StatisticsView statistics;
+  flaunay_mesh mesh;
+  flaunay_constrained_arrays arrays;
+};
+
+flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulator, const double* coordinates,
+                                               size_t n, const size_t* offsets, size_t sets,
+                                               const flaunay_constraints* constraints,
+                                               const flaunay_options* options, flaunay_constrained** result) {
+  return create(result, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const flaunay_constraints given = constraints != nullptr ? *constraints : flaunay_constraints{};
+    c::check_reserved(given, "flaunay_constraints");
+    const std::vector<std::size_t> sets_of_points = c::to_offsets(offsets, sets, n);
+    return std::make_unique<flaunay_constrained>(
+        cpp.constrained(coordinates, sets_of_points, to_constraints(given, c::set_count(sets_of_points)),
+                        to_constrained_options(given, options)));
+  });
+}
+
+flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
+                                            const flaunay_polygons* polygons, const flaunay_options* options,
+                                            flaunay_constrained** result) {
+  return create(result, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const flaunay_polygons& given = required(polygons, "the polygons");
+    c::check_reserved(given, "flaunay_polygons");
+    return std::make_unique<flaunay_constrained>(
+        cpp.polygons(to_polygons(given), to_polygon_options(given, options)));
+  });
+}
+
+void flaunay_constrained_destroy(flaunay_constrained* result) { delete result; }
+
+const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result) {
+  return read(result, [](const auto& handle) { return &handle.mesh; });
+}
+
+const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_constrained* result) {
+  return read(result, [](const auto& handle) { return &handle.arrays; });
+}
+
+flaunay_status flaunay_device_constraints_create(flaunay_device_constraints** edges) {
+  return create(edges, [] { return std::make_unique<flaunay_device_constraints>(); });
+}
+
+void flaunay_device_constraints_destroy(flaunay_device_constraints* edges) { delete edges; }
+
+flaunay_status flaunay_device_constraints_set_buffer(flaunay_device_constraints* edges, unsigned part,
+                                                     cl_mem memory) {
+  return guarded([&] { buffer_of(required(edges, "the constraint edges"), part) = c::to_buffer(memory); });
+}
+
+cl_mem flaunay_device_constraints_buffer(const flaunay_device_constraints* edges, unsigned part) {
+  return read(edges, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
+}
+
+size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges) {
+  return read(edges, [](const auto& handle) { return handle.cpp.edge_count; });
+}
+
+flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
+                                                      const flaunay_device_points* points, cl_mem segments,
+                                                      size_t segment_count, const flaunay_enqueue* enqueue,
+                                                      flaunay_device_triangulation* mesh,
+                                                      flaunay_device_constraints* edges) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    flaunay_device_triangulation& handle = required(mesh, "the mesh");
+    DeviceConstraintEdges& result = required(edges, "the constraint edges").cpp;
+    // The view refers to statistics that the call replaces.
+    handle.statistics.clear();
+    cpp.constrained(c::to_points(points), {segments, segment_count}, handle.cpp, result, queued);
+    handle.statistics.show(handle.cpp.statistics);
+  });
+}

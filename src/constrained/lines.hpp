@@ -1,0 +1,24 @@
+// Pieces as ranges of edges that they share where they overlap.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "constrained/pairs.hpp"
+
+namespace flaunay::constrained {
+
+/// What pieces consist of: edges have no vertex inside, and no two have more than one common point.
+struct LineEdges {
+  std::vector<Piece> edges;
+  /// 2 per piece: it has the edges [first, second).
+  std::vector<std::int32_t> ranges;
+};
+
+/// Cuts pieces at the vertices on them. vertices: all there are, in lexicographic order; among them the ends
+/// of pieces, none twice. Pieces that overlap on a line share their edges, so that the memory is that of the
+/// pieces and of the result, even if all of them overlap.
+LineEdges cut_at_vertices(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
+                          const std::vector<std::int32_t>& vertices);
+
+}  // namespace flaunay::constrained

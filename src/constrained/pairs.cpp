@@ -1,0 +1,509 @@
+// Divides the plane into vertical slabs between coordinates of ends, as Balaban does (1995).
+//
+// Of the pieces that span a slab, a chain is taken whose pieces do not cross in it, so that they are in one
+// order from its left to its right. All other pieces look for the pieces of the chain that they cross by
+// binary search, at both of their ends or where they leave the slab, and then go on to the two halves of the
+// slab. A piece that spans the slab, but is not in the chain, crosses the one because of which it is not, so
+// going on is paid for by that pair. All others end inside of the slab; so a piece is on O(log n) levels of
+// these, at most twice on each.
+//
+// Before that, wherever a horizontal or vertical line separates pieces but for a few, the pieces on its sides
+// are looked at separately: then short pieces do not meet the chains of those that are far above and below. A
+// crossing is on one of the sides, with both of its pieces.
+#include "constrained/pairs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "constrained/crossing.hpp"
+#include "flaunay/flaunay.hpp"
+#include "geometry/sort.hpp"
+
+namespace flaunay::constrained {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+// So few pieces are all held against each other.
+constexpr std::size_t kFew = 32;
+// A line separates pieces if it crosses at most one in so many.
+constexpr std::size_t kSeparated = 16;
+// If it crosses at most one in so many, no better one is looked for.
+constexpr std::size_t kWellSeparated = 64;
+// The middle of pieces is looked for among so many of them.
+constexpr std::size_t kSamples = 7;
+
+// Where a piece is at some x: between two numbers; exactly there if they are equal.
+struct Height {
+  double low, high;
+  bool known() const { return low == high; }
+};
+
+// Numbers of a chain's pieces: those below a place, and those that are below it or at it.
+struct Rank {
+  std::size_t below, not_above;
+};
+
+[[noreturn]] void throw_too_many(std::size_t most) {
+  throw Error(
+      ErrorKind::input,
+      fmt::format("segments cross at more than {} places, for which memory or 32-bit indices do not suffice",
+                  most));
+}
+
+// Whether two pieces have exactly one common point, which is inside of both.
+bool cross(const Predicates& predicates, const Line& p, const Line& q) {
+  const auto [a, b] = p;
+  const auto [c, d] = q;
+  if (std::max(a.x, c.x) > std::min(b.x, d.x) ||
+      std::max(std::min(a.y, b.y), std::min(c.y, d.y)) > std::min(std::max(a.y, b.y), std::max(c.y, d.y))) {
+    return false;
+  }
+  return predicates.orient(a, b, c) * predicates.orient(a, b, d) < 0 &&
+         predicates.orient(c, d, a) * predicates.orient(c, d, b) < 0;
+}
+
+class Search {
+ public:
+  Search(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
+         std::size_t most)
+      : predicates_(predicates), points_(points), pieces_(pieces), most_(most) {}
+
+  void find_crossings() {
+    Ids pieces(pieces_.size());
+    std::iota(pieces.begin(), pieces.end(), 0);
+    run(std::move(pieces), {});
+  }
+  // Of pieces that are not vertical.
+  void find_vertices(const Ids& vertices) {
+    Ids pieces;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      if (points_[pieces_[k].from].x != points_[pieces_[k].to].x)
+        pieces.push_back(static_cast<std::int32_t>(k));
+    }
+    of_vertices_ = true;
+    run(std::move(pieces), vertices);
+  }
+  Pairs take() { return std::move(pairs_); }
+
+ private:
+  struct Slab {
+    double begin, end;
+  };
+  // The pieces and vertices from these places of the stacks on.
+  struct Items {
+    std::size_t pieces, vertices;
+  };
+  struct Spanning {
+    std::int32_t piece;
+    Height begin, end;
+  };
+  enum class Axis { x, y };
+
+  Point from(std::int32_t piece) const { return lines_[piece].a; }
+  Point to(std::int32_t piece) const { return lines_[piece].b; }
+  bool spans(std::int32_t piece, Slab slab) const {
+    return from(piece).x <= slab.begin && slab.end <= to(piece).x;
+  }
+
+  // Numbers what is given by place, so that what is near in the plane is near in memory.
+  void run(Ids pieces, Ids vertices) {
+    if (pieces.empty()) return;
+    sort_by_place(pieces, [this](std::int32_t p) {
+      const Point a = points_[pieces_[p].from], b = points_[pieces_[p].to];
+      return Point{0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y};
+    });
+    sort_by_place(vertices, [this](std::int32_t v) { return points_[v]; });
+    Slab slab{HUGE_VAL, -HUGE_VAL};
+    for (const std::int32_t p : pieces) {
+      lines_.push_back({points_[pieces_[p].from], points_[pieces_[p].to]});
+      slab.begin = std::min(slab.begin, lines_.back().a.x);
+      slab.end = std::max(slab.end, lines_.back().b.x);
+    }
+    for (const std::int32_t v : vertices) places_.push_back(points_[v]);
+    piece_stack_.resize(pieces.size());
+    std::iota(piece_stack_.begin(), piece_stack_.end(), 0);
+    vertex_stack_.resize(vertices.size());
+    std::iota(vertex_stack_.begin(), vertex_stack_.end(), 0);
+    divide(slab, {0, 0});
+    for (auto& [piece, other] : pairs_) {
+      piece = pieces[piece];
+      other = of_vertices_ ? vertices[other] : pieces[other];
+      if (!of_vertices_ && other < piece) std::swap(piece, other);
+    }
+  }
+
+  // Along a curve that fills the plane (Morton 1966).
+  template <typename Place>
+  static void sort_by_place(Ids& items, const Place& place) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (const std::int32_t i : items) {
+      const Point p = place(i);
+      low[0] = std::min(low[0], p.x);
+      low[1] = std::min(low[1], p.y);
+      high[0] = std::max(high[0], p.x);
+      high[1] = std::max(high[1], p.y);
+    }
+    std::vector<Keyed> keyed;
+    keyed.reserve(items.size());
+    for (const std::int32_t i : items) {
+      const Point p = place(i);
+      keyed.push_back({spread(part(p.x, low[0], high[0])) | spread(part(p.y, low[1], high[1])) << 1, i});
+    }
+    sort_by_key(keyed);
+    std::transform(keyed.begin(), keyed.end(), items.begin(), [](const Keyed& k) { return k.index; });
+  }
+  // Where a number is between two others, in 16 bits.
+  static std::uint64_t part(double x, double low, double high) {
+    return high > low ? static_cast<std::uint64_t>((x - low) / (high - low) * 0xffff) : 0;
+  }
+  // Leaves a 0 before each of 16 bits.
+  static std::uint64_t spread(std::uint64_t bits) {
+    bits = (bits | bits << 8) & 0x00ff00ff;
+    bits = (bits | bits << 4) & 0x0f0f0f0f;
+    bits = (bits | bits << 2) & 0x33333333;
+    return (bits | bits << 1) & 0x55555555;
+  }
+
+  // Finds all pairs of items at the top of the stacks that meet in a slab, and removes them.
+  void divide(Slab slab, Items items) {
+    if (!compare_few(items)) {
+      Axis axis = Axis::x;
+      double middle = 0;
+      if (find_separation(slab, items, axis, middle)) {
+        halve(slab, items, axis, middle);
+      } else if (find_middle(slab, items, middle)) {
+        take_chain(slab, items);
+        halve(slab, items, Axis::x, middle);
+      } else {
+        finish_slab(slab, items);
+      }
+    }
+    piece_stack_.resize(items.pieces);
+    vertex_stack_.resize(items.vertices);
+  }
+
+  // Returns whether that suffices.
+  bool compare_few(Items items) {
+    const std::size_t count = piece_stack_.size() - items.pieces;
+    if (of_vertices_ && vertex_stack_.size() == items.vertices) return true;
+    if (count > kFew) return false;
+    for (std::size_t k = items.pieces; k < piece_stack_.size(); ++k) {
+      const std::int32_t p = piece_stack_[k];
+      if (of_vertices_) {
+        for (std::size_t v = items.vertices; v < vertex_stack_.size(); ++v)
+          add_if_inside(p, vertex_stack_[v]);
+      } else {
+        for (std::size_t j = items.pieces; j < k; ++j) add_if_crossing(p, piece_stack_[j]);
+      }
+    }
+    return true;
+  }
+
+  // Items that may meet on the lower side, and on the upper side of a line. What is on it is below.
+  bool is_low(std::int32_t piece, Axis axis, double middle) const {
+    const Point a = from(piece), b = to(piece);
+    return axis == Axis::x ? a.x < middle || b.x == middle : std::min(a.y, b.y) <= middle;
+  }
+  bool is_high(std::int32_t piece, Axis axis, double middle) const {
+    const Point a = from(piece), b = to(piece);
+    return axis == Axis::x ? b.x > middle : std::max(a.y, b.y) > middle;
+  }
+  bool is_low_vertex(std::int32_t v, Axis axis, double middle) const {
+    return (axis == Axis::x ? places_[v].x : places_[v].y) <= middle;
+  }
+
+  void halve(Slab slab, Items items, Axis axis, double middle) {
+    const Items top{piece_stack_.size(), vertex_stack_.size()};
+    for (const bool high : {false, true}) {
+      for (std::size_t k = items.pieces; k < top.pieces; ++k) {
+        const std::int32_t p = piece_stack_[k];
+        if (high ? is_high(p, axis, middle) : is_low(p, axis, middle)) piece_stack_.push_back(p);
+      }
+      for (std::size_t k = items.vertices; k < top.vertices; ++k) {
+        const std::int32_t v = vertex_stack_[k];
+        if (is_low_vertex(v, axis, middle) != high) vertex_stack_.push_back(v);
+      }
+      Slab half = slab;
+      if (axis == Axis::x) (high ? half.begin : half.end) = middle;
+      divide(half, top);
+    }
+  }
+
+  // Looks for a line parallel to an axis that separates most pieces.
+  bool find_separation(Slab slab, Items items, Axis& axis, double& middle) const {
+    const std::size_t count = piece_stack_.size() - items.pieces;
+    std::size_t most = count + count / kSeparated;
+    bool found = false;
+    for (const Axis candidate : {Axis::y, Axis::x}) {
+      double centres[kSamples];
+      for (std::size_t k = 0; k < kSamples; ++k) {
+        const std::int32_t p = piece_stack_[items.pieces + k * count / kSamples];
+        const Point a = from(p), b = to(p);
+        centres[k] = candidate == Axis::x ? 0.5 * a.x + 0.5 * b.x : 0.5 * a.y + 0.5 * b.y;
+      }
+      std::nth_element(centres, centres + kSamples / 2, centres + kSamples);
+      const double cut = centres[kSamples / 2];
+      if (candidate == Axis::x && (cut <= slab.begin || cut >= slab.end)) continue;
+      std::size_t low = 0, high = 0;
+      for (std::size_t k = items.pieces; k < piece_stack_.size(); ++k) {
+        low += is_low(piece_stack_[k], candidate, cut) ? 1 : 0;
+        high += is_high(piece_stack_[k], candidate, cut) ? 1 : 0;
+      }
+      if (low + high > most || 4 * std::max(low, high) > 3 * count) continue;
+      most = low + high;
+      axis = candidate;
+      middle = cut;
+      found = true;
+      if (low + high <= count + count / kWellSeparated) break;
+    }
+    return found;
+  }
+
+  // The middle one of all ends, and vertices, that are strictly inside of the slab. Returns whether there is
+  // one.
+  bool find_middle(Slab slab, Items items, double& middle) {
+    inside_.clear();
+    const auto add = [&](double x) {
+      if (slab.begin < x && x < slab.end) inside_.push_back(x);
+    };
+    for (std::size_t k = items.pieces; k < piece_stack_.size(); ++k) {
+      add(from(piece_stack_[k]).x);
+      add(to(piece_stack_[k]).x);
+    }
+    for (std::size_t k = items.vertices; k < vertex_stack_.size(); ++k) add(places_[vertex_stack_[k]].x);
+    if (inside_.empty()) return false;
+    const auto half = inside_.begin() + static_cast<std::ptrdiff_t>(inside_.size() / 2);
+    std::nth_element(inside_.begin(), half, inside_.end());
+    middle = *half;
+    return true;
+  }
+
+  // Moves pieces that span the slab to chain_, with their heights.
+  void take_spanning(Slab slab, Items items) {
+    chain_.clear();
+    std::size_t kept = items.pieces;
+    for (std::size_t k = items.pieces; k < piece_stack_.size(); ++k) {
+      const std::int32_t p = piece_stack_[k];
+      if (spans(p, slab)) {
+        chain_.push_back({p, height(p, slab.begin), height(p, slab.end)});
+      } else {
+        piece_stack_[kept++] = p;
+      }
+    }
+    piece_stack_.resize(kept);
+  }
+
+  // Takes a chain away from the items, and finds what all others have to do with it in the slab.
+  void take_chain(Slab slab, Items items) {
+    take_spanning(slab, items);
+    if (chain_.empty()) return;
+    std::sort(chain_.begin(), chain_.end(), [this, slab](const Spanning& p, const Spanning& q) {
+      const int order = compare_at_begin(slab, p, q);
+      return order != 0 ? order < 0 : compare_at_end(slab, p, q) < 0;
+    });
+    // The last one that goes on beyond the slab.
+    std::ptrdiff_t through = -1;
+    std::size_t size = 0;
+    for (std::size_t k = 0; k < chain_.size(); ++k) {
+      const Spanning p = chain_[k];
+      const bool goes_on = to(p.piece).x > slab.end;
+      const bool fits = (size == 0 || compare_at_end(slab, chain_[size - 1], p) <= 0) &&
+                        !(goes_on && through >= 0 &&
+                          compare_at_end(slab, chain_[static_cast<std::size_t>(through)], p) == 0);
+      if (fits) {
+        if (goes_on) through = static_cast<std::ptrdiff_t>(size);
+        chain_[size++] = p;
+      } else {
+        piece_stack_.push_back(p.piece);
+      }
+    }
+    chain_.resize(size);
+    if (of_vertices_) {
+      for (std::size_t k = items.vertices; k < vertex_stack_.size(); ++k) add_chain_at(vertex_stack_[k]);
+    } else {
+      for (std::size_t k = items.pieces; k < piece_stack_.size(); ++k) add_crossed(slab, piece_stack_[k]);
+    }
+  }
+
+  // Of a slab that has no end inside: what spans it crosses if it is in another order at its end. Everything
+  // else is at its end.
+  void finish_slab(Slab slab, Items items) {
+    take_spanning(slab, items);
+    std::sort(chain_.begin(), chain_.end(), [this, slab](const Spanning& p, const Spanning& q) {
+      const int order = of_vertices_ ? 0 : compare_at_begin(slab, p, q);
+      return order != 0 ? order < 0 : compare_at_end(slab, p, q) < 0;
+    });
+    if (of_vertices_) {
+      for (std::size_t k = items.vertices; k < vertex_stack_.size(); ++k) add_chain_at(vertex_stack_[k]);
+      return;
+    }
+    for (std::size_t k = 1; k < chain_.size(); ++k) {
+      const Spanning p = chain_[k];
+      const bool goes_on = to(p.piece).x > slab.end;
+      std::size_t place = k;
+      while (place > 0 && compare_at_end(slab, chain_[place - 1], p) > 0) {
+        add_if_crossing(p.piece, chain_[place - 1].piece);
+        chain_[place] = chain_[place - 1];
+        --place;
+      }
+      chain_[place] = p;
+      for (std::size_t tied = place; goes_on && tied > 0 && compare_at_end(slab, chain_[tied - 1], p) == 0;
+           --tied) {
+        add_if_crossing(p.piece, chain_[tied - 1].piece);
+      }
+    }
+    for (std::size_t k = items.pieces; k < piece_stack_.size(); ++k) {
+      const std::int32_t p = piece_stack_[k];
+      const Rank low = rank_of(from(p)), high = rank_of(to(p));
+      for (std::size_t c = low.not_above; c < high.below; ++c) add_if_crossing(p, chain_[c].piece);
+    }
+  }
+
+  // The pieces of the chain that a piece crosses in the slab, but not at its begin. Two that meet at its end
+  // cross if both go on.
+  void add_crossed(Slab slab, std::int32_t p) {
+    const Point a = from(p), b = to(p);
+    Rank left, right;
+    if (a.x > slab.begin || a.x == b.x) {
+      left = rank_of(a);
+    } else {
+      const Spanning at{p, height(p, slab.begin), {}};
+      left = rank([&](const Spanning& q) { return compare_at_begin(slab, at, q); });
+    }
+    if (b.x < slab.end || a.x == b.x) {
+      right = rank_of(b);
+    } else {
+      const Spanning at{p, {}, height(p, slab.end)};
+      right = rank([&](const Spanning& q) { return compare_at_end(slab, at, q); });
+    }
+    if (b.x > slab.end) std::swap(right.below, right.not_above);
+    for (std::size_t k = left.not_above; k < right.below; ++k) add_if_crossing(p, chain_[k].piece);
+    for (std::size_t k = right.not_above; k < left.below; ++k) add_if_crossing(p, chain_[k].piece);
+  }
+
+  void add_chain_at(std::int32_t v) {
+    const Rank at = rank_of(places_[v]);
+    for (std::size_t k = at.below; k < at.not_above; ++k) add_if_inside(chain_[k].piece, v);
+  }
+
+  Rank rank_of(Point p) const {
+    return rank([&](const Spanning& q) { return predicates_.orient(from(q.piece), to(q.piece), p); });
+  }
+  // side: 1 if the place is above a piece of the chain, -1 if it is below, 0 if it is on it.
+  template <typename Side>
+  Rank rank(const Side& side) const {
+    const auto below =
+        std::partition_point(chain_.begin(), chain_.end(), [&](const Spanning& q) { return side(q) > 0; });
+    auto not_above = below;
+    if (below != chain_.end() && side(*below) == 0) {
+      not_above = std::partition_point(below, chain_.end(), [&](const Spanning& q) { return side(q) == 0; });
+    }
+    return {static_cast<std::size_t>(below - chain_.begin()),
+            static_cast<std::size_t>(not_above - chain_.begin())};
+  }
+
+  // Of a piece that is not vertical. From the nearer end, each of five operations is wrong by 2^-53 of the
+  // way, and the sum by 2^-53 of itself.
+  Height height(std::int32_t piece, double x) const {
+    const Point a = from(piece), b = to(piece);
+    if (x == a.x || a.y == b.y) return {a.y, a.y};
+    if (x == b.x) return {b.y, b.y};
+    const double before = x - a.x, after = b.x - x, part = std::min(before, after) / (b.x - a.x);
+    const double way = before < after ? part * (b.y - a.y) : part * (a.y - b.y);
+    const double y = (before < after ? a.y : b.y) + way;
+    const double error = 0x1p-50 * (std::fabs(way) + std::fabs(y));
+    return {y - error, y + error};
+  }
+
+  int compare_at_begin(Slab slab, const Spanning& p, const Spanning& q) const {
+    return compare(p.piece, p.begin, q.piece, q.begin, slab.begin);
+  }
+  int compare_at_end(Slab slab, const Spanning& p, const Spanning& q) const {
+    return compare(p.piece, p.end, q.piece, q.end, slab.end);
+  }
+  // Which of two pieces is higher at an x that both have.
+  int compare(std::int32_t p, Height of_p, std::int32_t q, Height of_q, double x) const {
+    if (of_p.high < of_q.low) return -1;
+    if (of_p.low > of_q.high) return 1;
+    if (of_p.known() && of_q.known()) return 0;
+    const Point pa = from(p), pb = to(p), qa = from(q), qb = to(q);
+    if (of_p.known()) return predicates_.orient(qa, qb, {x, of_p.low});
+    if (of_q.known()) return -predicates_.orient(pa, pb, {x, of_q.low});
+    // Neither ends here; so if they do not cross, what is not below at both ends is above.
+    const int side_qa = predicates_.orient(pa, pb, qa), side_qb = predicates_.orient(pa, pb, qb);
+    if (side_qa * side_qb >= 0) return -(side_qa + side_qb > 0) + (side_qa + side_qb < 0);
+    const int side_pa = predicates_.orient(qa, qb, pa), side_pb = predicates_.orient(qa, qb, pb);
+    if (side_pa * side_pb >= 0) return (side_pa + side_pb > 0) - (side_pa + side_pb < 0);
+    return side_pa * compare_crossing({pa, pb}, {qa, qb}, false, {x, 0});
+  }
+
+  void add_if_crossing(std::int32_t p, std::int32_t q) {
+    if (!cross(predicates_, lines_[p], lines_[q])) return;
+    pairs_.emplace_back(p, q);
+    // Few pairs are found twice.
+    if (pairs_.size() / 2 > most_) throw_too_many(most_);
+  }
+  void add_if_inside(std::int32_t p, std::int32_t v) {
+    const Point a = from(p), b = to(p), point = places_[v];
+    if (a.x < point.x && point.x < b.x && predicates_.orient(a, b, point) == 0) pairs_.emplace_back(p, v);
+  }
+
+  Predicates predicates_;
+  const Point* points_;
+  const std::vector<Piece>& pieces_;
+  std::size_t most_;
+  bool of_vertices_ = false;
+  std::vector<Line> lines_;    // of pieces, by place
+  std::vector<Point> places_;  // of vertices, by place
+  Ids piece_stack_, vertex_stack_;
+  std::vector<double> inside_;
+  std::vector<Spanning> chain_;
+  Pairs pairs_;
+};
+
+// Vertical pieces have what is between their ends in lexicographic order.
+void add_inner_vertices_of_vertical(const Point* points, const std::vector<Piece>& pieces,
+                                    const Ids& vertices, Pairs& pairs) {
+  const auto before = [points](std::int32_t u, std::int32_t v) {
+    return kernel::comes_before(points[u], points[v]) != 0;
+  };
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (points[pieces[k].from].x != points[pieces[k].to].x) continue;
+    auto v = std::upper_bound(vertices.begin(), vertices.end(), pieces[k].from, before);
+    for (; v != vertices.end() && before(*v, pieces[k].to); ++v) {
+      pairs.emplace_back(static_cast<std::int32_t>(k), *v);
+    }
+  }
+}
+
+}  // namespace
+
+Pairs crossing_pairs(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
+                     std::size_t most) {
+  Search search(predicates, points, pieces, most);
+  search.find_crossings();
+  Pairs pairs = search.take();
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  if (pairs.size() > most) throw_too_many(most);
+  return pairs;
+}
+
+Pairs inner_vertices(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
+                     const Ids& vertices) {
+  Search search(predicates, points, pieces, 0);
+  search.find_vertices(vertices);
+  Pairs pairs = search.take();
+  add_inner_vertices_of_vertical(points, pieces, vertices, pairs);
+  std::sort(pairs.begin(), pairs.end(), [points](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first
+                              : kernel::comes_before(points[a.second], points[b.second]) != 0;
+  });
+  return pairs;
+}
+
+}  // namespace flaunay::constrained

@@ -1,0 +1,50 @@
+// Splits segments where they cross. docs/constrained.md defines the result, and shows how far it can be from
+// the segments.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace flaunay::constrained {
+
+/// What splitting may take.
+struct SplitLimits {
+  int rounds = 32;                        ///< so often pieces are split
+  std::size_t crossings = 1'000'000'000;  ///< so many pairs of pieces may cross in a round
+};
+
+struct Split {
+  /// As in ConstrainedTriangulation.
+  std::vector<double> added_points;
+  std::vector<std::size_t> added_offsets;
+  /// Pieces that do not cross: 2 points per piece. Those of a segment follow each other from its
+  /// lexicographically smaller end to the other one; each has the direction of its segment. Added point k has
+  /// the index n + k. Pieces can overlap, and go through points.
+  std::vector<std::int32_t> pieces;
+  /// segments + 1 values: segment s has the pieces [piece_offsets[s], piece_offsets[s + 1]).
+  std::vector<std::int32_t> piece_offsets;
+  int rounds = 0;  ///< how often pieces were split, at most
+};
+
+/// Splits segments where they cross. A segment that nothing crosses is one piece.
+///
+/// coordinates, offsets: as in Triangulator::triangulate. segments: 2 indices of points of the same set per
+/// segment.
+///
+/// Throws Error(usage) for wrong segments as constrain() does; Error(input) as Triangulator::triangulate does
+/// for points, if there are more crossings than the limit or than 32-bit indices allow, and if segments still
+/// cross after the last round, which names two of them.
+Split split(const double* coordinates, const std::vector<std::size_t>& offsets,
+            const std::vector<std::int32_t>& segments, const SplitLimits& limits = {});
+
+/// The points of all sets, each set's added points after its own.
+struct AllPoints {
+  std::vector<double> coordinates;
+  std::vector<std::size_t> offsets;
+  std::vector<std::int32_t> index;  ///< per point: its index where added points come last
+  std::vector<std::int32_t> place;  ///< the other way round
+};
+AllPoints join_added(const double* coordinates, const std::vector<std::size_t>& offsets, const Split& split);
+
+}  // namespace flaunay::constrained

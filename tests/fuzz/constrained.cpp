@@ -1,0 +1,438 @@
+// Makes segments edges of degenerate point sets, and compares the result with the definition: by the
+// verifier, for small sets also by brute force; with that of the same segments in another order; and with
+// those of devices. Stops at the first wrong result, shrinks it and prints it as a test.
+//
+//   fuzz_constrained [--seconds N] [--seed S] [--first CASE]
+#include "constrained/constrained.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest-spi.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "flaunay/constrained.hpp"
+#include "flaunay/flaunay.hpp"
+#include "tests/constrained/check.hpp"
+#include "tests/constrained/nasty.hpp"
+#include "tests/fuzz/minimise.hpp"
+#include "tests/fuzz/run.hpp"
+#include "tests/fuzz/segments.hpp"
+#include "tests/support/environment.hpp"
+#include "verify/constrained.hpp"
+
+namespace flaunay::fuzz {
+namespace {
+
+using testing::Edge;
+using testing::Segments;
+using Ids = std::vector<std::int32_t>;
+
+struct Flat {
+  Coordinates points;
+  std::vector<std::size_t> offsets{0};
+  Segments segments;
+  std::vector<std::size_t> segment_offsets{0};
+};
+
+Flat flat(const SegmentBatch& batch) {
+  Flat all;
+  for (const SegmentSet& set : batch) {
+    for (const std::int32_t v : set.segments)
+      all.segments.push_back(static_cast<std::int32_t>(all.offsets.back()) + v);
+    all.points.insert(all.points.end(), set.points.begin(), set.points.end());
+    all.offsets.push_back(all.points.size() / 2);
+    all.segment_offsets.push_back(all.segments.size() / 2);
+  }
+  return all;
+}
+
+Ids minus(const Ids& ids, std::size_t begin, std::size_t end, std::size_t base) {
+  Ids result(ids.begin() + static_cast<std::ptrdiff_t>(begin),
+             ids.begin() + static_cast<std::ptrdiff_t>(end));
+  for (std::int32_t& id : result) id = id < 0 ? id : id - static_cast<std::int32_t>(base);
+  return result;
+}
+
+/// Which domain is asked for.
+struct Domain {
+  bool is_asked_for = false;
+  Outside outside = Outside::keep;
+  FillRule fill_rule = FillRule::nesting;
+  /// Each set has a hole at the place between two of its points with these numbers, if it has so many.
+  std::int32_t points_of_hole[2] = {-1, -1};
+
+  std::vector<double> hole_of(const SegmentSet& set) const {
+    const auto n = static_cast<std::int32_t>(set.points.size() / 2);
+    const std::int32_t a = points_of_hole[0], b = points_of_hole[1];
+    if (a < 0 || a >= n || b >= n) return {};
+    return {set.points[2 * a] / 2 + set.points[2 * b] / 2,
+            set.points[2 * a + 1] / 2 + set.points[2 * b + 1] / 2};
+  }
+};
+
+/// The arrays of a result. Labels are null if there are none.
+struct Arrays {
+  const std::vector<std::size_t>& triangle_offsets;
+  const Ids &triangles, &neighbors, &edges, &segment_edges;
+  const Ids *edge_segments = nullptr, *depths = nullptr, *regions = nullptr;
+};
+
+Arrays arrays_of(const Triangulation& delaunay, const constrained::Result& result) {
+  return {delaunay.triangle_offsets, result.triangles, result.neighbors, result.constraint_edges,
+          result.segment_edges};
+}
+Arrays arrays_of(const ConstrainedTriangulation& result) {
+  return {result.triangle_offsets, result.triangles,      result.neighbors, result.constraint_edges,
+          result.piece_edges,      &result.edge_segments, &result.depths,   &result.regions};
+}
+
+/// What the verifier says about each set.
+std::string verify_sets(const SegmentBatch& batch, const Flat& all, const Arrays& arrays,
+                        const Domain& domain) {
+  std::size_t edge = 0, region = 0;
+  for (std::size_t s = 0; s < batch.size(); ++s) {
+    const std::size_t begin = arrays.triangle_offsets[s], end = arrays.triangle_offsets[s + 1];
+    const Ids triangles = minus(arrays.triangles, 3 * begin, 3 * end, all.offsets[s]);
+    const Ids neighbors = minus(arrays.neighbors, 3 * begin, 3 * end, begin);
+    std::size_t last_edge = edge;
+    while (last_edge < arrays.edges.size() / 2 &&
+           static_cast<std::size_t>(arrays.edges[2 * last_edge]) < all.offsets[s + 1]) {
+      ++last_edge;
+    }
+    const Ids edges = minus(arrays.edges, 2 * edge, 2 * last_edge, all.offsets[s]);
+    Ids ranges = minus(arrays.segment_edges, 2 * all.segment_offsets[s], 2 * all.segment_offsets[s + 1], 0);
+    for (std::size_t i = 0; i < ranges.size(); i += 2) {
+      if (ranges[i] == ranges[i + 1]) continue;
+      for (std::size_t k = i; k < i + 2; ++k) ranges[k] -= static_cast<std::int32_t>(edge);
+    }
+    const std::vector<double> hole = domain.hole_of(batch[s]);
+    VerifyConstraints constraints;
+    constraints.segments = &batch[s].segments;
+    constraints.outside = domain.outside;
+    constraints.fill_rule = domain.fill_rule;
+    if (!hole.empty()) constraints.holes = &hole;
+    constraints.edges = &edges;
+    constraints.segment_edges = &ranges;
+    Ids edge_segments, depths, regions;
+    if (arrays.depths != nullptr) {
+      edge_segments = minus(*arrays.edge_segments, edge, last_edge, all.segment_offsets[s]);
+      depths = minus(*arrays.depths, begin, end, 0);
+      regions = minus(*arrays.regions, begin, end, region);
+      constraints.edge_segments = &edge_segments;
+      constraints.depths = &depths;
+      constraints.regions = &regions;
+      region = regions.empty() ? region
+                               : static_cast<std::size_t>(*std::max_element(
+                                     arrays.regions->begin() + static_cast<std::ptrdiff_t>(begin),
+                                     arrays.regions->begin() + static_cast<std::ptrdiff_t>(end))) +
+                                     1;
+    }
+    const VerifyReport report = verify_constrained(batch[s].points.data(), batch[s].points.size() / 2,
+                                                   triangles, &neighbors, constraints);
+    if (!report.ok) return fmt::format("set {}: {}", s, report.problem);
+    edge = last_edge;
+  }
+  return edge == arrays.edges.size() / 2 ? "" : "constraint edges are not in the order of the sets";
+}
+
+/// Whether the verifier says what is wrong with the input of a set, before it looks for triangles.
+bool verifier_refuses(const SegmentBatch& batch, const Domain& domain) {
+  for (const SegmentSet& set : batch) {
+    const std::vector<double> hole = domain.hole_of(set);
+    VerifyConstraints constraints;
+    constraints.segments = &set.segments;
+    constraints.outside =
+        domain.is_asked_for && domain.outside == Outside::keep ? Outside::hull : domain.outside;
+    constraints.fill_rule = domain.fill_rule;
+    if (!hole.empty()) constraints.holes = &hole;
+    const VerifyReport report =
+        verify_constrained(set.points.data(), set.points.size() / 2, {}, nullptr, constraints);
+    for (const char* const problem : {" cross at a place that is no point", "hole 0", " no closed curves"}) {
+      if (report.problem.find(problem) != std::string::npos) return true;
+    }
+  }
+  return false;
+}
+
+/// By brute force: what is wrong with a result, or with the message if there is none.
+std::string compare_with_definition(const Flat& all, const Triangulation& delaunay,
+                                    const std::optional<constrained::Result>& result,
+                                    const std::string& error) {
+  testing::Plane plane(all.points);
+  const auto edges = testing::expected_edges(all.points, all.offsets, delaunay, all.segments);
+  const Edge crossing = testing::expected_crossing(all.offsets, edges, plane);
+  if ((crossing.first >= 0) != !result.has_value()) {
+    return result ? "segments cross, without an error" : "segments do not cross: " + error;
+  }
+  if (!result) {
+    const auto names = [&](const std::string& begin, std::int32_t s) {
+      return error.find(begin + std::to_string(s) + " (points ") != std::string::npos;
+    };
+    if (names("segments ", crossing.first) && names(" and ", crossing.second)) return "";
+    return fmt::format("segments {} and {} should be named: {}", crossing.first, crossing.second, error);
+  }
+  ::testing::TestPartResultArray failures;
+  {
+    const ::testing::ScopedFakeTestPartResultReporter reporter(&failures);
+    testing::expect_edges(edges, *result);
+    testing::expect_canonical(all.points, delaunay, *result);
+  }
+  return failures.size() == 0 ? "" : failures.GetTestPartResult(0).message();
+}
+
+struct Outcome {
+  std::string error;  // empty if there is a result
+  std::optional<constrained::Result> result;
+};
+
+Outcome constrain(const Flat& all, const Triangulation& delaunay, const Segments& segments) {
+  try {
+    return {"", constrained::constrain(all.points.data(), all.offsets, delaunay, segments)};
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+    return {error.what(), std::nullopt};
+  }
+}
+
+/// The same from the last segment to the first, each the other way round.
+std::string compare_with_reversed(const Flat& all, const Triangulation& delaunay,
+                                  const constrained::Result& result) {
+  const Segments reversed(all.segments.rbegin(), all.segments.rend());
+  const Outcome other = constrain(all, delaunay, reversed);
+  if (!other.result) return "other segments cross if they are reversed: " + other.error;
+  const auto arrays = [](const constrained::Result& r) {
+    return std::tie(r.triangles, r.neighbors, r.constraint_edges);
+  };
+  return arrays(result) == arrays(*other.result) ? "" : "reversed segments have another result";
+}
+
+struct Verdict {
+  std::string problem;   // empty if nothing is wrong
+  bool refused = false;  // out of the range of magnitudes
+  bool crosses = false;
+};
+
+class Devices {
+ public:
+  Devices() {
+    add("host", "");
+    add("host", "small");
+    add("#0", "gpu:32,chain_wrapped_most=5");  // takes some milliseconds per case
+    // Kernels are compiled now, since that takes longer than a case may.
+    const testing::SegmentInput any = testing::nasty_detail::spirals(200, 1);
+    const Flat flat_any{any.points, {0, any.points.size() / 2}, any.segments, {}};
+    ConstrainedOptions options;
+    options.labels = true;
+    options.outside = Outside::hull;
+    for (const Tuned& tuned : all_) {
+      compare(flat_any, *tuned.triangulator);
+      tuned.triangulator->constrained(flat_any.points.data(), flat_any.offsets, constraints_of(flat_any),
+                                      options);
+    }
+  }
+
+  /// Whether the public call has the result of the twin for the same Delaunay triangulation: natively, and if
+  /// asked for also by OpenCL, with sizes by which few segments are many groups and rounds.
+  std::string compare(const Flat& all, bool with_opencl) {
+    for (const Tuned& tuned : all_) {
+      if (tuned.is_opencl && !with_opencl) continue;
+      start_check();
+      const std::string problem = compare(all, *tuned.triangulator);
+      if (!problem.empty()) return fmt::format("{}: {}", tuned.name, problem);
+    }
+    return "";
+  }
+
+  /// Whether the triangles and labels of a domain are right.
+  std::string check_domain(const SegmentBatch& batch, const Flat& all, const Domain& domain,
+                           bool with_opencl) {
+    std::vector<double> holes;
+    std::vector<std::size_t> hole_offsets{0};
+    for (const SegmentSet& set : batch) {
+      const std::vector<double> hole = domain.hole_of(set);
+      holes.insert(holes.end(), hole.begin(), hole.end());
+      hole_offsets.push_back(holes.size() / 2);
+    }
+    Constraints constraints = constraints_of(all);
+    constraints.holes = holes.data();
+    constraints.hole_count = holes.size() / 2;
+    constraints.hole_offsets = hole_offsets;
+    ConstrainedOptions options;
+    options.neighbors = true;
+    options.labels = true;
+    options.outside = domain.outside;
+    options.fill_rule = domain.fill_rule;
+    for (const Tuned& tuned : all_) {
+      if (tuned.is_opencl && !with_opencl) continue;
+      start_check();
+      std::string problem;
+      try {
+        const ConstrainedTriangulation result =
+            tuned.triangulator->constrained(all.points.data(), all.offsets, constraints, options);
+        problem = verify_sets(batch, all, arrays_of(result), domain);
+      } catch (const Error& error) {
+        const bool is_fine = error.kind() == ErrorKind::input && verifier_refuses(batch, domain);
+        if (!is_fine) problem = error.what();
+      }
+      if (!problem.empty()) return fmt::format("{}, domain: {}", tuned.name, problem);
+    }
+    return "";
+  }
+
+ private:
+  static Constraints constraints_of(const Flat& all) {
+    Constraints constraints;
+    constraints.segments = all.segments.data();
+    constraints.segment_count = all.segments.size() / 2;
+    return constraints;
+  }
+
+  struct Tuned {
+    std::string name;
+    bool is_opencl;
+    std::unique_ptr<Triangulator> triangulator;
+  };
+
+  void add(const std::string& device, const std::string& tuning) {
+    const testing::ScopedEnvironment environment("FLAUNAY_TUNING", tuning.c_str());
+    all_.push_back({fmt::format("device {} tuned '{}'", device, tuning), device != "host",
+                    std::make_unique<Triangulator>(device)});
+  }
+
+  static std::string compare(const Flat& all, Triangulator& triangulator) {
+    Options options;
+    options.neighbors = true;
+    const Triangulation delaunay = triangulator.triangulate(all.points.data(), all.offsets, options);
+    const Outcome expected = constrain(all, delaunay, all.segments);
+    const Constraints constraints = constraints_of(all);
+    ConstrainedOptions constrained_options;
+    constrained_options.neighbors = true;
+    try {
+      const ConstrainedTriangulation result =
+          triangulator.constrained(all.points.data(), all.offsets, constraints, constrained_options);
+      if (!expected.result) return "has a result instead of the error: " + expected.error;
+      if (result.constrained != expected.result->constrained)
+        return "its marks of constraints differ from the twin's";
+      if (result.triangles != expected.result->triangles) return "its triangles differ from the twin's";
+      if (result.neighbors != expected.result->neighbors) return "its neighbours differ from the twin's";
+      if (result.constraint_edges != expected.result->constraint_edges)
+        return "its edges differ from the twin's";
+      if (result.piece_edges != expected.result->segment_edges) return "its pieces differ from the twin's";
+      return "";
+    } catch (const Error& error) {
+      if (error.what() == expected.error) return "";
+      return fmt::format("its error is '{}' instead of '{}'", error.what(), expected.error);
+    }
+  }
+
+  std::vector<Tuned> all_;
+};
+
+std::string problem_of(const SegmentBatch& batch, const Flat& all, const Triangulation& delaunay,
+                       const Outcome& outcome) {
+  // The number of comparisons that brute force may take.
+  constexpr std::size_t kMostSteps = 100'000;
+  std::string problem;
+  if (all.points.size() * (all.segments.size() + 1) <= kMostSteps) {
+    problem = compare_with_definition(all, delaunay, outcome.result, outcome.error);
+  }
+  if (!problem.empty()) return problem;
+  if (!outcome.result) {
+    return verifier_refuses(batch, {}) ? "" : "the verifier finds no crossing, but: " + outcome.error;
+  }
+  problem = verify_sets(batch, all, arrays_of(delaunay, *outcome.result), {});
+  return problem.empty() ? compare_with_reversed(all, delaunay, *outcome.result) : problem;
+}
+
+class Constrained : public Fuzzer {
+ public:
+  bool run(testing::FixtureRandom& random) override {
+    const Domain domain = any_domain(random);
+    const bool has_curves = domain.fill_rule != FillRule::nesting || random.integer(1, 10) == 1;
+    const SegmentBatch batch = has_curves ? closed_curves(random) : degenerate_segments(random);
+    const bool with_opencl = random.integer(1, 8) == 1;
+    const Verdict verdict = judge(batch, domain, with_opencl);
+    if (!verdict.problem.empty()) {
+      report(batch, domain, with_opencl);
+      return false;
+    }
+    refused_ += verdict.refused;
+    crossing_ += verdict.crosses;
+    for (const SegmentSet& set : batch) {
+      points_ += set.points.size() / 2;
+      segments_ += set.segments.size() / 2;
+    }
+    return true;
+  }
+
+  std::string summary() const override {
+    return fmt::format("{} points and {} segments are right; segments of {} cross, {} were refused", points_,
+                       segments_, crossing_, refused_);
+  }
+
+ private:
+  static Domain any_domain(testing::FixtureRandom& random) {
+    Domain domain;
+    domain.is_asked_for = random.integer(0, 1) == 0;
+    if (!domain.is_asked_for) return domain;
+    domain.outside = static_cast<Outside>(random.integer(0, 2));
+    domain.fill_rule = static_cast<FillRule>(random.integer(0, 2));
+    if (random.integer(0, 2) == 0) {
+      for (std::int32_t& v : domain.points_of_hole) v = static_cast<std::int32_t>(random.integer(0, 12));
+    }
+    return domain;
+  }
+
+  Verdict judge(const SegmentBatch& batch, const Domain& domain, bool with_opencl) {
+    const Flat all = flat(batch);
+    Triangulation delaunay;
+    try {
+      delaunay = testing::delaunay_of(all.points, all.offsets);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::input) return {error.what()};
+      return {"", true};
+    }
+    try {
+      const Outcome outcome = constrain(all, delaunay, all.segments);
+      std::string problem = problem_of(batch, all, delaunay, outcome);
+      if (problem.empty()) problem = devices_.compare(all, with_opencl);
+      if (problem.empty() && domain.is_asked_for)
+        problem = devices_.check_domain(batch, all, domain, with_opencl);
+      return {problem, false, !outcome.result};
+    } catch (const Error& error) {
+      return {error.what()};
+    }
+  }
+
+  void report(const SegmentBatch& batch, const Domain& domain, bool with_opencl) {
+    const auto problem_of = [=, this](const SegmentBatch& smaller) {
+      start_check();
+      return judge(smaller, domain, with_opencl).problem;
+    };
+    fmt::print("{}\n{}\n{} sets; shrinking them\n", case_name(), problem_of(batch), batch.size());
+    std::fflush(stdout);
+    const SegmentsFail fails = [&](const SegmentBatch& smaller) { return !problem_of(smaller).empty(); };
+    const SegmentBatch smallest = minimise(batch, fails);
+    fmt::print("{}", test_text(smallest, fmt::format("{}\n{}", case_name(), problem_of(smallest))));
+  }
+
+  Devices devices_;
+  std::size_t points_ = 0, segments_ = 0, crossing_ = 0, refused_ = 0;
+};
+
+}  // namespace
+}  // namespace flaunay::fuzz
+
+int main(int argc, char** argv) {
+  return flaunay::fuzz::run_fuzzer<flaunay::fuzz::Constrained>(
+      argc, argv, "fuzz_constrained",
+      "Makes segments edges of degenerate point sets until a result is wrong or the time is over.");
+}
