@@ -126,7 +126,7 @@ def is_installed(package: str) -> bool:
 
 
 def versions() -> dict[str, str]:
-    packages = ("numpy", *{package for package, _ in CALLS.values()})
+    packages = dict.fromkeys(["numpy", *(package for package, _ in CALLS.values())])
     return {
         package: (
             flaunay.__version__ if package == "flaunay" else importlib.metadata.version(package)

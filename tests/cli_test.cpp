@@ -1620,6 +1620,33 @@ TEST_F(CommandConstraintsTest, OverlapsBelongToTheFirstPolygonUnlessTheyAreError
                {"triangulate", map, "--overlaps", "error"});
 }
 
+TEST_F(CommandConstraintsTest, CrossingSegmentsAreSplitIfThatIsAskedFor) {
+  const std::string cross = write("cross.xy", "0 0\n4 0\n4 4\n0 4\n");
+  const std::string diagonals = write("s.txt", "0 2\n1 3\n");
+  const Outcome outcome =
+      run_well({"triangulate", cross, "--constraints", diagonals, "--crossings", "split", "--points",
+                path("p.txt"), "--constraint-edges", path("e.npy"), "--edge-segments", path("s.npy"),
+                "--stats", path("stats.json"), "-o", path("a.svg"), "--triangles", path("t.npy")},
+               kNoPlatform);
+  EXPECT_NE(outcome.out.find("4 constraint edges, 1 added point;"), std::string::npos) << outcome.out;
+  EXPECT_EQ(read_text_points(path("p.txt")), (std::vector<double>{0, 0, 4, 0, 4, 4, 0, 4, 2, 2}));
+  EXPECT_EQ(sorted_rows(path("t.npy")), (Rows{{0, 1, 4}, {0, 4, 3}, {1, 2, 4}, {2, 3, 4}}));
+  EXPECT_EQ(read_array(path("e.npy")).shape, "(4, 2)");
+  EXPECT_EQ(read_array(path("s.npy")).shape, "(4,)");
+  const auto constraints = nlohmann::json::parse(contents(path("stats.json")))["constraints"];
+  EXPECT_EQ(constraints["pieces"], 4);
+  EXPECT_EQ(constraints["added_points"], 1);
+  EXPECT_EQ(constraints["crossings"], "split");
+  EXPECT_NE(contents(path("a.svg")).find("1 point added where segments cross"), std::string::npos);
+  // Borders that cross, and a line across a polygon, whose two directions are split at the same points.
+  const std::string map = write("map.json", R"({"type": "GeometryCollection", "geometries": [
+      {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]]},
+      {"type": "LineString", "coordinates": [[-1, 1], [5, 3]]},
+      {"type": "Polygon", "coordinates": [[[2, 2], [6, 2], [6, 6], [2, 6], [2, 2]]]}]})");
+  EXPECT_DOUBLE_EQ(area(map, {"--crossings", "split"}), 16 + 16 - 4);
+  EXPECT_DOUBLE_EQ(area(map, {"--crossings", "split", "--fill", "even-odd"}), 16 + 16 - 2 * 4);
+}
+
 TEST_F(CommandConstraintsTest, MeshesCanBeReadAgain) {
   run_well({"triangulate", data("letter.poly"), "-o", path("a.ele"), "--outside", "keep", "--quiet"},
            kNoPlatform);

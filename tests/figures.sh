@@ -12,10 +12,20 @@ if ! cmp "$docs/data-layout.svg" "$drawn"; then
   echo 'figures.sh: run docs/figures/data_layout.py docs/data-layout.md docs/data-layout.svg' >&2
   exit 1
 fi
-if [[ -n ${2-} ]]; then
-  "$2" triangulate "$tests/data/africa.geojson" --quiet -o "$drawn"
-  if ! cmp "$docs/figures/africa.svg" "$drawn"; then
-    echo 'figures.sh: run flaunay triangulate tests/data/africa.geojson -o docs/figures/africa.svg' >&2
+
+# drawing NAME OPTION...: docs/figures/ has what the command draws of a file of tests/data.
+drawing() {
+  local file="$1" figure="figures/${1%.*}.svg"
+  shift
+  "$flaunay" triangulate "$tests/data/$file" "$@" --quiet -o "$drawn"
+  if ! cmp "$docs/$figure" "$drawn"; then
+    echo "figures.sh: run flaunay triangulate tests/data/$file $* -o docs/$figure" >&2
     exit 1
   fi
+}
+
+flaunay="${2-}"
+if [[ -n $flaunay ]]; then
+  drawing africa.geojson
+  drawing star.poly --crossings split --fill even-odd
 fi

@@ -64,9 +64,11 @@ inline int atomic_cmpxchg(volatile int* at, int expected, int value) {
   __atomic_compare_exchange_n(at, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
   return expected;
 }
-// Of what other work-items change meanwhile; see ATOMIC_READS.
+// Of what other work-items change meanwhile; see shared/meanwhile.h.
 inline int read_shared(const volatile int* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
+inline uint read_shared(const volatile uint* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
 inline void write_shared(volatile int* at, int value) { __atomic_store_n(at, value, __ATOMIC_RELAXED); }
+inline void write_shared(volatile uint* at, uint value) { __atomic_store_n(at, value, __ATOMIC_RELAXED); }
 // Replaces the value by another one while that is better.
 template <typename T, typename IsBetter>
 T atomic_improve(volatile T* at, T value, const IsBetter& is_better) {
@@ -81,9 +83,6 @@ inline int atomic_min(volatile int* at, int value) {
 }
 inline uint atomic_min(volatile uint* at, uint value) {
   return atomic_improve(at, value, [](uint a, uint b) { return a < b; });
-}
-inline uint atomic_xchg(volatile uint* at, uint value) {
-  return __atomic_exchange_n(at, value, __ATOMIC_RELAXED);
 }
 inline int atomic_max(volatile int* at, int value) {
   return atomic_improve(at, value, [](int a, int b) { return a > b; });

@@ -18,25 +18,17 @@ kernel void gather_vertices(int n, int count, global const int* restrict offsets
   if (i < min(n, offsets[count])) places[i] = points[chain[i]];
 }
 
-kernel void triangulate_chains(int n, int wrapped_most, int inserted_most, double bound,
+kernel void triangulate_chains(int n, int wrapped_most, int alone_most, double bound,
                                global const int* restrict offsets, global const double2* restrict places,
-                               global int* restrict next, global int* restrict before, global int* restrict inside,
-                               global int* restrict order, global int* restrict corners, global int* restrict twins,
+                               global chain_vertex* restrict vertices, global chain_edge* restrict edges,
                                global int* restrict triangles) {
   const int c = get_global_id(0);
   if (c >= n) return;
   const int first = offsets[c], size = offsets[c + 1] - first;
-  if (size < 3 || size > max(wrapped_most, inserted_most)) return;
-  polygon g;
-  g.bound = bound;
-  g.last = size - 1;
-  g.places = places + first;
-  g.next = next + first;
-  g.inside = inside + first;
-  g.corners = corners + 3L * first;
-  g.twins = twins + 3L * first;
+  if (size < 3 || size > max(wrapped_most, alone_most)) return;
+  const polygon g = polygon_at(bound, first, size, places, vertices, edges);
   global int* const rows = triangles + 3L * (first - 2 * c);
-  if (size > wrapped_most && insert_all(&g, before + first, order + first)) {
+  if (size > wrapped_most && insert_all(&g)) {
     write_rows(&g, rows);
   } else {
     wrap(&g, rows);

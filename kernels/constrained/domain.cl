@@ -20,21 +20,13 @@
 
 #include "shared/coordinates.h"
 #include "shared/domains.h"
+#include "shared/meanwhile.h"
 #include "shared/planar.h"
 #include "shared/records.h"
 #include "shared/search.h"
 
-// Other work-items may change what is read here. Atomic operations see all changes. Where caches are coherent, plain
-// ones do as well: an older parent is an ancestor, too, and what an old root is taken for is checked when it is joined.
-#ifndef FLAUNAY_NATIVE_KERNELS
-#if ATOMIC_READS
-#define read_shared(at) atomic_or(at, 0)
-#define write_shared(at, value) atomic_xchg(at, value)
-#else
-#define read_shared(at) (*(at))
-#define write_shared(at, value) (*(at) = (value))
-#endif
-#endif
+// Where another work-item has joined meanwhile: an older parent is an ancestor, too, and what an old root is taken for
+// is checked when it is joined (shared/meanwhile.h).
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Regions

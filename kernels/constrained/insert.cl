@@ -28,6 +28,7 @@
 #include "shared/halfedges.h"
 #include "shared/language.h"
 #include "shared/limits.h"
+#include "shared/meanwhile.h"
 #include "shared/planar.h"
 #include "shared/prefetch.h"
 #include "shared/records.h"
@@ -84,6 +85,8 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
 
 // Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
 #define BLOCKED -1
+// What became of a constraint that stays blocked; see shared/codes.h for other outcomes.
+#define CONSTRAINT_BLOCKED 3
 
 // What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
 static inline uint2 size_of_walk(int rows) {
@@ -187,7 +190,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
       count = second_place - first_place;
       ends[2 * s] = hull[from];
       ends[2 * s + 1] = hull[from + 1];
-      for (uint k = 1; k < count && status[INSERTION_PIECES] <= limit; k += COUNTED_PIECES)
+      for (uint k = 1; k < count && read_shared(&status[INSERTION_PIECES]) <= limit; k += COUNTED_PIECES)
         atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
     } else {
       int first = (int)first_place, second = (int)second_place;
@@ -199,7 +202,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
         }
         if (walk.rows == 0) flag_edge(walk.corner, &mesh, flags);
         if (count % COUNTED_PIECES == 1) {
-          if (status[INSERTION_PIECES] > limit) break;
+          if (read_shared(&status[INSERTION_PIECES]) > limit) break;
           atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
         }
         ++count;
@@ -286,7 +289,11 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
   if (claims[row] != rank) return ~row;
   const int is_long = walk->rows > SHORT_WALK;
-  const double2 from = vload2(walk->origin, mesh->points), to = vload2(walk->goal, mesh->points);
+  double2 from = VECTOR(double2, 0.0, 0.0), to = from;
+  if (is_long) {
+    from = vload2(walk->origin, mesh->points);
+    to = vload2(walk->goal, mesh->points);
+  }
   const int next = next_halfedge(corner), previous = previous_halfedge(corner);
   if (entries) {
     entries[0].row = row;
@@ -346,9 +353,15 @@ kernel void choose_constraints(int n, double bound, global const int* restrict l
   if (i < n) {
     const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
 #if FETCH_AHEAD
-    const int ahead = walks[list[min(n - 1, i + POINTS_AHEAD)]].corner;
-    fetch_row(ahead, &mesh);
-    fetch(&claims[ahead / 3]);
+    const int far = walks[list[min(n - 1, i + NEIGHBORS_AHEAD)]].corner,
+              near = walks[list[min(n - 1, i + POINTS_AHEAD)]].corner / 3;
+    fetch_row(far, &mesh);
+    fetch(&claims[far / 3]);
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = max(0, neighbors[3 * near + k]);
+      fetch_row(3 * beyond, &mesh);
+      fetch(&claims[beyond]);
+    }
 #endif
     const uint rank = rank_of(list[i]);
     const constraint_walk walk = walks[list[i]];
@@ -512,20 +525,35 @@ static inline void join_side(chain_entry entry, uint mark, global const uint* cl
   if (marks[v >> 5] >> (v & 31) & 1) {
     // The edge from i to j is opposite to the second corner, and i is at the first one; or j to k, and j at the third.
     const int corner = 3 * row + (entry.corner - 3 * row == 1 ? 0 : BASE_CORNER);
-    if (claims[places[v] / 3] == mark) atomic_xchg(&places[v], (uint)corner);
+    if (claims[read_shared(&places[v]) / 3] == mark) write_shared(&places[v], (uint)corner);
   }
 }
 
 kernel void join_cavities(int n, uint mark, global const int* restrict list, global const uint* restrict offsets,
-                          global const uchar* restrict outcomes, global const int* restrict lefts,
-                          global const constraint_walk* restrict walks, global const uint* restrict claims,
-                          global const uint* restrict marks, global const int* restrict new_corners,
-                          global const chain_entry* restrict entries, global int* restrict neighbors,
+                          global const int* restrict lefts, global const constraint_walk* restrict walks,
+                          global const uint* restrict claims, global const uint* restrict marks,
+                          global const int* restrict new_corners, global const chain_entry* restrict entries,
+                          global uchar* restrict outcomes, global int* restrict neighbors,
                           global volatile uint* restrict places) {
   const int i = get_global_id(0);
-  if (i < n && outcomes[i] == CONSTRAINT_FITS) {
+#if FETCH_AHEAD
+  if (i + CAVITIES_AHEAD < n && outcomes[i + CAVITIES_AHEAD] == CONSTRAINT_FITS) {
+    global const chain_entry* const ahead = entries + offsets[i + CAVITIES_AHEAD];
+    const int count = walks[list[i + CAVITIES_AHEAD]].rows + 3;
+    for (int p = 0; p < count && count > 3; ++p) {
+      const int twin = max(0, (int)(ahead[p].side >> 1) - 1);
+      fetch(&claims[twin / 3]);
+      fetch(&neighbors[twin]);
+      const int v = ahead[p].vertex;
+      if (marks[v >> 5] >> (v & 31) & 1) fetch((global const void*)&places[v]);
+    }
+  }
+#endif
+  if (i < n) {
     const int rows = walks[list[i]].rows;
-    if (rows > 0) {
+    if (outcomes[i] == CONSTRAINT_WAITS) {
+      if (rows == BLOCKED && claims[walks[list[i]].turns] < rank_of(list[i])) outcomes[i] = CONSTRAINT_BLOCKED;
+    } else if (outcomes[i] == CONSTRAINT_FITS && rows > 0) {
       for (int p = 0; p < rows + 3; ++p) {
         const chain_entry entry = entries[offsets[i] + p];
         if (p != lefts[i] - 1) join_side(entry, mark, claims, marks, new_corners, neighbors, places);
@@ -543,16 +571,14 @@ kernel void walk_constraints(int n, double bound, global const int* restrict lis
                              global volatile uint* restrict status) {
   const int i = get_global_id(0);
   if (i < n) {
-    if (outcomes[i] != CONSTRAINT_WAITS) {
+    if (outcomes[i] == CONSTRAINT_BLOCKED) {
+      sizes[i] = size_of_walk(BLOCKED);
+    } else if (outcomes[i] != CONSTRAINT_WAITS) {
       sizes[i] = VECTOR(uint2, 0u, 0u);
     } else {
       const walked_mesh mesh = mesh_of(points, triangles, neighbors, bound);
       const uint rank = rank_of(list[i]);
       constraint_walk walk = walks[list[i]];
-      if (walk.rows == BLOCKED && claims[walk.turns] < rank) {
-        sizes[i] = size_of_walk(BLOCKED);
-        return;
-      }
       const int origin = walk.origin, goal = walk.goal;
       int first = walk.corner, second;
       departure found;

@@ -46,6 +46,18 @@ OUT_OF_LINE static inline int cross_by_expansions(double2 bx, double2 by, double
   return expansion_sign(&sum);
 }
 
+// The sign of the cross product of b - a and d - c.
+static inline int cross_sign(double2 a, double2 b, double2 c, double2 d) {
+  const double left = (b.x - a.x) * (d.y - c.y), right = (b.y - a.y) * (d.x - c.x);
+  // With the bound of orient_filtered, which has the same terms.
+  const int sign = filtered_sign(left - right, ORIENT_BOUND * (fabs(left) + fabs(right)), ORIENT_BOUND);
+  if (sign != UNDECIDED) return sign;
+  const double2 px = two_sum(b.x, -a.x), py = two_sum(b.y, -a.y), qx = two_sum(d.x, -c.x), qy = two_sum(d.y, -c.y);
+  if ((px.y != 0.0) | (py.y != 0.0) | (qx.y != 0.0) | (qy.y != 0.0)) return cross_by_expansions(px, py, qx, qy);
+  const double2 first = two_product(px.x, qy.x), second = two_product(py.x, qx.x);
+  return first.x != second.x ? sign_of(first.x - second.x) : sign_of(first.y - second.y);
+}
+
 OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
   const double2 bx = two_sum(b.x, -a.x);
   const double2 by = two_sum(b.y, -a.y);

@@ -168,6 +168,19 @@ typedef struct {
 } chain_entry;
 ASSERT_SIZE(chain_entry, 16);
 
+// A vertex of a chain that is triangulated, by positions in the chain. Of the polygon of those vertices that are
+// inserted: the next one, and the half-edge inside of the edge to it. Then the vertices between which it is inserted.
+typedef struct {
+  int next, inside, before, after;
+} chain_vertex;
+ASSERT_SIZE(chain_vertex, 16);
+
+// A half-edge of a chain's triangulation.
+typedef struct {
+  int origin, twin;
+} chain_edge;
+ASSERT_SIZE(chain_edge, 8);
+
 END_SHARED
 
 #endif

@@ -5,7 +5,8 @@
 SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clipped`` and
 ``voronoi_polygons`` clip cells to a box or a convex polygon, ``relax`` spreads points evenly, and
 ``alpha_shape`` finds the outline of points. ``triangulate`` is the plain call,
-for one set of points or many at once; ``triangulate_device`` takes and leaves everything in device
+for one set of points or many at once, also with segments that are to be edges, and ``polygons`` fills any
+number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files.

@@ -37,7 +37,7 @@ class ConstrainedTriangulation(Triangulation, TriangleExports):
     Attributes
     ----------
     triangles, neighbors, halfedges, hull, representatives, triangle_offsets, hull_offsets, statistics
-        As of `Triangulation`.
+        As of `Triangulation`, for all of `points`.
     points : ndarray of float64, shape (n + a, 2)
         A copy of the points, and after them those that splitting added.
     added_offsets : ndarray of int64, shape (sets + 1,)

@@ -215,6 +215,69 @@ def test_pickling_keeps_everything(random):
     assert np.array_equal(copy.edges_of(3), mesh.edges_of(3))
 
 
+# ---- Crossings that are split
+
+
+def check_split(points, segments, mesh):
+    """Segments are chains between their ends, near them; what they are made of decides the triangles."""
+    n = len(points)
+    assert np.array_equal(mesh.points[:n], points)
+    assert np.array_equal(mesh.points[n:], mesh.added_points)
+    size = np.abs(points).max()
+    for s, (a, b) in enumerate(segments):
+        edges = mesh.edges_of(s)
+        ends, counts = np.unique(edges, return_counts=True)
+        ends_of_chain = {tuple(mesh.points[i]) for i in ends[counts == 1]}
+        assert ends_of_chain == ({tuple(points[a]), tuple(points[b])} if len(edges) else set())
+        # No point is farther from the segment than the bound of the definition, by a wide margin.
+        along = points[b] - points[a]
+        length = np.hypot(*along)
+        away = mesh.points[ends] - points[a]
+        assert (
+            np.abs(along[0] * away[:, 1] - along[1] * away[:, 0]) <= 2**-46 * size * length
+        ).all()
+    edges = mesh.points[mesh.constraint_edges]
+    assert not any(cross(*one, *other) for k, one in enumerate(edges) for other in edges[:k])
+    again = flaunay.triangulate(mesh.points, mesh.constraint_edges)
+    assert as_set(again.triangles) == as_set(mesh.triangles)
+    assert (mesh.triangles.min(axis=1) == mesh.triangles[:, 0]).all()
+    assert (areas(mesh.points, mesh.triangles) > 0).all()
+    assert len(mesh.representatives) == len(mesh.points)
+
+
+def test_a_crossing_becomes_a_point():
+    mesh = flaunay.triangulate(SQUARE, [[0, 2], [3, 1]], crossings="split", labels=True)
+    assert mesh.added_points.tolist() == [[0.5, 0.5]] and len(mesh.triangles) == 4
+    assert mesh.piece_offsets.tolist() == [0, 2, 4] and len(mesh.piece_edges) == 4
+    assert [mesh.edges_of(s).tolist() for s in range(2)] == [[[0, 4], [4, 2]], [[3, 4], [4, 1]]]
+    assert sorted(mesh.edge_segments.tolist()) == [0, 0, 1, 1]
+    assert len(np.unique(mesh.regions)) == 4 and (mesh.depths == 0).all()
+    check_split(SQUARE, [[0, 2], [3, 1]], mesh)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_segments_that_cross(seed):
+    random = np.random.default_rng(seed)
+    points = random.integers(0, 9, (25, 2)).astype(float) if seed % 2 else random.random((30, 2))
+    segments = np.array([random.choice(len(points), 2, replace=False) for _ in range(15)])
+    mesh = flaunay.triangulate(points, segments, crossings="split")
+    assert len(mesh.added_points) > 5
+    check_split(points, segments, mesh)
+
+
+def test_crossings_of_several_sets():
+    points = np.concatenate([SQUARE, 3 * SQUARE + 7, SQUARE])
+    segments = [[0, 2], [4, 6], [1, 3], [5, 7], [8, 9]]
+    mesh = flaunay.triangulate(points, segments, offsets=[0, 4, 8, 12], crossings="split")
+    assert mesh.added_points.tolist() == [[0.5, 0.5], [8.5, 8.5]]
+    assert mesh.added_offsets.tolist() == [0, 1, 2, 2]
+    assert mesh.triangle_offsets.tolist() == [0, 4, 8, 10]
+    assert (mesh.triangles[:4] == 12).any(axis=1).all()
+    assert (mesh.triangles[4:8] == 13).any(axis=1).all()
+    assert (mesh.triangles.min(axis=1) == mesh.triangles[:, 0]).all()
+    assert (areas(mesh.points, mesh.triangles) > 0).all()
+
+
 # ---- What is kept
 
 

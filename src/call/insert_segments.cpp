@@ -41,9 +41,8 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
   const host::Runtime::BeforeCompiling announce(engine.runtime,
                                                 [&] { phases.interrupt("compiling kernels"); });
   engine.begin_call(options.profile);
-  Triangulation used = delaunay;
-  constrained::Result result = constrained::constrain(engine.runtime, coordinates, offsets, std::move(used),
-                                                      segments, options.halfedges);
+  constrained::Result result =
+      constrained::constrain(engine.runtime, coordinates, offsets, delaunay, segments, options.halfedges);
   Statistics step;
   engine.write_accounts(step);
   add(step, delaunay.statistics);

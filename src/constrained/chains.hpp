@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include "host/runtime.hpp"
 
@@ -13,7 +14,9 @@ using host::Buffer;
 /// vertices [offsets[c], offsets[c + 1]) of `chain`, at least two.
 struct DeviceChains {
   std::size_t count = 0;
-  std::size_t vertices = 0;     ///< offsets[count]
+  std::size_t vertices = 0;  ///< no fewer than offsets[count]
+  /// No chain has more vertices. A small number spares work.
+  std::size_t longest = std::numeric_limits<std::size_t>::max();
   double circle_bound = 0;      ///< of in-circle tests, see shared/bounds.h
   Buffer<cl_double2> points{};  ///< scaled
   Buffer<cl_int> offsets{};     ///< count + 1
@@ -21,9 +24,10 @@ struct DeviceChains {
 };
 
 /// Writes the triangles of chain c, which are three positions in the chain each, to the rows of `triangles`
-/// from offsets[c] - 2 * c on. They are what PolygonTriangulator returns, in its
-/// order. So the child of row r = (i, j, k) at the chord (i, j) is row r + 1, if j - i > 1, and the child at
-/// (j, k) is row r + j - i, if k - j > 1. Chains may be followed by empty ones, which are only counted.
+/// from offsets[c] - 2 * c on. They are what PolygonTriangulator returns, in its order. So the child of row
+/// r = (i, j, k) at the chord (i, j) is row r + 1, if j - i > 1, and the child at (j, k) is row r + j - i, if
+/// k - j > 1. Chains may be followed by empty ones, which are only counted. Temporary memory: 56 bytes per
+/// vertex, and 87 more per vertex of a long chain. Waits only if chains may be long for a work-item.
 void triangulate_chains(host::Runtime& runtime, const DeviceChains& chains, const Buffer<cl_int>& triangles);
 
 }  // namespace flaunay::constrained

@@ -361,13 +361,13 @@ class Insertion {
     runtime_.map(waiting.count, kernels::join_cavities{.mark = waiting.mark,
                                                        .list = waiting.list,
                                                        .offsets = waiting.offsets,
-                                                       .outcomes = waiting.outcomes,
                                                        .lefts = waiting.lefts,
                                                        .walks = walks.walks,
                                                        .claims = claims_,
                                                        .marks = marks_,
                                                        .new_corners = new_corners_,
                                                        .entries = entries,
+                                                       .outcomes = waiting.outcomes,
                                                        .neighbors = result_.neighbors,
                                                        .places = places_});
     if (winners.count > 0) {
@@ -626,7 +626,7 @@ Buffer<T> in_place(host::Runtime& runtime, std::vector<T>& values) {
 }  // namespace
 
 Result constrain(host::Runtime& runtime, const double* coordinates, const std::vector<std::size_t>& offsets,
-                 Triangulation delaunay, const std::vector<std::int32_t>& segments, bool with_halfedges) {
+                 Triangulation& delaunay, const std::vector<std::int32_t>& segments, bool with_halfedges) {
   geometry::check_offsets(offsets);
   geometry::check_coordinates(coordinates, offsets.back());
   if (delaunay.neighbors.size() != delaunay.triangles.size()) {

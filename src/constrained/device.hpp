@@ -32,11 +32,11 @@ using ProvideEdges = std::function<Buffer<cl_int>(std::size_t edges)>;
 void constrain(host::Runtime& runtime, const points::DeviceMesh& delaunay, const Buffer<cl_int>& segments,
                std::size_t segment_count, const ConstrainedBuffers& result, const ProvideEdges& provide);
 
-/// The same in host memory; see constrain in constrained.hpp. The triangulation's triangles and neighbours
-/// become those of the result: move it here if it is not needed any more. with_halfedges: whether
+/// The same in host memory; see constrain in constrained.hpp. Takes triangles and neighbors out of the
+/// triangulation, which become those of the result; the rest of it stays. with_halfedges: whether
 /// Result::halfedges is wanted.
 Result constrain(host::Runtime& runtime, const double* coordinates, const std::vector<std::size_t>& offsets,
-                 Triangulation delaunay, const std::vector<std::int32_t>& segments,
+                 Triangulation& delaunay, const std::vector<std::int32_t>& segments,
                  bool with_halfedges = false);
 
 }  // namespace flaunay::constrained

@@ -1,27 +1,16 @@
 #include "constrained/lines.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
 namespace {
 
-using kernel::two_sum;
-
 // 1 if the direction of q is counter-clockwise of that of p, -1 if it is clockwise, 0 if they are parallel.
 // All directions are those of pieces, in half a plane.
 int compare_slopes(const Point* points, Piece p, Piece q) {
-  const Point a = points[p.from], b = points[p.to], c = points[q.from], d = points[q.to];
-  const double left = (b.x - a.x) * (d.y - c.y), right = (b.y - a.y) * (d.x - c.x);
-  const double error = ORIENT_BOUND * (std::fabs(left) + std::fabs(right));
-  if (std::fabs(left - right) > error) return left > right ? 1 : -1;
-  const kernel::double2 px = two_sum(b.x, -a.x), py = two_sum(b.y, -a.y);
-  const kernel::double2 qx = two_sum(d.x, -c.x), qy = two_sum(d.y, -c.y);
-  if (px.y != 0 || py.y != 0 || qx.y != 0 || qy.y != 0) return kernel::cross_by_expansions(px, py, qx, qy);
-  const kernel::double2 first = kernel::two_product(px.x, qy.x), second = kernel::two_product(py.x, qx.x);
-  return first.x != second.x ? kernel::sign_of(first.x - second.x) : kernel::sign_of(first.y - second.y);
+  return kernel::cross_sign(points[p.from], points[p.to], points[q.from], points[q.to]);
 }
 
 // So many doubles may be between the rounded slopes of parallel pieces, and some more.

@@ -1,7 +1,6 @@
 #include "constrained/polygon.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <random>
 #include <utility>
@@ -78,14 +77,13 @@ void PolygonTriangulator::choose_order() {
   const auto size = static_cast<std::int32_t>(chain_->size()), last = size - 1;
   next_.resize(chain_->size());
   previous_.resize(chain_->size());
-  std::vector<double> distance(chain_->size());
-  const Point origin = point(0), along = point(last) - origin;
   for (std::int32_t k = 0; k < size; ++k) {
     next_[k] = k + 1;
     previous_[k] = k - 1;
-    const Point from = point(k) - origin;
-    distance[k] = std::fabs(along.x * from.y - along.y * from.x);
   }
+  const auto is_nearer = [this, last](std::int32_t v, std::int32_t other) {
+    return kernel::cross_sign(point(0), point(last), point(other), point(v)) < 0;
+  };
   order_.resize(chain_->size() - 2);
   std::iota(order_.begin(), order_.end(), 1);
   std::minstd_rand random;
@@ -94,7 +92,7 @@ void PolygonTriangulator::choose_order() {
     do {
       std::swap(order_[i], order_[random() % (i + 1)]);
       v = order_[i];
-    } while (distance[v] < distance[previous_[v]] && distance[v] < distance[next_[v]]);
+    } while (is_nearer(v, previous_[v]) && is_nearer(v, next_[v]));
     next_[previous_[v]] = next_[v];
     previous_[next_[v]] = previous_[v];
   }

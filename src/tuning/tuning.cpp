@@ -242,13 +242,24 @@ constexpr Row kTable[] = {
      {24},
      {128},
      {5},
-     "From here on insertion is faster. On a GPU gift-wrapping's loads do not wait for each other."},
+     "With more, insertion takes less time than gift-wrapping. A GPU's rounds take hundreds of launches, as "
+     "long as a "
+     "thousand in-circle tests after each other."},
     {"chain_alone_most",
      &Tuning::chain_alone_most,
      {kLargestValue},
-     {kLargestValue},
-     {kLargestValue},
-     "A core does alone what would take many work-items of a GPU rounds."},
+     {128},
+     {9},
+     "A core does alone what takes many work-items of a GPU rounds; one of its work-items would take "
+     "seconds."},
+    {"chain_walk_most",
+     &Tuning::chain_walk_most,
+     {1024},
+     {1024},
+     {8},
+     "To begin again takes about as long as a walk of so many steps on a GPU; one vertex in hundreds has as "
+     "many edges "
+     "at most."},
     {"host_points",
      &Tuning::host_points,
      {6000},

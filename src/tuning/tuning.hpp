@@ -61,6 +61,8 @@ struct Tuning : host::Sizes {
   /// work-item each inserts the vertices of chains of at most chain_alone_most.
   std::size_t chain_wrapped_most = 2;
   std::size_t chain_alone_most = 2;
+  /// Of longer chains, if a vertex takes away more triangles than this, it is inserted earlier instead.
+  std::size_t chain_walk_most = 1;
 
   /// Sets of at most a block's points each, and of at most this many together, are triangulated on the
   /// calling thread if no device is named; 0: none.

@@ -144,7 +144,7 @@ Case walks(const Coordinates& coordinates, std::size_t segments, std::size_t kep
   return input;
 }
 
-/// The whole of a chain whose first and last vertices are given before and behind those between.
+/// The chain of all points.
 Chain in_order(std::size_t vertices) {
   Chain chain(vertices);
   std::iota(chain.begin(), chain.end(), 0);
@@ -165,7 +165,7 @@ Coordinates random_heights(std::size_t vertices, std::uint64_t seed) {
 }
 
 /// On a parabola that opens downwards, so that the chain is convex.
-Coordinates convex_arc(std::size_t vertices, std::uint64_t) {
+Coordinates convex_arc(std::size_t vertices) {
   Coordinates points;
   const auto width = static_cast<double>(vertices - 1);
   for (std::size_t k = 0; k < vertices; ++k) {
@@ -175,38 +175,42 @@ Coordinates convex_arc(std::size_t vertices, std::uint64_t) {
   return points;
 }
 
-/// Around one point in the middle, or at the base's end, all at about the same distance.
-Coordinates fan(std::size_t vertices, bool at_end, std::uint64_t seed) {
+enum class Hub { base, end, arc };
+
+/// An arc whose vertices all have an edge to one of them, the hub: one near the middle of the base, at its
+/// end, or on the arc, a little nearer to the centre than the others.
+Coordinates fan(std::size_t vertices, Hub hub, std::uint64_t seed) {
   FixtureRandom random(seed);
   Coordinates points;
-  const auto count = static_cast<double>(vertices);
+  const auto last = static_cast<double>(vertices - 1);
   for (std::size_t k = 0; k < vertices; ++k) {
-    const double angle = M_PI * (at_end ? 0.5 : 1) * (1 - static_cast<double>(k) / (count - 1));
-    const double radius = 1 + 1e-3 * random.unit() / count;
+    const double angle = M_PI * (hub == Hub::end ? 0.5 : 1) * (1 - static_cast<double>(k) / last);
+    const double radius =
+        1 + 1e-9 * random.unit() / last - (hub == Hub::arc && k == vertices / 3 ? 1e-3 / last : 0);
     points.insert(points.end(), {radius * std::cos(angle), radius * std::sin(angle)});
   }
   points[1] = points[points.size() - 1] = 0;
-  if (at_end) {
-    points[0] = points[1] = 0;
-  } else {
+  if (hub == Hub::end) points[0] = 0;
+  if (hub == Hub::base) {
     points[vertices / 2 * 2] = 0;
-    points[vertices / 2 * 2 + 1] = 0.5 / count;
+    points[vertices / 2 * 2 + 1] = 0.5 / last;
   }
   return points;
 }
 
-/// The upper half of the points of a circle, in the opposite order of x.
+/// Integers exactly on the upper half of a circle, or on several, by x.
 Coordinates cocircular(std::size_t vertices, std::uint64_t seed) {
-  Coordinates all = io::generate("integer-circle", 2 * vertices, seed).coordinates;
+  const Coordinates all = io::generate("integer-circle", 2 * vertices, seed).coordinates;
   std::vector<std::pair<double, double>> upper;
+  const double width = *std::max_element(all.begin(), all.end());
   for (std::size_t i = 0; i < all.size(); i += 2) {
-    if (all[i + 1] >= 0) upper.emplace_back(all[i], all[i + 1]);
+    if (all[i + 1] > 0 && std::fabs(all[i]) < width) upper.emplace_back(all[i], all[i + 1]);
   }
   std::sort(upper.begin(), upper.end());
   upper.erase(std::unique(upper.begin(), upper.end()), upper.end());
-  // On the circle alone, if there are several.
-  Coordinates points;
+  Coordinates points{-width, 0};
   for (const auto& [x, y] : upper) points.insert(points.end(), {x, y});
+  points.insert(points.end(), {width, 0});
   return points;
 }
 
@@ -217,11 +221,9 @@ Case one_chain(const Coordinates& points) {
 }
 
 std::vector<std::pair<std::string, Coordinates>> hard_chains(std::size_t vertices) {
-  return {{"random heights", random_heights(vertices, 3)},
-          {"convex arc", convex_arc(vertices, 4)},
-          {"fan in the middle", fan(vertices, false, 5)},
-          {"fan at an end", fan(vertices, true, 6)},
-          {"cocircular", cocircular(vertices, 7)}};
+  return {{"random heights", random_heights(vertices, 3)},    {"convex arc", convex_arc(vertices)},
+          {"fan from the base", fan(vertices, Hub::base, 5)}, {"fan from an end", fan(vertices, Hub::end, 6)},
+          {"fan from the arc", fan(vertices, Hub::arc, 7)},   {"cocircular", cocircular(vertices, 8)}};
 }
 
 TEST(SmallChains, NoneAndTiny) {
@@ -247,6 +249,52 @@ TEST(Chains, HardOnes) {
       expect_right(one_chain(points), tunings());
     }
   }
+}
+
+// Chains of all sizes beside each other, so that those for one work-item and those for many alternate.
+TEST(Chains, ManyOfMixedSizes) {
+  FixtureRandom random(9);
+  Case input(random_heights(40000, 10));
+  for (std::size_t first = 0; first < 39000;) {
+    const auto most = std::int64_t{1} << random.integer(1, 10);
+    const auto size = static_cast<std::size_t>(random.integer(2, most));
+    input.chains.push_back(in_order(size));
+    for (std::int32_t& v : input.chains.back()) v += static_cast<std::int32_t>(first);
+    input.points[first].y = input.points[first + size - 1].y = 0;
+    first += size;
+  }
+  expect_right(input, tunings());
+}
+
+// What follows the last chain is not looked at, and chains without vertices are only counted.
+TEST(SmallChains, RoomForMore) {
+  Runtime& runtime = Runtimes::get("own");
+  host::Arena::Scope scope(runtime.arena());
+  DeviceChains chains;
+  chains.count = 4;
+  chains.vertices = 9;
+  chains.points = upload(runtime, std::vector<cl_double2>{{{0, 0}}, {{4, 0}}, {{2, 1}}});
+  chains.offsets = upload(runtime, std::vector<cl_int>{0, 3, 6, 6, 6});
+  chains.chain = upload(runtime, std::vector<cl_int>{0, 2, 1, 0, 2, 1, -1, -1, -1});
+  const auto triangles = guarded<cl_int>(runtime, 6);
+  triangulate_chains(runtime, chains, triangles);
+  EXPECT_EQ(download(runtime, triangles, 6), (std::vector<cl_int>{0, 1, 2, 0, 1, 2}));
+}
+
+// A vertex with all the others for neighbours is not inserted where that would take a walk along all of them.
+TEST(Chains, HubsAreInsertedEarly) {
+  if (testing::tests_native()) GTEST_SKIP() << "a work-item triangulates a chain alone";
+  Runtime& runtime = Runtimes::get("gpu,chain_walk_most=200");
+  runtime.record_launches(true);
+  runtime.reset_accounts();
+  expect_right(one_chain(fan(3000, Hub::arc, 11)), {"gpu,chain_walk_most=200"});
+  std::size_t passes = 0;
+  for (const host::Launch& launch : runtime.recorded_launches()) {
+    EXPECT_LE(launch.longest_chain, 202u) << launch.kernel;
+    if (launch.kernel == "start_lists") ++passes;
+  }
+  runtime.stop_recording();
+  EXPECT_EQ(passes, 2u);
 }
 
 TEST(SmallChains, CavitiesOfSegments) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest-spi.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -60,46 +61,103 @@ Ids minus(const Ids& ids, std::size_t begin, std::size_t end, std::size_t base) 
   return result;
 }
 
-/// What the verifier says about each set; result: null if there is none.
-std::string verify_sets(const SegmentBatch& batch, const Flat& all, const Triangulation& delaunay,
-                        const constrained::Result& result) {
-  std::size_t edge = 0;
+/// Which domain is asked for.
+struct Domain {
+  bool is_asked_for = false;
+  Outside outside = Outside::keep;
+  FillRule fill_rule = FillRule::nesting;
+  /// Each set has a hole at the place between two of its points with these numbers, if it has so many.
+  std::int32_t points_of_hole[2] = {-1, -1};
+
+  std::vector<double> hole_of(const SegmentSet& set) const {
+    const auto n = static_cast<std::int32_t>(set.points.size() / 2);
+    const std::int32_t a = points_of_hole[0], b = points_of_hole[1];
+    if (a < 0 || a >= n || b >= n) return {};
+    return {set.points[2 * a] / 2 + set.points[2 * b] / 2,
+            set.points[2 * a + 1] / 2 + set.points[2 * b + 1] / 2};
+  }
+};
+
+/// The arrays of a result. Labels are null if there are none.
+struct Arrays {
+  const std::vector<std::size_t>& triangle_offsets;
+  const Ids &triangles, &neighbors, &edges, &segment_edges;
+  const Ids *edge_segments = nullptr, *depths = nullptr, *regions = nullptr;
+};
+
+Arrays arrays_of(const Triangulation& delaunay, const constrained::Result& result) {
+  return {delaunay.triangle_offsets, result.triangles, result.neighbors, result.constraint_edges,
+          result.segment_edges};
+}
+Arrays arrays_of(const ConstrainedTriangulation& result) {
+  return {result.triangle_offsets, result.triangles,      result.neighbors, result.constraint_edges,
+          result.piece_edges,      &result.edge_segments, &result.depths,   &result.regions};
+}
+
+/// What the verifier says about each set.
+std::string verify_sets(const SegmentBatch& batch, const Flat& all, const Arrays& arrays,
+                        const Domain& domain) {
+  std::size_t edge = 0, region = 0;
   for (std::size_t s = 0; s < batch.size(); ++s) {
-    const std::size_t begin = delaunay.triangle_offsets[s], end = delaunay.triangle_offsets[s + 1];
-    const Ids triangles = minus(result.triangles, 3 * begin, 3 * end, all.offsets[s]);
-    const Ids neighbors = minus(result.neighbors, 3 * begin, 3 * end, begin);
+    const std::size_t begin = arrays.triangle_offsets[s], end = arrays.triangle_offsets[s + 1];
+    const Ids triangles = minus(arrays.triangles, 3 * begin, 3 * end, all.offsets[s]);
+    const Ids neighbors = minus(arrays.neighbors, 3 * begin, 3 * end, begin);
     std::size_t last_edge = edge;
-    while (last_edge < result.constraint_edges.size() / 2 &&
-           static_cast<std::size_t>(result.constraint_edges[2 * last_edge]) < all.offsets[s + 1]) {
+    while (last_edge < arrays.edges.size() / 2 &&
+           static_cast<std::size_t>(arrays.edges[2 * last_edge]) < all.offsets[s + 1]) {
       ++last_edge;
     }
-    const Ids edges = minus(result.constraint_edges, 2 * edge, 2 * last_edge, all.offsets[s]);
-    Ids ranges = minus(result.segment_edges, 2 * all.segment_offsets[s], 2 * all.segment_offsets[s + 1], 0);
+    const Ids edges = minus(arrays.edges, 2 * edge, 2 * last_edge, all.offsets[s]);
+    Ids ranges = minus(arrays.segment_edges, 2 * all.segment_offsets[s], 2 * all.segment_offsets[s + 1], 0);
     for (std::size_t i = 0; i < ranges.size(); i += 2) {
       if (ranges[i] == ranges[i + 1]) continue;
       for (std::size_t k = i; k < i + 2; ++k) ranges[k] -= static_cast<std::int32_t>(edge);
     }
+    const std::vector<double> hole = domain.hole_of(batch[s]);
     VerifyConstraints constraints;
     constraints.segments = &batch[s].segments;
+    constraints.outside = domain.outside;
+    constraints.fill_rule = domain.fill_rule;
+    if (!hole.empty()) constraints.holes = &hole;
     constraints.edges = &edges;
     constraints.segment_edges = &ranges;
+    Ids edge_segments, depths, regions;
+    if (arrays.depths != nullptr) {
+      edge_segments = minus(*arrays.edge_segments, edge, last_edge, all.segment_offsets[s]);
+      depths = minus(*arrays.depths, begin, end, 0);
+      regions = minus(*arrays.regions, begin, end, region);
+      constraints.edge_segments = &edge_segments;
+      constraints.depths = &depths;
+      constraints.regions = &regions;
+      region = regions.empty() ? region
+                               : static_cast<std::size_t>(*std::max_element(
+                                     arrays.regions->begin() + static_cast<std::ptrdiff_t>(begin),
+                                     arrays.regions->begin() + static_cast<std::ptrdiff_t>(end))) +
+                                     1;
+    }
     const VerifyReport report = verify_constrained(batch[s].points.data(), batch[s].points.size() / 2,
                                                    triangles, &neighbors, constraints);
     if (!report.ok) return fmt::format("set {}: {}", s, report.problem);
     edge = last_edge;
   }
-  return edge == result.constraint_edges.size() / 2 ? ""
-                                                    : "constraint edges are not in the order of the sets";
+  return edge == arrays.edges.size() / 2 ? "" : "constraint edges are not in the order of the sets";
 }
 
-/// Of triangulations that are none: whether the verifier says that segments cross.
-bool verifier_finds_crossing(const SegmentBatch& batch) {
+/// Whether the verifier says what is wrong with the input of a set, before it looks for triangles.
+bool verifier_refuses(const SegmentBatch& batch, const Domain& domain) {
   for (const SegmentSet& set : batch) {
+    const std::vector<double> hole = domain.hole_of(set);
     VerifyConstraints constraints;
     constraints.segments = &set.segments;
+    constraints.outside =
+        domain.is_asked_for && domain.outside == Outside::keep ? Outside::hull : domain.outside;
+    constraints.fill_rule = domain.fill_rule;
+    if (!hole.empty()) constraints.holes = &hole;
     const VerifyReport report =
         verify_constrained(set.points.data(), set.points.size() / 2, {}, nullptr, constraints);
-    if (report.problem.find(" cross at a place that is no point") != std::string::npos) return true;
+    for (const char* const problem : {" cross at a place that is no point", "hole 0", " no closed curves"}) {
+      if (report.problem.find(problem) != std::string::npos) return true;
+    }
   }
   return false;
 }
@@ -171,7 +229,14 @@ class Devices {
     // Kernels are compiled now, since that takes longer than a case may.
     const testing::SegmentInput any = testing::nasty_detail::spirals(200, 1);
     const Flat flat_any{any.points, {0, any.points.size() / 2}, any.segments, {}};
-    for (const Tuned& tuned : all_) compare(flat_any, *tuned.triangulator);
+    ConstrainedOptions options;
+    options.labels = true;
+    options.outside = Outside::hull;
+    for (const Tuned& tuned : all_) {
+      compare(flat_any, *tuned.triangulator);
+      tuned.triangulator->constrained(flat_any.points.data(), flat_any.offsets, constraints_of(flat_any),
+                                      options);
+    }
   }
 
   /// Whether the public call has the result of the twin for the same Delaunay triangulation: natively, and if
@@ -186,7 +251,50 @@ class Devices {
     return "";
   }
 
+  /// Whether the triangles and labels of a domain are right.
+  std::string check_domain(const SegmentBatch& batch, const Flat& all, const Domain& domain,
+                           bool with_opencl) {
+    std::vector<double> holes;
+    std::vector<std::size_t> hole_offsets{0};
+    for (const SegmentSet& set : batch) {
+      const std::vector<double> hole = domain.hole_of(set);
+      holes.insert(holes.end(), hole.begin(), hole.end());
+      hole_offsets.push_back(holes.size() / 2);
+    }
+    Constraints constraints = constraints_of(all);
+    constraints.holes = holes.data();
+    constraints.hole_count = holes.size() / 2;
+    constraints.hole_offsets = hole_offsets;
+    ConstrainedOptions options;
+    options.neighbors = true;
+    options.labels = true;
+    options.outside = domain.outside;
+    options.fill_rule = domain.fill_rule;
+    for (const Tuned& tuned : all_) {
+      if (tuned.is_opencl && !with_opencl) continue;
+      start_check();
+      std::string problem;
+      try {
+        const ConstrainedTriangulation result =
+            tuned.triangulator->constrained(all.points.data(), all.offsets, constraints, options);
+        problem = verify_sets(batch, all, arrays_of(result), domain);
+      } catch (const Error& error) {
+        const bool is_fine = error.kind() == ErrorKind::input && verifier_refuses(batch, domain);
+        if (!is_fine) problem = error.what();
+      }
+      if (!problem.empty()) return fmt::format("{}, domain: {}", tuned.name, problem);
+    }
+    return "";
+  }
+
  private:
+  static Constraints constraints_of(const Flat& all) {
+    Constraints constraints;
+    constraints.segments = all.segments.data();
+    constraints.segment_count = all.segments.size() / 2;
+    return constraints;
+  }
+
   struct Tuned {
     std::string name;
     bool is_opencl;
@@ -204,9 +312,7 @@ class Devices {
     options.neighbors = true;
     const Triangulation delaunay = triangulator.triangulate(all.points.data(), all.offsets, options);
     const Outcome expected = constrain(all, delaunay, all.segments);
-    Constraints constraints;
-    constraints.segments = all.segments.data();
-    constraints.segment_count = all.segments.size() / 2;
+    const Constraints constraints = constraints_of(all);
     ConstrainedOptions constrained_options;
     constrained_options.neighbors = true;
     try {
@@ -240,20 +346,22 @@ std::string problem_of(const SegmentBatch& batch, const Flat& all, const Triangu
   }
   if (!problem.empty()) return problem;
   if (!outcome.result) {
-    return verifier_finds_crossing(batch) ? "" : "the verifier finds no crossing, but: " + outcome.error;
+    return verifier_refuses(batch, {}) ? "" : "the verifier finds no crossing, but: " + outcome.error;
   }
-  problem = verify_sets(batch, all, delaunay, *outcome.result);
+  problem = verify_sets(batch, all, arrays_of(delaunay, *outcome.result), {});
   return problem.empty() ? compare_with_reversed(all, delaunay, *outcome.result) : problem;
 }
 
 class Constrained : public Fuzzer {
  public:
   bool run(testing::FixtureRandom& random) override {
-    const SegmentBatch batch = degenerate_segments(random);
+    const Domain domain = any_domain(random);
+    const bool has_curves = domain.fill_rule != FillRule::nesting || random.integer(1, 10) == 1;
+    const SegmentBatch batch = has_curves ? closed_curves(random) : degenerate_segments(random);
     const bool with_opencl = random.integer(1, 8) == 1;
-    const Verdict verdict = judge(batch, with_opencl);
+    const Verdict verdict = judge(batch, domain, with_opencl);
     if (!verdict.problem.empty()) {
-      report(batch, with_opencl);
+      report(batch, domain, with_opencl);
       return false;
     }
     refused_ += verdict.refused;
@@ -271,7 +379,19 @@ class Constrained : public Fuzzer {
   }
 
  private:
-  Verdict judge(const SegmentBatch& batch, bool with_opencl) {
+  static Domain any_domain(testing::FixtureRandom& random) {
+    Domain domain;
+    domain.is_asked_for = random.integer(0, 1) == 0;
+    if (!domain.is_asked_for) return domain;
+    domain.outside = static_cast<Outside>(random.integer(0, 2));
+    domain.fill_rule = static_cast<FillRule>(random.integer(0, 2));
+    if (random.integer(0, 2) == 0) {
+      for (std::int32_t& v : domain.points_of_hole) v = static_cast<std::int32_t>(random.integer(0, 12));
+    }
+    return domain;
+  }
+
+  Verdict judge(const SegmentBatch& batch, const Domain& domain, bool with_opencl) {
     const Flat all = flat(batch);
     Triangulation delaunay;
     try {
@@ -284,16 +404,18 @@ class Constrained : public Fuzzer {
       const Outcome outcome = constrain(all, delaunay, all.segments);
       std::string problem = problem_of(batch, all, delaunay, outcome);
       if (problem.empty()) problem = devices_.compare(all, with_opencl);
+      if (problem.empty() && domain.is_asked_for)
+        problem = devices_.check_domain(batch, all, domain, with_opencl);
       return {problem, false, !outcome.result};
     } catch (const Error& error) {
       return {error.what()};
     }
   }
 
-  void report(const SegmentBatch& batch, bool with_opencl) {
+  void report(const SegmentBatch& batch, const Domain& domain, bool with_opencl) {
     const auto problem_of = [=, this](const SegmentBatch& smaller) {
       start_check();
-      return judge(smaller, with_opencl).problem;
+      return judge(smaller, domain, with_opencl).problem;
     };
     fmt::print("{}\n{}\n{} sets; shrinking them\n", case_name(), problem_of(batch), batch.size());
     std::fflush(stdout);

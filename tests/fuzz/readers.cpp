@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "io/map.hpp"
 #include "io/mesh.hpp"
 #include "io/output.hpp"
 #include "io/points.hpp"
@@ -83,6 +84,35 @@ void read_neighbors(std::string_view bytes) {
   check_indices(io::read_neighbors(path), -1);
 }
 
+void check_map(const io::Map& map) {
+  const auto points = static_cast<std::int32_t>(map.points.size());
+  for (const double value : map.points.coordinates) require(std::isfinite(value), "coordinates are finite");
+  for (const double value : map.holes) require(std::isfinite(value), "holes are finite");
+  for (const auto& segments : {map.segments, map.lines}) {
+    require(segments.size() % 2 == 0, "segments have two ends");
+    for (const std::int32_t point : segments) require(point >= 0 && point < points, "ends are points");
+  }
+  require(map.polygon_offsets.back() == map.ring_offsets.size() - 1, "each ring is of a polygon");
+  require(map.has_others || map.ring_offsets.back() == map.points.size(), "each point is of a ring");
+}
+
+void read_map(const std::string& ending, std::string_view bytes) {
+  const std::string path = scratch(ending);
+  write(path, bytes);
+  check_map(io::read_map(path));
+}
+
+void read_segments(const std::string& ending, std::string_view bytes) {
+  constexpr std::size_t kPoints = 100;
+  const std::string path = scratch(ending);
+  write(path, bytes);
+  const std::vector<std::int32_t> segments = io::read_segments(path, kPoints);
+  require(segments.size() % 2 == 0, "segments have two ends");
+  for (const std::int32_t point : segments) {
+    require(point >= 0 && point < static_cast<std::int32_t>(kPoints), "ends are points");
+  }
+}
+
 /// The bytes are a .node and a .poly with a line of hyphens between them, of 3 points and 3 border edges.
 void read_region(std::string_view bytes) {
   constexpr std::string_view kBetween = "---\n";
@@ -108,6 +138,8 @@ void read(std::string_view bytes) {
   const std::string kind = format.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : format.substr(dot);
   if (kind == "points") return read_points(ending, bytes);
+  if (kind == "map") return read_map(ending, bytes);
+  if (kind == "segments") return read_segments(ending, bytes);
   if (kind == "triangles") return read_triangles(ending, bytes);
   if (format == "neighbors.npy") return read_neighbors(bytes);
   if (format == "region") return read_region(bytes);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "tests/constrained/domains.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/fuzz/degenerate.hpp"
@@ -143,6 +144,23 @@ SegmentBatch degenerate_segments(FixtureRandom& random) {
     }
   }
   for (SegmentSet& set : batch) change(random, set);
+  return batch;
+}
+
+SegmentBatch closed_curves(FixtureRandom& random) {
+  SegmentBatch batch;
+  for (const Coordinates& points : degenerate_batch(random)) {
+    Coordinates stretched = points;
+    const double factor = std::ldexp(1, static_cast<int>(random.integer(-4, 4)));
+    for (std::size_t i = 0; i < stretched.size(); i += 2) stretched[i] *= factor;
+    const int one_in = static_cast<int>(random.integer(1, 10));
+    batch.push_back({points, {}});
+    try {
+      const Triangulation other = testing::delaunay_of(stretched, {0, points.size() / 2});
+      batch.back().segments = testing::random_curves(other, random, one_in);
+    } catch (const Error&) {  // out of the range of magnitudes
+    }
+  }
   return batch;
 }
 

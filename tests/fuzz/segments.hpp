@@ -10,4 +10,8 @@ namespace flaunay::fuzz {
 /// ones (tests/constrained/nasty.hpp). Points of some are then moved by one unit in the last place.
 SegmentBatch degenerate_segments(testing::FixtureRandom& random);
 
+/// Like degenerate_batch, with closed curves that do not cross: around triangles of another triangulation, in
+/// both directions, some of them twice.
+SegmentBatch closed_curves(testing::FixtureRandom& random);
+
 }  // namespace flaunay::fuzz

@@ -712,8 +712,9 @@ FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* tr
                                                         flaunay_constrained** result);
 /// Frees the arrays.
 FLAUNAY_API void flaunay_constrained_destroy(flaunay_constrained* result);
-/// The triangles with their neighbours and the other arrays of a triangulation. Where triangles are left out,
-/// neighbours and halfedges are -1; the hull remains that of the points. Voronoi diagrams and locators need
+/// The triangles with their neighbours and the other arrays of a triangulation. point_count, hull and
+/// representatives include points that splitting added. Where triangles are left out, neighbours and
+/// halfedges are -1; the hull remains that of the points. Voronoi diagrams and locators need
 /// Delaunay triangulations, so they do not take this handle, and must not be given its arrays.
 FLAUNAY_API const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result);
 /// What the result has besides.
