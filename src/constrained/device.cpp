@@ -313,7 +313,7 @@ class Insertion {
                                                  .waiting = next_list,
                                                  .offsets = waiting.offsets});
       std::swap(waiting.list, next_list);
-      waiting.mark = kernel_won(round);
+      waiting.mark = mark_of(round);
       const bool any_long = status(kernel::INSERTION_LONG) != long_before;
       long_before = status(kernel::INSERTION_LONG);
       insert_winners(walks, waiting, total.s[0], any_long);
@@ -322,7 +322,7 @@ class Insertion {
     }
   }
 
-  static cl_uint kernel_won(cl_uint round) { return RANK_WON | round; }
+  static cl_uint mark_of(cl_uint round) { return RANK_WON | round; }
 
   void insert_winners(const Walks& walks, const Waiting& waiting, std::size_t entry_count, bool any_long) {
     Arena::Scope scope(arena_);
