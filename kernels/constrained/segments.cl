@@ -16,6 +16,7 @@
 
 #include "shared/codes.h"
 #include "shared/language.h"
+#include "shared/meanwhile.h"
 #include "shared/planar.h"
 #include "shared/prefetch.h"
 #include "shared/search.h"
@@ -33,6 +34,18 @@ kernel void clear_vertices(int n, int all, global uint* restrict marks, global u
   }
 }
 
+static inline int are_in_one_set(int a, int b, int sets, global const int* offsets) {
+  if (sets == 1) return 1;
+  const int s = segment_of(a, sets, offsets);
+  return b >= offsets[s] && b < offsets[s + 1];
+}
+
+// As a rule two segments end at a vertex.
+static inline void mark(int v, global volatile uint* marks) {
+  const uint bit = 1u << (v & 31);
+  if ((read_shared(&marks[v >> 5]) & bit) == 0) atomic_or(&marks[v >> 5], bit);
+}
+
 // n segments. ends: the representatives of their ends; -1 if these are equal, or if the segment is wrong.
 kernel void mark_ends(int n, int points, int sets, global const int* restrict offsets,
                       global const int* restrict segments, global const int* restrict representatives,
@@ -42,8 +55,7 @@ kernel void mark_ends(int n, int points, int sets, global const int* restrict of
   if (s < n) {
     const int a = segments[2 * s], b = segments[2 * s + 1];
     int from = -1, to = -1;
-    if (a < 0 || b < 0 || a >= points || b >= points ||
-        (sets > 1 && segment_of(a, sets, offsets) != segment_of(b, sets, offsets))) {
+    if (a < 0 || b < 0 || a >= points || b >= points || !are_in_one_set(a, b, sets, offsets)) {
       atomic_or(&status[INSERTION_WRONG], 1u);
     } else {
       from = representatives[a];
@@ -51,8 +63,8 @@ kernel void mark_ends(int n, int points, int sets, global const int* restrict of
       if (from == to) {
         from = to = -1;
       } else {
-        atomic_or(&marks[from >> 5], 1u << (from & 31));
-        atomic_or(&marks[to >> 5], 1u << (to & 31));
+        mark(from, marks);
+        mark(to, marks);
       }
     }
     ends[2 * s] = from;

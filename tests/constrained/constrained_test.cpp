@@ -151,27 +151,8 @@ TEST(SmallConstrained, ResultDoesNotDependOnTheOrderOfSegments) {
 
 // Several sets, with and without triangles, in one call: as each on its own.
 TEST(SmallConstrained, SeveralSets) {
-  FixtureRandom random(5);
-  Coordinates points;
-  std::vector<std::size_t> offsets = {0};
-  Segments segments;
-  for (int s = 0; s < 30; ++s) {
-    Coordinates set = random_integer_points(static_cast<std::size_t>(random.integer(0, 12)), 5, 100 + s);
-    if (s % 5 == 0) {
-      for (std::size_t i = 1; i < set.size(); i += 2) set[i] = 2 * set[i - 1];
-    }
-    // Their magnitudes differ by more than one scaling allows.
-    for (double& c : set) c *= s % 3 == 0 ? 0x1p-400 : 0x1p400;
-    const auto first = static_cast<std::int32_t>(offsets.back());
-    points.insert(points.end(), set.begin(), set.end());
-    offsets.push_back(points.size() / 2);
-    const Segments own = edges_of_stretched(set, 4, 2, 100 + static_cast<std::uint64_t>(s));
-    for (const std::int32_t v : own) segments.push_back(first + v);
-    if (s % 5 == 0) {
-      for (const std::int32_t v : random_segments(random, set.size() / 2, 4)) segments.push_back(first + v);
-    }
-  }
-  EXPECT_EQ(expect_right(Sets(points, offsets), segments), 0);
+  const SetsWithSegments all = several_sets(30, true);
+  EXPECT_EQ(expect_right(Sets(all.points, all.offsets), all.segments), 0);
 }
 
 // Vertices outside of the row of a segment's cavity more than once, and edges that end inside of it.

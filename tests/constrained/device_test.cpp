@@ -143,29 +143,11 @@ TEST(SmallInsertion, SegmentsThroughPoints) {
 
 // Sets with and without triangles, and of very different magnitudes.
 TEST(SmallInsertion, SeveralSets) {
-  FixtureRandom random(5);
-  Coordinates points;
-  std::vector<std::size_t> offsets = {0};
-  Segments segments;
-  for (int s = 0; s < 20; ++s) {
-    Coordinates set = random_integer_points(static_cast<std::size_t>(random.integer(0, 12)), 5, 100 + s);
-    if (s % 5 == 0) {
-      for (std::size_t i = 1; i < set.size(); i += 2) set[i] = 2 * set[i - 1];
-    }
-    for (double& c : set) c *= s % 3 == 0 ? 0x1p-400 : 0x1p400;
-    const auto first = static_cast<std::int32_t>(offsets.back());
-    points.insert(points.end(), set.begin(), set.end());
-    offsets.push_back(points.size() / 2);
-    for (const std::int32_t v : edges_of_stretched(set, 4, 2, 100 + static_cast<std::uint64_t>(s))) {
-      segments.push_back(first + v);
-    }
-    if (s % 5 == 0) {
-      for (const std::int32_t v : random_segments(random, set.size() / 2, 4)) segments.push_back(first + v);
-    }
+  // Without segments in sets on lines, no segment has several edges.
+  for (const bool with_lines : {true, false}) {
+    const SetsWithSegments all = several_sets(20, with_lines);
+    EXPECT_FALSE(expect_as_twin(all.points, all.offsets, all.segments));
   }
-  EXPECT_FALSE(expect_as_twin(points, offsets, segments));
-  // And without those of sets on lines, so that no segment has several edges.
-  EXPECT_FALSE(expect_as_twin(points, offsets, {}));
 }
 
 TEST(SmallInsertion, AllMagnitudes) {
