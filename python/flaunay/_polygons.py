@@ -75,8 +75,8 @@ class PolygonTriangulation(ConstrainedTriangulation):
         """
         of, count = self.polygon_of, len(self.polygon_offsets) - 1
         inside = of >= 0
-        areas: Doubles = np.bincount(of[inside], self.areas[inside], minlength=count)
-        return areas
+        sums = np.bincount(of[inside], self.areas[inside], minlength=count)
+        return np.asarray(sums, dtype=np.float64)
 
     def triangles_of(self, polygon: int) -> Indices:
         """The triangles of a polygon, int32, shape (m, 3).
