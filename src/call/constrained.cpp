@@ -64,6 +64,21 @@ std::vector<double> call::with_added(const double* coordinates, std::size_t n,
   return all;
 }
 
+void call::take(constrained::Result&& made, ConstrainedTriangulation& result) {
+  const std::size_t segments = made.segment_edges.size() / 2, sets = result.triangle_offsets.size() - 1;
+  result.triangles = std::move(made.triangles);
+  result.neighbors = std::move(made.neighbors);
+  result.halfedges = std::move(made.halfedges);
+  result.constrained = std::move(made.constrained);
+  result.constraint_edges = std::move(made.constraint_edges);
+  result.piece_edges = std::move(made.segment_edges);
+  result.piece_offsets.resize(segments + 1);
+  std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
+  result.edge_segments =
+      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
+  result.added_offsets.assign(sets + 1, 0);
+}
+
 ConstrainedTriangulation call::constrain(Implementation& self, const double* coordinates,
                                          const std::vector<std::size_t>& offsets,
                                          const Constraints& constraints, const ConstrainedOptions& options) {
@@ -81,17 +96,7 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
 
   const double begin = host::now();
   constrained::Result edges = call::insert_segments(self, coordinates, offsets, result, segments, options);
-  result.triangles = std::move(edges.triangles);
-  result.neighbors = std::move(edges.neighbors);
-  result.constrained = std::move(edges.constrained);
-  result.constraint_edges = std::move(edges.constraint_edges);
-  result.piece_edges = std::move(edges.segment_edges);
-  result.piece_offsets.resize(segments.size() / 2 + 1);
-  std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
-  result.edge_segments =
-      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
-  result.added_offsets.assign(offsets.size(), 0);
-  result.halfedges = std::move(edges.halfedges);
+  take(std::move(edges), result);
   end_phase("constrain", begin, result.statistics);
   return result;
 }

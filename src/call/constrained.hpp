@@ -5,9 +5,14 @@
 #include <vector>
 
 #include "call/implementation.hpp"
+#include "constrained/constrained.hpp"
 #include "flaunay/constrained.hpp"
 
 namespace flaunay::call {
+
+/// Moves what inserting segments has made to the result, which has the Delaunay triangulation. Each segment
+/// is one piece, and no points were added.
+void take(constrained::Result&& made, ConstrainedTriangulation& result);
 
 /// Triangulates sets with segments. All triangles are kept, without labels; there are neighbours, but no
 /// half-edges.

@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <numeric>
 #include <string>
 #include <vector>
 
+#include "call/constrained.hpp"
 #include "constrained/constrained.hpp"
 #include "constrained/domain_on_host.hpp"
 #include "tests/constrained/check.hpp"
@@ -25,15 +25,7 @@ inline ConstrainedTriangulation constrained_of(const Coordinates& points,
                                                const Segments& segments) {
   ConstrainedTriangulation result;
   static_cast<Triangulation&>(result) = delaunay_of(points, offsets);
-  constrained::Result edges = constrained::constrain(points.data(), offsets, result, segments);
-  result.triangles = std::move(edges.triangles);
-  result.neighbors = std::move(edges.neighbors);
-  result.constrained = std::move(edges.constrained);
-  result.constraint_edges = std::move(edges.constraint_edges);
-  result.piece_edges = std::move(edges.segment_edges);
-  result.piece_offsets.resize(segments.size() / 2 + 1);
-  std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
-  result.added_offsets.assign(offsets.size(), 0);
+  call::take(constrained::constrain(points.data(), offsets, result, segments), result);
   return result;
 }
 
