@@ -15,19 +15,16 @@ Delaunay. What is not installed is left out:
 from __future__ import annotations
 
 import argparse
-import datetime
 import importlib
 import importlib.metadata
 import json
-import os
 import pathlib
 import statistics
-import sys
 import time
 from typing import Any, Callable
 
 import numpy as np
-from python import commit, milliseconds, processor
+from python import milliseconds, record
 
 import flaunay
 
@@ -172,20 +169,6 @@ def table(rows: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
-def record(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    return {
-        "what": "triangles of polygons with two holes each, seconds per call",
-        "device": ARGUMENTS.device,
-        "host": f"{processor()}, {os.cpu_count()} hardware threads",
-        "load": list(os.getloadavg()),
-        "versions": versions(),
-        "commit": commit(),
-        "command": " ".join(["bench/polygons.py", *sys.argv[1:]]),
-        "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-        "results": rows,
-    }
-
-
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -203,4 +186,6 @@ if __name__ == "__main__":
     ROWS = measured()
     print(table(ROWS))
     if ARGUMENTS.json:
-        ARGUMENTS.json.write_text(json.dumps(record(ROWS), indent=1) + "\n")
+        WHAT = "triangles of polygons with two holes each, seconds per call"
+        RECORD = record(WHAT, "polygons.py", ARGUMENTS.device, versions(), ROWS)
+        ARGUMENTS.json.write_text(json.dumps(RECORD, indent=1) + "\n")

@@ -172,15 +172,18 @@ def processor() -> str:
         return platform.processor()
 
 
-def record(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def record(
+    what: str, script: str, device: str, found: dict[str, str], rows: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """A record of a script in this folder."""
     return {
-        "what": "triangles and neighbours of points uniform in a square, seconds per call",
-        "device": ARGUMENTS.device,
+        "what": what,
+        "device": device,
         "host": f"{processor()}, {os.cpu_count()} hardware threads",
         "load": list(os.getloadavg()),
-        "versions": versions(),
+        "versions": found,
         "commit": commit(),
-        "command": " ".join(["bench/python.py", *sys.argv[1:]]),
+        "command": " ".join([f"bench/{script}", *sys.argv[1:]]),
         "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
         "results": rows,
     }
@@ -203,4 +206,6 @@ if __name__ == "__main__":
     ROWS = all_measured()
     print(table(ROWS))
     if ARGUMENTS.json:
-        ARGUMENTS.json.write_text(json.dumps(record(ROWS), indent=1) + "\n")
+        WHAT = "triangles and neighbours of points uniform in a square, seconds per call"
+        RECORD = record(WHAT, "python.py", ARGUMENTS.device, versions(), ROWS)
+        ARGUMENTS.json.write_text(json.dumps(RECORD, indent=1) + "\n")

@@ -10,7 +10,7 @@
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"
-#include "launchers/points/inspect.cl.hpp"
+#include "points/download.hpp"
 #include "points/inspect.hpp"
 #include "shared/codes.h"
 #include "shared/limits.h"
@@ -20,21 +20,11 @@ namespace {
 
 using host::Arena;
 using points::DeviceMesh;
+using points::download;
 
 // Segments with more pieces in all, per point and segment, are left to the twin.
 constexpr std::size_t kPieces = 16;
 constexpr std::size_t kMostPieces = std::size_t{1} << 30;
-
-template <typename T>
-std::vector<T> download(host::Runtime& runtime, const Buffer<T>& from, std::size_t count) {
-  std::vector<T> values(count);
-  // Copied first, because the caller's buffer may not permit the host to read it.
-  const Buffer<T> copy(host::allocate_memory(runtime.memory(), std::max<std::size_t>(1, count) * sizeof(T)),
-                       count);
-  runtime.copy(from, 0, copy, 0, count);
-  runtime.read(copy, 0, count, values.data());
-  return values;
-}
 
 // Points as predicates need them.
 struct ScaledPoints {
@@ -44,17 +34,8 @@ struct ScaledPoints {
 
 ScaledPoints scale_points(host::Runtime& runtime, const DeviceMesh& mesh) {
   const points::UniformPoints uniform = points::make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
-  ScaledPoints scaled{uniform.coordinates, uniform.scaling.bounds};
-  if (uniform.scaling.shift == 0) return scaled;
-  const std::size_t n = mesh.points();
-  scaled.coordinates = runtime.arena().allocate<cl_double>(2 * n);
-  runtime.map(n, kernels::scale_sets{
-                     .sets = 1,
-                     .offsets = runtime.upload(runtime.arena(), std::vector<cl_int>{0, cl_int(n)}),
-                     .shifts = runtime.upload(runtime.arena(), std::vector<cl_int>{uniform.scaling.shift}),
-                     .input = uniform.coordinates,
-                     .scaled_input = scaled.coordinates});
-  return scaled;
+  return {points::scaled(runtime, uniform.coordinates, mesh.points(), uniform.scaling.shift),
+          uniform.scaling.bounds};
 }
 
 // Pairs of ends, each pair once, in the order of their places.

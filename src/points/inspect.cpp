@@ -6,6 +6,7 @@
 #include "launchers/points/inspect.cl.hpp"
 #include "launchers/points/inspect_tiles.cl.hpp"
 #include "points/device_mesh.hpp"
+#include "points/download.hpp"
 #include "shared/codes.h"
 
 namespace flaunay::points {
@@ -14,12 +15,7 @@ namespace {
 
 // What set_scalings and scaling_for read if they throw.
 std::vector<double> to_host(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n) {
-  std::vector<double> coordinates(2 * n);
-  // Copied first, because the caller's buffer may not permit the host to read it.
-  const host::Buffer<cl_double> copy(host::allocate_memory(runtime.memory(), 2 * n * sizeof(double)), 2 * n);
-  runtime.copy(points, 0, copy, 0, 2 * n);
-  runtime.read(copy, 0, 2 * n, coordinates.data());
-  return coordinates;
+  return download(runtime, points, 2 * n);
 }
 
 UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
@@ -90,6 +86,18 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
           scaling,
           {scaling.shift},
           sets == 1 ? std::vector<Magnitudes>{magnitudes} : std::vector<Magnitudes>()};
+}
+
+host::Buffer<cl_double> scaled(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n,
+                               int shift) {
+  if (shift == 0) return points;
+  const auto scaled = runtime.arena().allocate<cl_double>(2 * n);
+  runtime.map(n, kernels::scale_sets{.sets = 1,
+                                     .offsets = runtime.upload(runtime.arena(), std::vector<cl_int>{0}),
+                                     .shifts = runtime.upload(runtime.arena(), std::vector<cl_int>{shift}),
+                                     .input = points,
+                                     .scaled_input = scaled});
+  return scaled;
 }
 
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,

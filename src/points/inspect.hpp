@@ -33,6 +33,11 @@ struct UniformPoints {
 UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
                            const std::vector<std::size_t>& offsets);
 
+/// Returns n points as they are, or if the shift is not 0, a copy in the runtime's arena, multiplied by
+/// 2^shift. Does not wait. O(n).
+host::Buffer<cl_double> scaled(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n,
+                               int shift);
+
 /// Converts n points from `first` on to double precision, which is exact. narrow: x0 y0 x1 y1 ... Does not
 /// wait. O(n).
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,

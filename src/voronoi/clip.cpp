@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "host/vector_operations.hpp"
-#include "launchers/points/inspect.cl.hpp"
 #include "launchers/voronoi/clip.cl.hpp"
 #include "points/inspect.hpp"
 #include "shared/bounds.h"
@@ -41,19 +40,6 @@ DeviceClip upload(host::Runtime& runtime, const ClipPolygon& polygon, const geom
   }
   clip.corners = runtime.upload(runtime.arena(), std::move(corners));
   return clip;
-}
-
-// The points as they are, or a scaled copy.
-Buffer<cl_double> scaled_points(host::Runtime& runtime, const DeviceMesh& mesh, int shift) {
-  if (shift == 0) return mesh.coordinates;
-  const auto scaled = runtime.arena().allocate<cl_double>(2 * mesh.points());
-  runtime.map(mesh.points(),
-              kernels::scale_sets{.sets = 1,
-                                  .offsets = runtime.upload(runtime.arena(), std::vector<cl_int>{0}),
-                                  .shifts = runtime.upload(runtime.arena(), std::vector<cl_int>{shift}),
-                                  .input = mesh.coordinates,
-                                  .scaled_input = scaled});
-  return scaled;
 }
 
 // The Voronoi edges around all points.
@@ -124,7 +110,7 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
   const DeviceClip clip =
       upload(runtime, polygon, scaling, geometry::bits_of(geometry::joined(magnitudes, polygon.magnitudes)));
   DeviceMesh mesh = input;
-  mesh.coordinates = scaled_points(runtime, input, scaling.shift);
+  mesh.coordinates = points::scaled(runtime, input.coordinates, n, scaling.shift);
 
   const auto centres = runtime.arena().allocate<cl_double>(2 * triangles);
   const auto witnesses = runtime.arena().allocate<cl_int>(triangles);

@@ -1,0 +1,24 @@
+// Reads arrays of the caller's back to the host.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "host/runtime.hpp"
+
+namespace flaunay::points {
+
+/// Returns the first `count` values. They are copied on the device first, because the caller's buffer may not
+/// permit the host to read it. Waits.
+template <typename T>
+std::vector<T> download(host::Runtime& runtime, const host::Buffer<T>& from, std::size_t count) {
+  std::vector<T> values(count);
+  const host::Buffer<T> copy(
+      host::allocate_memory(runtime.memory(), std::max<std::size_t>(1, count) * sizeof(T)), count);
+  runtime.copy(from, 0, copy, 0, count);
+  runtime.read(copy, 0, count, values.data());
+  return values;
+}
+
+}  // namespace flaunay::points
