@@ -28,6 +28,12 @@ set(CPP_int4 cl_int4)
 set(CPP_uint2 cl_uint2)
 set(CPP_uint8 cl_uint8)
 set(CPP_double2 cl_double2)
+# Of shared/numbers.h; in fixed point they are 64-bit integers, of as many bytes.
+set(CPP_coordinate cl_double)
+set(CPP_coordinate2 cl_double2)
+set(CPP_filter_bound cl_float)
+set(CPP_double_bits cl_ulong)
+set(CPP_float_bits cl_uint)
 # The vector types of kernels.
 set(CPP_keyed cl_uint2)
 

@@ -17,9 +17,6 @@
 
 namespace flaunay::kernel {
 
-struct float2 {
-  float x, y;
-};
 struct uint8 {
   uint s[8];
 };
@@ -39,12 +36,10 @@ inline uint8& operator+=(uint8& a, uint8 b) {
   return a;
 }
 
-inline float2 vload2(std::size_t i, const float* from) { return {from[2 * i], from[2 * i + 1]}; }
 inline void vstore2(double2 value, std::size_t i, double* to) {
   to[2 * i] = value.x;
   to[2 * i + 1] = value.y;
 }
-inline double2 convert_double2(float2 value) { return {value.x, value.y}; }
 inline double min(double a, double b) { return b < a ? b : a; }
 inline double max(double a, double b) { return a < b ? b : a; }
 using std::ilogb;

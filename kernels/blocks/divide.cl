@@ -18,7 +18,7 @@
 
 // A work-item's own arrays, with room for one block.
 typedef struct {
-  global double2* points;  // distinct, by x
+  global coordinate2* points;  // distinct, by x
   global int* source;
   global ranks* by_x;
   global ranks* by_y;
@@ -27,17 +27,17 @@ typedef struct {
 } block_scratch;
 
 // Writes a block's distinct points into scratch, in the order of x, and returns their number.
-static inline int distinct_by_x(int count, global const double2* points, global const int* source,
+static inline int distinct_by_x(int count, global const coordinate2* points, global const int* source,
                                 const block_scratch* s, global int* representatives) {
-  fetch_bytes(points, count * sizeof(double2));
+  fetch_bytes(points, count * sizeof(coordinate2));
   global keyed* elements = (global keyed*)s->by_x;
   for (int i = 0; i < count; ++i) elements[i] = VECTOR(keyed, 0, (uint)i);
   elements = sort_along(elements, (global keyed*)s->by_y, count, points, 0);
   int distinct = 0;
-  double2 last = VECTOR(double2, 0.0, 0.0);
+  coordinate2 last = VECTOR(coordinate2, 0, 0);
   for (int i = 0; i < count; ++i) {
     const int from = elements[i].y;
-    const double2 p = points[from];
+    const coordinate2 p = points[from];
     if (distinct > 0 && p.x == last.x && p.y == last.y) {
       representatives[source[from]] = s->source[distinct - 1];
     } else {
@@ -83,7 +83,7 @@ static inline int cut_part(int begin, int middle, int end, const block_scratch* 
 }
 
 // Triangulates one block, which is not empty. Writes its vertices in the order of the leaves; returns its hull's ends.
-static inline hull_ends solve_block(rings* g, int first, int count, const block_scratch* s, global double2* points,
+static inline hull_ends solve_block(rings* g, int first, int count, const block_scratch* s, global coordinate2* points,
                                     global int* source) {
   const int depth = halving_depth(count);
   for (int d = 0; d < depth; ++d) {
@@ -120,11 +120,11 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
 // Solves the blocks of more than `larger` and at most `capacity` points. Each work-item's part of the scratch arrays
 // has room for `capacity` points. next: the next block to be taken; 0 at first.
 kernel void solve_blocks(int workers, int blocks, int capacity, int larger, global const int* restrict offsets,
-                         filter_bounds bounds, global volatile int* next, global double2* points, global int* source,
-                         global int* representatives, global ring_edge* edges, global int* vertex_edge,
-                         global solved_block* solved, global int* distinct_counts, global volatile uint* account,
-                         global double2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
-                         global uchar* scratch_axes COUNTERS) {
+                         filter_bounds bounds, global volatile int* next, global coordinate2* points,
+                         global int* source, global int* representatives, global ring_edge* edges,
+                         global int* vertex_edge, global solved_block* solved, global int* distinct_counts,
+                         global volatile uint* account, global coordinate2* scratch_points, global int* scratch_source,
+                         global int2* scratch_ranks, global uchar* scratch_axes COUNTERS) {
   const int w = get_global_id(0);
   if (w < workers) {
     const long base = (long)w * capacity;
@@ -156,7 +156,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
 
 // The first block of either side of a merge has the side's triangulation.
 kernel void merge_blocks(int n, int first_merge, global const block_merge* restrict merges,
-                         global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
+                         global const cut_node* restrict nodes, filter_bounds bounds, global const coordinate2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
                          global volatile uint* account COUNTERS) {
   const int m = get_global_id(0);

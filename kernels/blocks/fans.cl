@@ -26,7 +26,7 @@ static inline int apex_left_of(int e, global const ring_edge* edges) {
 static inline void fetch_edges(int pair, int pairs, global const ring_edge* edges) {
   fetch(&edges[2 * min(pairs - 1, pair + FETCH_AHEAD)]);
 }
-static inline void fetch_points(int pair, int pairs, global const double2* points) {
+static inline void fetch_points(int pair, int pairs, global const coordinate2* points) {
   fetch(&points[2 * min(pairs - 1, pair + FETCH_AHEAD) / EDGES_PER_VERTEX]);
 }
 
@@ -36,12 +36,12 @@ static inline void fetch_points(int pair, int pairs, global const double2* point
 
 // Whether the ends of pair k and the third corners of the triangles on either side are cocircular. Where there is a
 // triangle on either side, these are the vertices behind the next edges; whether there is, is seldom worth asking.
-static inline int inside_of(int k, double bound, int exactly, global const double2* points,
+static inline int inside_of(int k, filter_bound bound, int exactly, global const coordinate2* points,
                             global const ring_edge* edges) {
   const int from = edges[2 * k + 1].to, to = edges[2 * k].to;
   const int left = edges[edges[2 * k].next].to, right = edges[edges[2 * k + 1].next].to;
   if (left == right) return NOT_INSIDE;
-  const double2 a = points[from], b = points[to], c = points[left], d = points[right];
+  const coordinate2 a = points[from], b = points[to], c = points[left], d = points[right];
   const int sign =
       exactly ? circle_undecided(a, b, c, d, bound) : angle_compared(angle_at(d, a, b), angle_at(c, a, b), bound);
   if (sign == 1 || sign == -1) return NOT_INSIDE;
@@ -50,8 +50,9 @@ static inline int inside_of(int k, double bound, int exactly, global const doubl
 }
 
 // n pairs of edges; account: of the merges.
-kernel void find_inside(int n, double bound, global const uint* restrict account, global const double2* restrict points,
-                        global const ring_edge* restrict edges, global uchar* restrict inside) {
+kernel void find_inside(int n, filter_bound bound, global const uint* restrict account,
+                        global const coordinate2* restrict points, global const ring_edge* restrict edges,
+                        global uchar* restrict inside) {
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES] > 0) {
     fetch_edges(k, n, edges);
@@ -61,8 +62,8 @@ kernel void find_inside(int n, double bound, global const uint* restrict account
 }
 
 // n pairs of edges.
-kernel void find_inside_exactly(int n, double bound, global const uint* restrict account,
-                                global const double2* restrict points, global const ring_edge* restrict edges,
+kernel void find_inside_exactly(int n, filter_bound bound, global const uint* restrict account,
+                                global const coordinate2* restrict points, global const ring_edge* restrict edges,
                                 global uchar* restrict inside) {
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES] > 0 && inside[k] == UNSURE_INSIDE) {
@@ -87,20 +88,20 @@ kernel void leave_inside(int n, global const uint* restrict account, global cons
 
 // Whether a polygon's first vertex is the origin of e, an edge inside of it, and e comes behind the polygon's first
 // edge there.
-static inline int is_first_of_fan(int e, global const double2* points, global const ring_edge* edges,
+static inline int is_first_of_fan(int e, global const coordinate2* points, global const ring_edge* edges,
                                   global const uchar* inside) {
   if (is_inside(edges[e].previous, inside)) return 0;
-  const double2 vertex = points[edges[e ^ 1].to];
+  const coordinate2 vertex = points[edges[e ^ 1].to];
   int last = edges[e].next;
   while (is_inside(last, inside)) last = edges[last].next;
   return comes_before(vertex, points[edges[edges[e].previous].to]) && comes_before(vertex, points[edges[last].to]);
 }
 
 // Whether it is the apex left of e, an edge inside of it, and no edge inside of it ends there.
-static inline int is_opposite_of_fan(int e, global const double2* points, global const ring_edge* edges,
+static inline int is_opposite_of_fan(int e, global const coordinate2* points, global const ring_edge* edges,
                                      global const uchar* inside) {
   if (is_inside(edges[e].next, inside) || is_inside(edges[e ^ 1].previous, inside)) return 0;
-  const double2 apex = points[edges[edges[e].next].to];
+  const coordinate2 apex = points[edges[edges[e].next].to];
   return comes_before(apex, points[edges[e].to]) && comes_before(apex, points[edges[e ^ 1].to]);
 }
 
@@ -110,7 +111,7 @@ static inline int is_opposite_of_fan(int e, global const double2* points, global
 #define AT_APEX 4
 
 // n pairs of edges.
-kernel void find_fans(int n, global const uint* restrict account, global const double2* restrict points,
+kernel void find_fans(int n, global const uint* restrict account, global const coordinate2* restrict points,
                       global const ring_edge* restrict edges, global const uchar* restrict inside,
                       global uchar* restrict found) {
   const int k = get_global_id(0);
@@ -145,7 +146,7 @@ kernel void build_fans(int n, global const uint* restrict account, global const 
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES] > 0) fetch_edges(k, n, edges);
   if (k < n && account[RINGS_TIES] > 0 && found[k] != NOT_HERE) {
-    const filter_bounds no_bounds = {0.0, 0.0, 0.0};
+    const filter_bounds no_bounds = {0, 0, 0};
     rings g = rings_on(edges, 0, 0, no_bounds);
     const int seen_from = 2 * k + (found[k] & 1);
     int e = found[k] < AT_APEX ? edges[seen_from].previous : edges[seen_from].next ^ 1;

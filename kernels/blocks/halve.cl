@@ -21,7 +21,7 @@
 
 // A block's own arrays, which begin at its place in those of all points.
 typedef struct {
-  global double2* points;  // distinct, by x
+  global coordinate2* points;  // distinct, by x
   global int* source;
   global ranks* by_x;
   global ranks* by_y;
@@ -59,24 +59,24 @@ WITH_BARRIERS void scan_group(uint count, local uint* sums) {
 static inline uint sum_before(int lane, local const uint* sums) { return lane > 0 ? sums[lane - 1] : 0; }
 
 // Where element i comes in its tile, in which equal points stay in their order.
-static inline int place_in_tile(int i, int count, global const double2* points, int axis) {
+static inline int place_in_tile(int i, int count, global const coordinate2* points, int axis) {
   const int begin = i & ~(SORTED_TILE - 1), end = min(count, begin + SORTED_TILE);
-  const double2 p = points[i];
+  const coordinate2 p = points[i];
   int place = begin;
   for (int j = begin; j < end; ++j) place += j < i ? !precedes(p, points[j], axis) : precedes(points[j], p, axis);
   return place;
 }
 
 // Where element i comes when its run of `width` elements and the neighbouring one are merged.
-static inline int place_in_merge(int i, int width, int count, global const int* elements, global const double2* points,
-                                 int axis) {
+static inline int place_in_merge(int i, int width, int count, global const int* elements,
+                                 global const coordinate2* points, int axis) {
   const int is_high = (i & width) != 0;
   const int begin = i & ~(2 * width - 1), middle = min(count, begin + width);
-  const double2 p = points[elements[i]];
+  const coordinate2 p = points[elements[i]];
   int low = is_high ? begin : middle, high = is_high ? middle : min(count, middle + width);
   while (low < high) {
     const int at = low + (high - low) / 2;
-    const double2 other = points[elements[at]];
+    const coordinate2 other = points[elements[at]];
     const int comes_first = is_high ? !precedes(p, other, axis) : precedes(other, p, axis);
     low = comes_first ? at + 1 : low;
     high = comes_first ? high : at;
@@ -85,8 +85,8 @@ static inline int place_in_merge(int i, int width, int count, global const int* 
 }
 
 // Sorts the places of points stably along an axis. Both arrays have room for them; returns the one with the result.
-WITH_BARRIERS global int* sort_group(global int* elements, global int* spare, int count, global const double2* points,
-                                     int axis) {
+WITH_BARRIERS global int* sort_group(global int* elements, global int* spare, int count,
+                                     global const coordinate2* points, int axis) {
   const int me = get_local_id(0), lanes = get_local_size(0);
   for (int i = me; i < count; i += lanes) elements[place_in_tile(i, count, points, axis)] = i;
   barrier(CLK_GLOBAL_MEM_FENCE);
@@ -103,14 +103,14 @@ WITH_BARRIERS global int* sort_group(global int* elements, global int* spare, in
 }
 
 // Whether the point at i of the order is another than the one before it.
-static inline int is_distinct(int i, global const int* elements, global const double2* points) {
+static inline int is_distinct(int i, global const int* elements, global const coordinate2* points) {
   if (i == 0) return 1;
-  const double2 p = points[elements[i - 1]], q = points[elements[i]];
+  const coordinate2 p = points[elements[i - 1]], q = points[elements[i]];
   return p.x != q.x || p.y != q.y;
 }
 
 // Writes a block's distinct points in the order of x, and returns their number.
-WITH_BARRIERS int distinct_by_x(int count, global const double2* points, global const int* source,
+WITH_BARRIERS int distinct_by_x(int count, global const coordinate2* points, global const int* source,
                                 const block_arrays* s, global int* representatives, local uint* sums) {
   global int* const space = (global int*)s->spare;
   global const int* const elements = sort_group(space, space + count, count, points, 0);
@@ -244,7 +244,7 @@ kernel void name_blocks(int n, int blocks, global const int* restrict offsets, g
 
 // order: by place of a large block, the point that stands there, counted from the block's first.
 kernel void sort_large_tiles(int n, int capacity, global const int* restrict offsets,
-                             global const int* restrict block_of_place, global const double2* restrict points,
+                             global const int* restrict block_of_place, global const coordinate2* restrict points,
                              global int* restrict order) {
   const int i = get_global_id(0);
   const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
@@ -254,7 +254,7 @@ kernel void sort_large_tiles(int n, int capacity, global const int* restrict off
 }
 
 kernel void merge_large_runs(int n, int capacity, int width, global const int* restrict offsets,
-                             global const int* restrict block_of_place, global const double2* restrict points,
+                             global const int* restrict block_of_place, global const coordinate2* restrict points,
                              global const int* restrict order, global int* restrict merged) {
   const int i = get_global_id(0);
   const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
@@ -264,7 +264,7 @@ kernel void merge_large_runs(int n, int capacity, int width, global const int* r
 }
 
 kernel void flag_distinct(int n, int capacity, global const int* restrict offsets,
-                          global const int* restrict block_of_place, global const double2* restrict points,
+                          global const int* restrict block_of_place, global const coordinate2* restrict points,
                           global const int* restrict order, global uint* restrict flags) {
   const int i = get_global_id(0);
   const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
@@ -273,9 +273,9 @@ kernel void flag_distinct(int n, int capacity, global const int* restrict offset
 
 // scanned: the prefix sums of the flags.
 kernel void move_distinct(int n, int capacity, global const int* restrict offsets,
-                          global const int* restrict block_of_place, global const double2* restrict points,
+                          global const int* restrict block_of_place, global const coordinate2* restrict points,
                           global const int* restrict source, global const int* restrict order,
-                          global const uint* restrict scanned, global double2* restrict distinct_points,
+                          global const uint* restrict scanned, global coordinate2* restrict distinct_points,
                           global int* restrict distinct_source) {
   const int i = get_global_id(0);
   const large_place at = large_place_at(i, n, capacity, block_of_place, offsets);
@@ -315,19 +315,19 @@ kernel void flag_larger_blocks(int n, global const int* restrict offsets, global
 }
 
 // Where point i comes in the order along an axis, in which equal points stay in their order.
-static inline int rank_along(int i, int count, global const double2* points, int axis) {
+static inline int rank_along(int i, int count, global const coordinate2* points, int axis) {
   return place_in_tile(i, count, points, axis);
 }
 
 // The point that has a rank along an axis.
-static inline double2 point_of_rank(int rank, int count, global const double2* points, int axis) {
+static inline coordinate2 point_of_rank(int rank, int count, global const coordinate2* points, int axis) {
   int i = 0;
   while (rank_along(i, count, points, axis) != rank) ++i;
   return points[i];
 }
 
 // Sorts a few points along x, drops duplicates, and returns the number of those that are left, in the block's arrays.
-static inline int sort_tiny_block(int count, global const double2* points, global const int* source,
+static inline int sort_tiny_block(int count, global const coordinate2* points, global const int* source,
                                   const block_arrays* s, global int* representatives) {
   for (int i = 0; i < count; ++i) {
     const int to = rank_along(i, count, points, 0);
@@ -336,7 +336,7 @@ static inline int sort_tiny_block(int count, global const double2* points, globa
   }
   int distinct = 0;
   for (int i = 0; i < count; ++i) {
-    const double2 p = s->points[i];
+    const coordinate2 p = s->points[i];
     const int own = s->source[i];
     if (distinct > 0 && p.x == s->points[distinct - 1].x && p.y == s->points[distinct - 1].y) {
       representatives[own] = s->source[distinct - 1];
@@ -350,16 +350,16 @@ static inline int sort_tiny_block(int count, global const double2* points, globa
 }
 
 // axis_of for all of a few points, which are in the order along x.
-static inline int axis_of_tiny(int count, global const double2* points) {
+static inline int axis_of_tiny(int count, global const coordinate2* points) {
   const int low = count / 4, high = count - 1 - count / 4;
   return point_of_rank(high, count, points, 1).y - point_of_rank(low, count, points, 1).y >
          points[high].x - points[low].x;
 }
 
 // n blocks, of which those of at most TINY_BLOCK points become what halve_blocks would make of them.
-kernel void halve_tiny_blocks(int n, global const int* restrict offsets, global double2* points, global int* source,
+kernel void halve_tiny_blocks(int n, global const int* restrict offsets, global coordinate2* points, global int* source,
                               global int* representatives, global solved_block* solved, global int* distinct_counts,
-                              global uchar* axes, global double2* scratch_points, global int* scratch_source) {
+                              global uchar* axes, global coordinate2* scratch_points, global int* scratch_source) {
   const int b = get_global_id(0);
   const int first = b < n ? offsets[b] : 0, count = b < n ? offsets[b + 1] - first : 0;
   if (b < n && count <= TINY_BLOCK) {
@@ -392,9 +392,9 @@ kernel void halve_tiny_blocks(int n, global const int* restrict offsets, global 
 // are_listed: the groups take the blocks that flag_larger_blocks has flagged; larger_blocks: the flags' prefix sums.
 kernel void halve_blocks(int blocks, int are_listed, global const uint* restrict larger_blocks, int capacity,
                          int largest, global const int* restrict offsets, global const uint* restrict scanned,
-                         global double2* points, global int* source, global int* representatives,
+                         global coordinate2* points, global int* source, global int* representatives,
                          global solved_block* solved, global int* distinct_counts, global uchar* axes,
-                         global double2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
+                         global coordinate2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
                          global int* scratch_lows) {
   local uint sums[LARGEST_GROUP];
   const int me = get_local_id(0), lanes = get_local_size(0);

@@ -14,7 +14,7 @@
 
 kernel void merge_parts(int n, int spread, int height, int places, global const int* restrict offsets,
                         global const int* restrict distinct, global const int* restrict block_of_place,
-                        global const uchar* restrict axes, filter_bounds bounds, global const double2* points,
+                        global const uchar* restrict axes, filter_bounds bounds, global const coordinate2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                         global solved_block* solved, global int* restrict states,
                         global volatile uint* account COUNTERS) {
@@ -28,7 +28,7 @@ kernel void merge_parts(int n, int spread, int height, int places, global const 
 }
 
 kernel void merge_trees(int n, int spread, int first_merge, global const block_merge* restrict merges,
-                        global const cut_node* restrict nodes, filter_bounds bounds, global const double2* points,
+                        global const cut_node* restrict nodes, filter_bounds bounds, global const coordinate2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
                         global int* restrict states, global volatile uint* account COUNTERS) {
   const int m = spread_item(n, spread);

@@ -47,7 +47,8 @@ kernel void mark_outside(int n, global const int* restrict set_blocks, global co
 
 // Whether the triangle left of edge e, which leaves v and goes right or not, belongs to v. Without branches, since they
 // could not be predicted.
-static inline int owns(double2 v, int right, ring_edge e, global const ring_edge* edges, global const double2* points) {
+static inline int owns(coordinate2 v, int right, ring_edge e, global const ring_edge* edges,
+                       global const coordinate2* points) {
   const int other = is_outside(e.next) ? e.to : edges[e.next].to;
   return !is_outside(e.next) & (precedes(v, points[other], 0) != right);
 }
@@ -55,7 +56,7 @@ static inline int owns(double2 v, int right, ring_edge e, global const ring_edge
 // Writes the triangle left of edge e, which belongs to the edge's origin v; first_row: of v's rows, closed by the next
 // vertex'. The row starts with the smallest index. corner_of_edge, if there is one, gets the place of the corner
 // opposite of each edge.
-static inline void write_triangle(int e, int with_corners, global const double2* points, global const int* source,
+static inline void write_triangle(int e, int with_corners, global const coordinate2* points, global const int* source,
                                   global const ring_edge* edges, global const uint* first_rows, global int* triangles,
                                   global int* corner_of_edge) {
   const ring_edge there = edges[e], back = edges[e ^ 1];
@@ -81,7 +82,7 @@ static inline void write_triangle(int e, int with_corners, global const double2*
 // What will be needed is fetched in the order of memory: edges lead anywhere within a block.
 #define PAIRS_A_CACHE_LINE 2
 #define POINTS_A_CACHE_LINE 4
-static inline void fetch_ahead(int pair, int last, global const ring_edge* edges, global const double2* points) {
+static inline void fetch_ahead(int pair, int last, global const ring_edge* edges, global const coordinate2* points) {
 #if FETCH_AHEAD
   const int begin = pair + FETCH_AHEAD, end = min(last, begin + PAIRS_AT_ONCE);
   for (int k = begin; k < end; k += PAIRS_A_CACHE_LINE) fetch(&edges[2 * k]);
@@ -93,7 +94,7 @@ static inline void fetch_ahead(int pair, int last, global const ring_edge* edges
 #define NO_CORNER -1
 
 // n pairs of edges.
-kernel void write_triangles(int n, int chunk, int with_corners, global const double2* restrict points,
+kernel void write_triangles(int n, int chunk, int with_corners, global const coordinate2* restrict points,
                             global const int* restrict source, global const ring_edge* restrict edges,
                             global const uint* restrict first_rows, global int* restrict triangles,
                             global int* restrict corner_of_edge) {
@@ -109,7 +110,7 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const dou
         if (with_corners && (there.to == NO_VERTEX || is_outside(there.next))) corner_of_edge[2 * k] = NO_CORNER;
         if (with_corners && (there.to == NO_VERTEX || is_outside(back.next))) corner_of_edge[2 * k + 1] = NO_CORNER;
         if (there.to == NO_VERTEX) continue;
-        const double2 from = points[back.to], to = points[there.to];
+        const coordinate2 from = points[back.to], to = points[there.to];
         const int right = precedes(from, to, 0);
         owned[count] = 2 * k;
         count += owns(from, right, there, edges, points);

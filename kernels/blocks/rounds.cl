@@ -33,26 +33,27 @@
 
 static inline vertex_box joined_boxes(vertex_box a, vertex_box b) {
   vertex_box both;
-  both.low = VECTOR(double2, min(a.low.x, b.low.x), min(a.low.y, b.low.y));
-  both.high = VECTOR(double2, max(a.high.x, b.high.x), max(a.high.y, b.high.y));
+  both.low = VECTOR(coordinate2, min(a.low.x, b.low.x), min(a.low.y, b.low.y));
+  both.high = VECTOR(coordinate2, max(a.high.x, b.high.x), max(a.high.y, b.high.y));
   return both;
 }
 
 static inline vertex_box no_box(void) {
-  const vertex_box none = {VECTOR(double2, INFINITY, INFINITY), VECTOR(double2, -INFINITY, -INFINITY)};
+  const vertex_box none = {VECTOR(coordinate2, COORDINATE_LARGEST, COORDINATE_LARGEST),
+                           VECTOR(coordinate2, -COORDINATE_LARGEST, -COORDINATE_LARGEST)};
   return none;
 }
 
 // n blocks.
-kernel void box_blocks(int n, global const solved_block* restrict solved, global const double2* restrict points,
+kernel void box_blocks(int n, global const solved_block* restrict solved, global const coordinate2* restrict points,
                        global vertex_box* restrict boxes) {
   const int b = get_global_id(0);
   if (b < n) {
     const hull_ends ends = solved[b].ends;
     vertex_box box = no_box();
     if (ends.first_x != NO_VERTEX) {
-      box.low = VECTOR(double2, points[ends.first_x].x, points[ends.first_y].y);
-      box.high = VECTOR(double2, points[ends.last_x].x, points[ends.last_y].y);
+      box.low = VECTOR(coordinate2, points[ends.first_x].x, points[ends.first_y].y);
+      box.high = VECTOR(coordinate2, points[ends.last_x].x, points[ends.last_y].y);
     }
     boxes[b] = box;
   }
@@ -102,8 +103,8 @@ kernel void frame_blocks(int n, int sets, int is_merged, global const int* restr
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
     block_frame frame;
     frame.all = boxes[set_boxes[s]];
-    frame.rectangle.low = VECTOR(double2, -INFINITY, -INFINITY);
-    frame.rectangle.high = VECTOR(double2, INFINITY, INFINITY);
+    frame.rectangle.low = VECTOR(coordinate2, -COORDINATE_LARGEST, -COORDINATE_LARGEST);
+    frame.rectangle.high = VECTOR(coordinate2, COORDINATE_LARGEST, COORDINATE_LARGEST);
     for (int node = leaves + b - first; node > 1 && !is_merged; node >>= 1) {
       frame.rectangle = cut_rectangle(frame.rectangle, nodes[set_nodes[s] + (node >> 1)], node & 1, scale);
     }
@@ -126,14 +127,14 @@ kernel void name_round_vertices(int n, int is_first, global const int* restrict 
 // What the triangles of a round are emitted from and to.
 typedef struct {
   int is_first;
-  double bound;  // of orientations
-  global const double2* points;
+  filter_bound bound;  // of orientations
+  global const coordinate2* points;
   global const ring_edge* edges;
   global const int* vertices;
   global const int* listed;
   global const int* open_offsets;
   global const open_edge* open_edges;
-  global const double2* all_points;
+  global const coordinate2* all_points;
   global const int* indices;  // in the input, by vertex
   global int* places;
   global int* states;
@@ -233,17 +234,17 @@ static inline void decide_triangle(const emission* m, const block_frame* frame, 
 
 // The triangle left of e belongs to the edge's origin, which is its middle vertex, if the edge to the right or to the
 // left separates it from neither of the other two.
-static inline int is_from_middle(int e, global const ring_edge* edges, global const double2* points) {
-  const double2 v = points[edges[e ^ 1].to];
+static inline int is_from_middle(int e, global const ring_edge* edges, global const coordinate2* points) {
+  const coordinate2 v = points[edges[e ^ 1].to];
   return precedes(v, points[edges[e].to], 0) != precedes(v, points[edges[edges[e].next].to], 0);
 }
 
 // n pairs of edges.
-kernel void emit_triangles(int n, int is_first, double bound, int blocks, global const int* restrict offsets,
-                           global const block_frame* restrict frames, global const double2* restrict points,
+kernel void emit_triangles(int n, int is_first, filter_bound bound, int blocks, global const int* restrict offsets,
+                           global const block_frame* restrict frames, global const coordinate2* restrict points,
                            global const ring_edge* restrict edges, global const int* restrict vertices,
                            global const int* restrict listed, global const int* restrict open_offsets,
-                           global const open_edge* restrict open_edges, global const double2* all_points,
+                           global const open_edge* restrict open_edges, global const coordinate2* all_points,
                            global const int* restrict indices, global int* restrict places, global int* states,
                            global int* restrict hull_next, global int* restrict hull_previous) {
   const int k = get_global_id(0);
@@ -263,11 +264,11 @@ kernel void emit_triangles(int n, int is_first, double bound, int blocks, global
 }
 
 // n pairs of edges.
-kernel void emit_unsure(int n, int is_first, double bound, int blocks, global const int* restrict offsets,
-                        global const block_frame* restrict frames, global const double2* restrict points,
+kernel void emit_unsure(int n, int is_first, filter_bound bound, int blocks, global const int* restrict offsets,
+                        global const block_frame* restrict frames, global const coordinate2* restrict points,
                         global const ring_edge* restrict edges, global const int* restrict vertices,
                         global const int* restrict listed, global const int* restrict open_offsets,
-                        global const open_edge* restrict open_edges, global const double2* all_points,
+                        global const open_edge* restrict open_edges, global const coordinate2* all_points,
                         global const int* restrict indices, global int* restrict places, global int* states,
                         global int* restrict hull_next, global int* restrict hull_previous) {
   const int k = get_global_id(0);
@@ -404,12 +405,12 @@ kernel void count_open(int n, int is_first, int sets, int blocks, global const i
 }
 
 // Writes the points that go on, in their order, and their open edges. n places.
-kernel void write_open(int n, int is_first, global const double2* restrict points,
+kernel void write_open(int n, int is_first, global const coordinate2* restrict points,
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
                        global const int* restrict vertices, global const int* restrict listed,
                        global const int* restrict open_offsets, global const open_edge* restrict open_edges,
                        global const int* restrict states, global const uint2* restrict scanned,
-                       global double2* restrict next_points, global int* restrict next_vertices,
+                       global coordinate2* restrict next_points, global int* restrict next_vertices,
                        global int* restrict next_offsets, global open_edge* restrict next_edges) {
   const int k = get_global_id(0);
   if (k < n) {
@@ -458,7 +459,7 @@ kernel void count_hull(int n, global const int* restrict hull_next, global const
 }
 
 // Whether the hull's order begins with a vertex: the first one along x.
-static inline int begins_hull(int v, global const double2* points, global const int* hull_next,
+static inline int begins_hull(int v, global const coordinate2* points, global const int* hull_next,
                               global const int* hull_previous) {
   const int before = hull_previous[v], after = hull_next[v];
   return before == NO_VERTEX || after == v ||
@@ -467,7 +468,7 @@ static inline int begins_hull(int v, global const double2* points, global const 
 
 // Writes the hull vertices of all sets, and for each the place of the next one with 1, their distance, or its own with
 // 0, if it is the last one. n vertices; scanned: each hull vertex's place.
-kernel void list_hull(int n, global const double2* restrict points, global const int* restrict hull_next,
+kernel void list_hull(int n, global const coordinate2* restrict points, global const int* restrict hull_next,
                       global const int* restrict hull_previous, global const uint* restrict scanned,
                       global int* restrict hull_vertices, global int2* restrict ahead) {
   const int v = get_global_id(0);

@@ -15,10 +15,11 @@
 
 kernel void walk_seams(int n, int spread, int height, int places, global const int* restrict offsets,
                        global const int* restrict distinct, global const int* restrict block_of_place,
-                       global const uchar* restrict axes, filter_bounds bounds, global const double2* restrict points,
-                       global ring_edge* restrict edges, global int* restrict vertex_edge,
-                       global solved_block* restrict parts, global solved_block* restrict solved,
-                       global int2* restrict crossings, global uchar* restrict removed, global seam_walk* walks,
+                       global const uchar* restrict axes, filter_bounds bounds,
+                       global const coordinate2* restrict points, global ring_edge* restrict edges,
+                       global int* restrict vertex_edge, global solved_block* restrict parts,
+                       global solved_block* restrict solved, global int2* restrict crossings,
+                       global uchar* restrict removed, global seam_walk* walks,
                        global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n) {
@@ -96,7 +97,7 @@ static inline void sew_crossing(const sewing* s, int i) {
 
 kernel void sew_seams(int height, int places, global const int* restrict offsets, global const int* restrict distinct,
                       global const int* restrict block_of_place, global const uchar* restrict axes,
-                      global const double2* restrict points, global const int2* restrict crossings,
+                      global const coordinate2* restrict points, global const int2* restrict crossings,
                       global const seam_walk* restrict walks, global ring_edge* edges, global int* vertex_edge,
                       global solved_block* parts, global solved_block* solved, global uchar* removed, global int* slots,
                       global volatile uint* account) {

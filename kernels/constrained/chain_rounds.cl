@@ -187,7 +187,7 @@ static inline int is_missing(const polygon* g, int v) { return v > 0 && v < g->l
 
 // A vertex that takes no triangle away claims the one that it is joined to. hubs: those that are found in pass p become
 // p + 1.
-kernel void claim_triangles(int n, int round, int pass, int longest_walk, double bound,
+kernel void claim_triangles(int n, int round, int pass, int longest_walk, filter_bound bound,
                             global const int* restrict offsets, global const int* restrict of,
                             global const double2* restrict places, global chain_vertex* restrict vertices,
                             global chain_edge* restrict edges, global const uchar* restrict stages,
@@ -278,9 +278,10 @@ kernel void insert_vertices(int n, int round, global const int* restrict offsets
 // ---------------------------------------------------------------------------------------------------------------------
 // The result
 
-kernel void check_triangles(int n, double bound, global const int* restrict offsets, global const int* restrict of,
-                            global const double2* restrict places, global chain_vertex* restrict vertices,
-                            global chain_edge* restrict edges, global volatile uint* restrict wrong) {
+kernel void check_triangles(int n, filter_bound bound, global const int* restrict offsets,
+                            global const int* restrict of, global const double2* restrict places,
+                            global chain_vertex* restrict vertices, global chain_edge* restrict edges,
+                            global volatile uint* restrict wrong) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
@@ -320,11 +321,12 @@ kernel void jump_apexes(int n, global const int2* restrict jumps, global int2* r
 }
 
 // Chains that are wrong are gift-wrapped, by the work-items of their first vertices.
-kernel void write_chain_rows(int n, double bound, global const int* restrict chains, global const int* restrict offsets,
-                             global const int* restrict all, global const int* restrict of,
-                             global const double2* restrict places, global chain_vertex* restrict vertices,
-                             global chain_edge* restrict edges, global const int2* restrict jumps,
-                             global const uint* restrict wrong, global int* restrict triangles) {
+kernel void write_chain_rows(int n, filter_bound bound, global const int* restrict chains,
+                             global const int* restrict offsets, global const int* restrict all,
+                             global const int* restrict of, global const double2* restrict places,
+                             global chain_vertex* restrict vertices, global chain_edge* restrict edges,
+                             global const int2* restrict jumps, global const uint* restrict wrong,
+                             global int* restrict triangles) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first, c = chains[of[i]];

@@ -18,7 +18,7 @@ kernel void gather_vertices(int n, int count, global const int* restrict offsets
   if (i < min(n, offsets[count])) places[i] = points[chain[i]];
 }
 
-kernel void triangulate_chains(int n, int wrapped_most, int alone_most, double bound,
+kernel void triangulate_chains(int n, int wrapped_most, int alone_most, filter_bound bound,
                                global const int* restrict offsets, global const double2* restrict places,
                                global chain_vertex* restrict vertices, global chain_edge* restrict edges,
                                global int* restrict triangles) {

@@ -295,8 +295,8 @@ kernel void finish_regions(int n, int rule, int outside, global const int* level
 // seeds: in each set by ascending x, scaled by frames. found: INT_MAX throughout; gets the first triangle that contains
 // the seed. barred: 0 throughout; gets 1 if the seed is on a constraint.
 kernel void find_holes(int n, int sets, global const int* restrict triangle_offsets,
-                       global const int* restrict hole_offsets, global const query_frame* restrict frames, double bound,
-                       global const double* restrict input, global const int* restrict triangles,
+                       global const int* restrict hole_offsets, global const query_frame* restrict frames,
+                       filter_bound bound, global const double* restrict input, global const int* restrict triangles,
                        global const uchar* restrict constrained, global const double2* restrict seeds,
                        global volatile int* restrict found, global uchar* restrict barred) {
   const int t = get_global_id(0);

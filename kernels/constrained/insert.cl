@@ -44,7 +44,7 @@ static inline uint rank_of(int constraint) {
 }
 
 static inline walked_mesh mesh_of(global const double* points, global const int* triangles, global const int* neighbors,
-                                  double bound) {
+                                  filter_bound bound) {
   walked_mesh mesh;
   mesh.points = points;
   mesh.triangles = triangles;
@@ -169,7 +169,7 @@ FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walke
 
 // n keys of segments, see segments.cl. flags: bytes, four in each word. ends: of the first piece, the lexicographically
 // smaller one first. Stops counting pieces at the limit.
-kernel void walk_segments(int n, uint limit, double bound, global const double* restrict points,
+kernel void walk_segments(int n, uint limit, filter_bound bound, global const double* restrict points,
                           global const int* restrict triangles, global const int* restrict neighbors,
                           global const int* restrict hull, global const ulong* restrict keys,
                           global volatile uint* restrict claims, global volatile uint* restrict flags,
@@ -222,7 +222,7 @@ kernel void walk_segments(int n, uint limit, double bound, global const double* 
 
 // The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
 // claims: of which nothing is used any more.
-kernel void write_pieces(int n, double bound, global const double* restrict points,
+kernel void write_pieces(int n, filter_bound bound, global const double* restrict points,
                          global const int* restrict triangles, global const int* restrict neighbors,
                          global const int* restrict hull, global const ulong* restrict keys,
                          global const uint* restrict offsets, global volatile uint* restrict claims,
@@ -342,7 +342,7 @@ static inline int hold_edge(int corner, uint rank, global const int* neighbors, 
 }
 
 // offsets: of the entries. lefts: how many of these are on the left.
-kernel void choose_constraints(int n, double bound, global const int* restrict list,
+kernel void choose_constraints(int n, filter_bound bound, global const int* restrict list,
                                global const uint* restrict offsets, global const double* restrict points,
                                global const int* restrict triangles, global const int* restrict neighbors,
                                global const uint* restrict claims, global const uchar* restrict flags,
@@ -424,7 +424,8 @@ static inline void join(int corner, int other, const replaced_rows* rows) {
 #define BASE_CORNER 2
 
 // The circles through the chord's ends and one of the vertices between are nested: the smallest.
-static inline int apex_of(int i, int k, global const chain_entry* chain, global const double* points, double bound) {
+static inline int apex_of(int i, int k, global const chain_entry* chain, global const double* points,
+                          filter_bound bound) {
   int best = i + 1;
   for (int j = best + 1; j < k; ++j) {
     if (circle_canonical(vload2(chain[i].vertex, points), vload2(chain[k].vertex, points),
@@ -436,7 +437,7 @@ static inline int apex_of(int i, int k, global const chain_entry* chain, global 
 
 // Gift-wraps a chain of `size` entries into the rows of the entries from row_entry on.
 static inline void fill_chain(int size, global chain_entry* chain, global const chain_entry* row_entry,
-                              global const double* points, double bound, const replaced_rows* rows) {
+                              global const double* points, filter_bound bound, const replaced_rows* rows) {
   int chords[SHORT_CHAINS], beyond[SHORT_CHAINS];
   int open = 1;
   chords[0] = size - 1;
@@ -470,7 +471,7 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
 // Constraints whose entries' points are fetched. Entries follow each other in memory, so they need not be.
 #define CAVITIES_AHEAD 4
 
-kernel void fill_cavities(int n, uint mark, double bound, global const int* restrict list,
+kernel void fill_cavities(int n, uint mark, filter_bound bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
                           global const double* restrict points, global int* restrict triangles,
@@ -563,7 +564,7 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
 }
 
 // The constraints of the list that have not won walk and claim again. sizes: as those of walk_segments.
-kernel void walk_constraints(int n, double bound, global const int* restrict list,
+kernel void walk_constraints(int n, filter_bound bound, global const int* restrict list,
                              global const uchar* restrict outcomes, global const double* restrict points,
                              global const int* restrict triangles, global const int* restrict neighbors,
                              global const uint* restrict places, global volatile uint* restrict claims,
@@ -623,7 +624,7 @@ kernel void measure_long(int n, global const int* restrict winners, global const
 }
 
 // offsets: the scanned counts. chain_offsets: where the chains begin, two per winner, and their end.
-kernel void gather_long(int n, double bound, global const int* restrict winners, global const int* restrict list,
+kernel void gather_long(int n, filter_bound bound, global const int* restrict winners, global const int* restrict list,
                         global const uint* restrict offsets, global const constraint_walk* restrict walks,
                         global const double* restrict points, global const int* restrict triangles,
                         global const int* restrict neighbors, global const uint* restrict claims,

@@ -15,7 +15,7 @@
 // The in-circle test of the apexes beside half-edge h and its twin: 0 if they are cocircular, 1 if the edge is not
 // Delaunay, UNDECIDED.
 static inline int circle_beside(int h, int twin, global const int* triangles, global const double2* points,
-                                double bound, int exact) {
+                                filter_bound bound, int exact) {
   const double2 apex = points[triangles[opposite_corner(h)]], beyond = points[triangles[opposite_corner(twin)]];
   const double2 from = points[halfedge_from(triangles, h)], to = points[halfedge_to(triangles, h)];
   return exact ? circle_undecided(apex, from, to, beyond, bound) : circle_filtered(apex, from, to, beyond, bound);
@@ -23,7 +23,7 @@ static inline int circle_beside(int h, int twin, global const int* triangles, gl
 
 // flags[h], for the smaller half-edge of each interior edge: 1 cocircular, 0 not, or FLAG_UNDECIDED; 0 for all others.
 // broken[0] gets BROKEN_CIRCLE if an edge is not Delaunay.
-kernel void cocircular_flags(int n, double bound, global const int* restrict triangles,
+kernel void cocircular_flags(int n, filter_bound bound, global const int* restrict triangles,
                              global const int* restrict twins, global const double2* restrict points,
                              global uchar* restrict flags, global volatile int* restrict broken) {
   const int h = get_global_id(0);
@@ -39,7 +39,7 @@ kernel void cocircular_flags(int n, double bound, global const int* restrict tri
   }
 }
 
-kernel void cocircular_exact(double bound, global const uint* restrict count, global const int* restrict list,
+kernel void cocircular_exact(filter_bound bound, global const uint* restrict count, global const int* restrict list,
                              global const int* restrict triangles, global const int* restrict twins,
                              global const double2* restrict points, global uchar* restrict flags,
                              global volatile int* restrict broken) {
@@ -53,7 +53,7 @@ kernel void cocircular_exact(double bound, global const uint* restrict count, gl
 }
 
 // found[0]: whether the apexes beside one of the listed half-edges are cocircular.
-kernel void cocircular_listed(int n, double bound, global const int* restrict list,
+kernel void cocircular_listed(int n, filter_bound bound, global const int* restrict list,
                               global const int* restrict triangles, global const int* restrict twins,
                               global const double2* restrict points, global volatile int* restrict found,
                               global volatile int* restrict broken) {

@@ -399,10 +399,11 @@ static inline int first_past(hull_frame* frame, sequence s, int low, int high, h
 
 // A work-group takes a region. The sequences become the hulls; other_ids and other_projections are as large as they
 // are.
-kernel void hull_chains(int regions, double bound, global const int* restrict begins, global const int* restrict axis,
-                        global const double* restrict cut, global const double2* restrict points, global int* ids,
-                        global double2* projections, global int* other_ids, global double2* other_projections,
-                        global uint* restrict sizes, global volatile uint* restrict undecided COUNTERS) {
+kernel void hull_chains(int regions, filter_bound bound, global const int* restrict begins,
+                        global const int* restrict axis, global const double* restrict cut,
+                        global const double2* restrict points, global int* ids, global double2* projections,
+                        global int* other_ids, global double2* other_projections, global uint* restrict sizes,
+                        global volatile uint* restrict undecided COUNTERS) {
   local int hull_size[LARGEST_TILE_GROUP], kept_left[LARGEST_TILE_GROUP], first_right[LARGEST_TILE_GROUP];
   local int past[LARGEST_TILE_GROUP];
   const int r = get_group_id(0), me = get_local_id(0), group = get_local_size(0);

@@ -53,14 +53,14 @@ static inline path_vertex path_vertex_at(int place, int first, int last, int a, 
 #define EDGE_UNDECIDED 4
 
 // Of the path's vertex, b and c.
-static inline int turn_at(path_vertex* v, double2 b, double2 c, double bound, int exact) {
+static inline int turn_at(path_vertex* v, double2 b, double2 c, filter_bound bound, int exact) {
   TALLY(*v, orientations, 1);
   return exact ? orient_exact(v->m, b, c) : orient_filtered(v->m, b, c, bound);
 }
 
 // The edge to point x. A point between the neighbours in u is off the path, so that its own side of the cut line is its
 // edge's. Beyond them it may be on the path itself, and one neighbour's edge parts its half of the plane. UNDECIDED.
-static inline int edge_of(path_vertex* v, int id, double2 x, double bound, int exact) {
+static inline int edge_of(path_vertex* v, int id, double2 x, filter_bound bound, int exact) {
   if (id == v->next_id) return EDGE_NEXT;
   if (id == v->previous_id) return EDGE_PREVIOUS;
   const int is_after = x.y > v->next.y;
@@ -73,7 +73,7 @@ static inline int edge_of(path_vertex* v, int id, double2 x, double bound, int e
 }
 
 // Whether, of two edges on one side of the path, the first comes first counter-clockwise. UNDECIDED.
-static inline int comes_first(path_vertex* v, int side, double2 x, double2 y, double bound, int exact) {
+static inline int comes_first(path_vertex* v, int side, double2 x, double2 y, filter_bound bound, int exact) {
   TALLY(*v, arithmetic, 2);
   const int x_along = sign_of(x.y - v->m.y);
   const int y_along = sign_of(y.y - v->m.y);
@@ -85,8 +85,8 @@ static inline int comes_first(path_vertex* v, int side, double2 x, double2 y, do
 
 // The code of a corner on the path, or CODE_UNDECIDED; then what was counted in v goes, and the exact evaluation
 // counts.
-static inline int code_on_path(path_vertex* v, int before_id, double2 before, int after_id, double2 after, double bound,
-                               int exact) {
+static inline int code_on_path(path_vertex* v, int before_id, double2 before, int after_id, double2 after,
+                               filter_bound bound, int exact) {
   const int a = edge_of(v, after_id, after, bound, exact);
   const int b = edge_of(v, before_id, before, bound, exact);
   if (a == EDGE_UNDECIDED || b == EDGE_UNDECIDED) return CODE_UNDECIDED;
@@ -111,7 +111,7 @@ static inline int code_on_path(path_vertex* v, int before_id, double2 before, in
 
 // place: the corner's vertex on its region's path, or -1.
 // kept[points_count + i]: 0 if prune found that corner i's vertex is not on the path.
-kernel void corner_codes(int n, int points_count, double bound, global const uchar* restrict kept,
+kernel void corner_codes(int n, int points_count, filter_bound bound, global const uchar* restrict kept,
                          global const int* restrict corners, global const int* restrict regions,
                          global const int* restrict axis, global const double* restrict cut,
                          global const double2* restrict points, global const int* restrict path_offsets,

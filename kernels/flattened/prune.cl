@@ -46,9 +46,10 @@ kernel void candidate_flags(int n, int elements, global const int* restrict regi
 // vertex whose chord p is below. depth: the rounded depth of a point that may be kept. It is infinite for a point that
 // is lower than the path's vertex of the same u, so that the first round takes it: a mirror image of that vertex in the
 // cut line is not strictly below any later chord from there.
-static inline int held_against(int id, double2 p, int* low, int last, int axis, double q, int keep_on, double bound,
-                               global const double2* restrict points, global const int* restrict path,
-                               global const double2* restrict path_projections, double* depth COUNTERS) {
+static inline int held_against(int id, double2 p, int* low, int last, int axis, double q, int keep_on,
+                               filter_bound bound, global const double2* restrict points,
+                               global const int* restrict path, global const double2* restrict path_projections,
+                               double* depth COUNTERS) {
   const int planar = is_planar(axis);
   COUNT(HULL, ARITHMETIC, 1);
   if (path_projections[*low].y == p.y) {
@@ -88,13 +89,14 @@ kernel void chord_bands(int n, int regions, global const int* restrict path_offs
 // chord: so the chord of the first of them in u is searched, and the last is tested for the same chord. For each point
 // that is not dropped, chord is the path vertex whose chord it is held against, and depth is its depth below that
 // chord. ids is written for undecided points only. rough: keeps undecided points, and writes nothing but flags.
-kernel void prune_points(int n, int elements, int keep_on, int rough, double bound, global const int* restrict regions,
-                         global const int* restrict x_list, global const int* restrict y_list,
-                         global const double2* restrict projections, global const int* restrict axis,
-                         global const double* restrict cut, global const double2* restrict points,
-                         global const double* restrict band, global const int* restrict path_offsets,
-                         global const int* restrict path, global const double2* restrict path_projections,
-                         global int* restrict ids, global int* restrict chord, global double* restrict depth,
+kernel void prune_points(int n, int elements, int keep_on, int rough, filter_bound bound,
+                         global const int* restrict regions, global const int* restrict x_list,
+                         global const int* restrict y_list, global const double2* restrict projections,
+                         global const int* restrict axis, global const double* restrict cut,
+                         global const double2* restrict points, global const double* restrict band,
+                         global const int* restrict path_offsets, global const int* restrict path,
+                         global const double2* restrict path_projections, global int* restrict ids,
+                         global int* restrict chord, global double* restrict depth,
                          global uchar* restrict flags COUNTERS) {
   const int bucket = get_global_id(0);
   if (bucket < n) {
@@ -143,12 +145,13 @@ kernel void prune_points(int n, int elements, int keep_on, int rough, double bou
 }
 
 // Corners' vertices: element points_count + i is corner i. rough: as in prune_points.
-kernel void prune_corners(int n, int points_count, int rough, double bound, global const int* restrict corner_regions,
-                          global const int* restrict corners, global const int* restrict axis,
-                          global const double* restrict cut, global const double2* restrict points,
-                          global const double* restrict band, global const int* restrict path_offsets,
-                          global const int* restrict path, global const double2* restrict path_projections,
-                          global int* restrict ids, global int* restrict chord, global double* restrict depth,
+kernel void prune_corners(int n, int points_count, int rough, filter_bound bound,
+                          global const int* restrict corner_regions, global const int* restrict corners,
+                          global const int* restrict axis, global const double* restrict cut,
+                          global const double2* restrict points, global const double* restrict band,
+                          global const int* restrict path_offsets, global const int* restrict path,
+                          global const double2* restrict path_projections, global int* restrict ids,
+                          global int* restrict chord, global double* restrict depth,
                           global uchar* restrict flags COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {

@@ -27,7 +27,7 @@
 #include "shared/segmented_arg_reduce.h"
 
 // projections[i]: of point i, as path_projections. flags: 1 strictly below the chord, 0 not, or FLAG_UNDECIDED.
-kernel void hull_depths(int n, double bound, global const int* restrict segment,
+kernel void hull_depths(int n, filter_bound bound, global const int* restrict segment,
                         global const double2* restrict projections, global const double2* restrict path_projections,
                         global const int* restrict path_region, global const int* restrict axis,
                         global double* restrict depth, global uchar* restrict flags COUNTERS) {
@@ -108,7 +108,7 @@ kernel void tilted_depths(int n, global const int* restrict segment, global cons
 }
 
 // Drops points that are certainly not below a chord to the new vertex. Undecided points stay, which does no harm.
-kernel void drop_pairs(int n, double bound, global const int* restrict segment, global const int* restrict first,
+kernel void drop_pairs(int n, filter_bound bound, global const int* restrict segment, global const int* restrict first,
                        global const double2* restrict projections, global const int* restrict path_region,
                        global const int* restrict axis, global const int* restrict deepest,
                        global uchar* restrict flags COUNTERS) {
@@ -217,7 +217,7 @@ kernel void find_path_offsets(int n, global const int* restrict path_region, glo
 // flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours. Of two neighbours
 // with equal u, the one whose projection is not the lower one is above. kept: where the vertices stood in the path of
 // the round before; those whose neighbours are the same need no second look.
-kernel void path_flags(int n, double bound, int first_round, global const int* restrict kept,
+kernel void path_flags(int n, filter_bound bound, int first_round, global const int* restrict kept,
                        global const int* restrict path, global const double2* restrict path_projections,
                        global const int* restrict path_region, global const int* restrict path_offsets,
                        global const int* restrict axis, global const double* restrict cut,

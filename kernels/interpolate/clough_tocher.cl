@@ -66,7 +66,7 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 kernel void interpolate_clough_tocher(int n, int sets, int columns, double outside,
                                       global const int* restrict query_offsets,
                                       global const query_frame* restrict frames, global const int* restrict order,
-                                      global const double2* restrict placed, double bound,
+                                      global const double2* restrict placed, filter_bound bound,
                                       global const double2* restrict points, global const int* restrict source,
                                       global const face* restrict faces, global const int* restrict found,
                                       global const double* restrict values, global const double2* restrict gradients,

@@ -10,7 +10,7 @@
 // not count, not even if its value is NaN.
 kernel void interpolate_linear(int n, int sets, int columns, double outside, global const int* restrict query_offsets,
                                global const query_frame* restrict frames, global const int* restrict order,
-                               global const double2* restrict placed, double bound,
+                               global const double2* restrict placed, filter_bound bound,
                                global const double2* restrict points, global const int* restrict source,
                                global const face* restrict faces, global const int* restrict found,
                                global const double* restrict values, global double* restrict results) {

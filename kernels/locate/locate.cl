@@ -209,7 +209,7 @@ kernel void start_triangles(int n, int points, int last, global const int* restr
 // beyond one of its edges, on the hull. GIVEN_UP after `most` steps. start: a triangle. points are scaled by unit more,
 // as q is.
 #define GIVEN_UP INT_MIN
-static inline int walk(double2 q, int start, int most, double bound, double unit, global const double2* points,
+static inline int walk(double2 q, int start, int most, filter_bound bound, double unit, global const double2* points,
                        global const face* faces, global const int* first_triangle) {
   // Triangle t, the corner k that was reached last, and the edge from a to b opposite to it, which has q on its left,
   // or on it if it is the first one.
@@ -257,7 +257,7 @@ static inline int walk(double2 q, int start, int most, double bound, double unit
 
 // Where a walk from triangle t goes that has q strictly beyond an edge, as far as the filter can decide; t if it does
 // not. Without branches, since they could not be predicted.
-static inline int step_towards(double2 q, int t, double bound, double unit, global const double2* points,
+static inline int step_towards(double2 q, int t, filter_bound bound, double unit, global const double2* points,
                                global const face* faces) {
   global const face* f = &faces[t];
   const double2 a = unit * points[f->corner[0]] - q, b = unit * points[f->corner[1]] - q,
@@ -274,7 +274,7 @@ static inline int step_towards(double2 q, int t, double bound, double unit, glob
 // Brings walks of queries [first, last), DESCENTS at most, nearer to their ends at the same time, as each step waits
 // for the one before: until few of them move, and by no more than so many steps.
 #define MOST_APPROACH 32
-static inline void approach(int first, int last, double bound, double unit, global const double2* placed,
+static inline void approach(int first, int last, filter_bound bound, double unit, global const double2* placed,
                             global const double2* points, global const face* faces, int* at) {
   int moved = last - first;
   for (int step = 0; step < MOST_APPROACH && 2 * moved >= last - first; ++step) {
@@ -338,7 +338,7 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
                            global const cut_node* restrict nodes, global const int* restrict starts,
                            global const query_frame* restrict frames, global const double* restrict queries,
                            global const ulong* restrict keys, global int* restrict order,
-                           global double2* restrict placed, double bound, global const double2* restrict points,
+                           global double2* restrict placed, filter_bound bound, global const double2* restrict points,
                            global const face* restrict faces, global const int* restrict first_triangle,
                            global int* restrict found) {
   const int c = get_global_id(0);
@@ -389,8 +389,8 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
 
 // The best of a vertex and its neighbours: counter-clockwise around it, and on the hull then the other way. left: how
 // many neighbours may be looked at, which is lowered; less than 0 if these are not all.
-static inline nearby best_around(nearby vertex, double2 q, double bound, double unit, global const double2* points,
-                                 global const face* faces, int* left) {
+static inline nearby best_around(nearby vertex, double2 q, filter_bound bound, double unit,
+                                 global const double2* points, global const face* faces, int* left) {
   nearby best = vertex;
   const face first = faces[vertex.triangle];
   const int k = corner_at(first, vertex.vertex);
@@ -419,8 +419,8 @@ static inline nearby best_around(nearby vertex, double2 q, double bound, double 
 // Greedy descent, from a corner of triangle t, over at most so many neighbours; GIVEN_UP if these do not suffice. In a
 // Delaunay triangulation a vertex that is not nearest has a neighbour that is nearer; those that are nearest with
 // others lie on one empty circle, whose first vertex is joined to all.
-static inline int nearest_vertex(double2 q, int t, int most, double bound, double unit, global const double2* points,
-                                 global const face* faces, global const int* clearances) {
+static inline int nearest_vertex(double2 q, int t, int most, filter_bound bound, double unit,
+                                 global const double2* points, global const face* faces, global const int* clearances) {
   nearby best, before;
   best.vertex = faces[t].corner[0];
   best.triangle = t;
@@ -442,19 +442,19 @@ static inline int nearest_vertex(double2 q, int t, int most, double bound, doubl
 kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, int levels, int sets_with_levels,
                            global const int* restrict query_offsets, global const mesh_set* restrict records,
                            global const query_frame* restrict frames, global const int* restrict order,
-                           global const double2* restrict placed, double bound, global const double2* restrict points,
-                           global const int* restrict source, global const int* restrict clearances,
-                           global const face* restrict faces, global const double2* restrict hull_points,
-                           global const int* restrict hull, global const int* restrict starts,
-                           global const fan_part* restrict fans, global const int* restrict first_vertices,
-                           global const vertex_box* restrict boxes, global const int* restrict long_sets,
-                           global const mesh_set* restrict sample_records, global const double2* restrict sample_points,
-                           global const int* restrict sample_source, global const int* restrict sample_clearances,
-                           global const face* restrict sample_faces, global const double2* restrict sample_hull_points,
-                           global const int* restrict sample_hull, global const int* restrict sample_starts,
-                           global const fan_part* restrict sample_fans, global const int* restrict below,
-                           global const int* restrict found, global int* restrict nearest,
-                           global volatile int* restrict unanswered) {
+                           global const double2* restrict placed, filter_bound bound,
+                           global const double2* restrict points, global const int* restrict source,
+                           global const int* restrict clearances, global const face* restrict faces,
+                           global const double2* restrict hull_points, global const int* restrict hull,
+                           global const int* restrict starts, global const fan_part* restrict fans,
+                           global const int* restrict first_vertices, global const vertex_box* restrict boxes,
+                           global const int* restrict long_sets, global const mesh_set* restrict sample_records,
+                           global const double2* restrict sample_points, global const int* restrict sample_source,
+                           global const int* restrict sample_clearances, global const face* restrict sample_faces,
+                           global const double2* restrict sample_hull_points, global const int* restrict sample_hull,
+                           global const int* restrict sample_starts, global const fan_part* restrict sample_fans,
+                           global const int* restrict below, global const int* restrict found,
+                           global int* restrict nearest, global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
     const double2 q = placed[i];

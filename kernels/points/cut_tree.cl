@@ -34,8 +34,8 @@ static inline sample_chunk chunk_of(int c, int tree_count, global const int* fir
 }
 
 kernel void draw_samples(int n, int tree_count, global const int* restrict first_chunks,
-                         global const sampled_tree* restrict trees, global const double* restrict input,
-                         global double2* restrict samples, global int* restrict indices) {
+                         global const sampled_tree* restrict trees, global const coordinate* restrict input,
+                         global coordinate2* restrict samples, global int* restrict indices) {
   const int c = get_global_id(0);
   if (c < n) {
     const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
@@ -51,7 +51,7 @@ kernel void draw_samples(int n, int tree_count, global const int* restrict first
 // Two work-items per chunk, one per axis. elements, spare and order hold the order along x and then the one along y. Of
 // equal points the one drawn first comes first, here and in all that follows.
 kernel void sort_chunks(int n, int tree_count, global const int* restrict first_chunks,
-                        global const sampled_tree* restrict trees, int all_samples, global const double2* samples,
+                        global const sampled_tree* restrict trees, int all_samples, global const coordinate2* samples,
                         global keyed* elements, global keyed* spare, global int* order) {
   const int w = get_global_id(0);
   if (w < n) {
@@ -68,7 +68,7 @@ kernel void sort_chunks(int n, int tree_count, global const int* restrict first_
 
 // How many of the first `taken` elements of two merged runs are from the low one.
 static inline int taken_from_low(int taken, int run, global const int* low, global const int* high,
-                                 global const double2* samples, int axis) {
+                                 global const coordinate2* samples, int axis) {
   int least = max(0, taken - run), most = min(taken, run);
   while (least < most) {
     const int middle = (least + most) / 2;
@@ -85,7 +85,7 @@ static inline int taken_from_low(int taken, int run, global const int* low, glob
 // sorted already are copied.
 kernel void merge_runs(int n, int tree_count, global const int* restrict first_chunks,
                        global const sampled_tree* restrict trees, int all_samples, int doublings,
-                       global const double2* samples, global const int* from, global int* to) {
+                       global const coordinate2* samples, global const int* from, global int* to) {
   const int w = get_global_id(0);
   if (w < n) {
     const int c = w / 2, axis = w % 2;
@@ -110,8 +110,8 @@ kernel void merge_runs(int n, int tree_count, global const int* restrict first_c
   }
 }
 
-static inline int goes_low(int sample, sample_cut cut, global const double2* samples) {
-  const double2 p = samples[sample];
+static inline int goes_low(int sample, sample_cut cut, global const coordinate2* samples) {
+  const coordinate2 p = samples[sample];
   const int is_equal = (p.x == cut.pivot.x) & (p.y == cut.pivot.y);
   return precedes(p, cut.pivot, cut.axis) | (is_equal & (sample < cut.sample));
 }
@@ -120,7 +120,7 @@ static inline int goes_low(int sample, sample_cut cut, global const double2* sam
 // than the one along the axis go low. order: along x, then along y.
 kernel void count_low(int n, int tree_count, global const int* restrict first_chunks,
                       global const sampled_tree* restrict trees, int all_samples, int level,
-                      global const double2* samples, global const int* order, global cut_node* restrict nodes,
+                      global const coordinate2* samples, global const int* order, global cut_node* restrict nodes,
                       global uint* restrict counts) {
   const int c = get_global_id(0);
   if (c < n) {
@@ -145,7 +145,7 @@ kernel void count_low(int n, int tree_count, global const int* restrict first_ch
 // along the axis falls apart by position, the other one by a stable split.
 kernel void split_chunks(int n, int tree_count, global const int* restrict first_chunks,
                          global const sampled_tree* restrict trees, int all_samples, int level,
-                         global const double2* samples, global const uint* restrict scanned, global const int* from,
+                         global const coordinate2* samples, global const uint* restrict scanned, global const int* from,
                          global int* to) {
   const int c = get_global_id(0);
   if (c < n) {
@@ -174,7 +174,7 @@ kernel void split_chunks(int n, int tree_count, global const int* restrict first
 }
 
 // Splits [begin, begin + size) of an order stably.
-static inline void split_run(int begin, int size, sample_cut cut, global const double2* samples, global int* order,
+static inline void split_run(int begin, int size, sample_cut cut, global const coordinate2* samples, global int* order,
                              global int* spare) {
   int low = begin, high = begin;
   for (int i = begin; i < begin + size; ++i) {
@@ -190,7 +190,7 @@ static inline void split_run(int begin, int size, sample_cut cut, global const d
 
 // Cuts the nodes of a chunk's samples and all nodes below. Both orders are then that of the leaves.
 kernel void cut_chunks(int n, int tree_count, global const int* restrict first_chunks,
-                       global const sampled_tree* restrict trees, int all_samples, global const double2* samples,
+                       global const sampled_tree* restrict trees, int all_samples, global const coordinate2* samples,
                        global int* order, global int* spare, global cut_node* restrict nodes) {
   const int c = get_global_id(0);
   if (c < n) {

@@ -39,8 +39,8 @@ static inline sample_tile tile_of(int c, int tiles, int tree_count, global const
 }
 
 kernel void draw_each_sample(int n, int tree_count, global const int* restrict first_samples,
-                             global const sampled_tree* restrict trees, global const double* restrict input,
-                             global double2* restrict samples, global int* restrict indices) {
+                             global const sampled_tree* restrict trees, global const coordinate* restrict input,
+                             global coordinate2* restrict samples, global int* restrict indices) {
   const int i = get_global_id(0);
   if (i < n) {
     const sampled_tree own = trees[segment_of(i, tree_count, first_samples)];
@@ -51,12 +51,12 @@ kernel void draw_each_sample(int n, int tree_count, global const int* restrict f
 }
 
 // How many elements of a tile's sorted run [begin, end) come before p, or are equal to it and are to come before it.
-static inline int places_before(double2 p, int equals_count, int begin, int end, local const int* order,
-                                local const double2* points, int axis) {
+static inline int places_before(coordinate2 p, int equals_count, int begin, int end, local const int* order,
+                                local const coordinate2* points, int axis) {
   int least = begin, most = end;
   while (least < most) {
     const int middle = (least + most) / 2;
-    const double2 q = points[order[middle]];
+    const coordinate2 q = points[order[middle]];
     const int is_before = equals_count ? !precedes(p, q, axis) : precedes(q, p, axis);
     least = is_before ? middle + 1 : least;
     most = is_before ? most : middle;
@@ -65,7 +65,7 @@ static inline int places_before(double2 p, int equals_count, int begin, int end,
 }
 
 // The place of element i of a tile whose pairs of runs are merged.
-static inline int merged_place(int i, int run, int size, local const int* order, local const double2* points,
+static inline int merged_place(int i, int run, int size, local const int* order, local const coordinate2* points,
                                int axis) {
   const int own = i & -run, is_high = (i & run) != 0;
   const int sibling = is_high ? own - run : min(size, own + run);
@@ -77,8 +77,9 @@ static inline int merged_place(int i, int run, int size, local const int* order,
 // sample, its places in both. Of equal points the one drawn first comes first, here and in all that follows.
 kernel void sort_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
                        global const sampled_tree* restrict trees, int all_samples,
-                       global const double2* restrict samples, global int* restrict order, global int* restrict ranks) {
-  local double2 points[LARGEST_SAMPLE_TILE];
+                       global const coordinate2* restrict samples, global int* restrict order,
+                       global int* restrict ranks) {
+  local coordinate2 points[LARGEST_SAMPLE_TILE];
   local int orders[2 * LARGEST_SAMPLE_TILE];
   const int me = get_local_id(0), group = get_local_size(0);
   const int w = get_group_id(0), axis = w % 2;
@@ -108,7 +109,7 @@ kernel void sort_tiles(int tiles, int tree_count, global const int* restrict fir
 // are sorted already are copied.
 kernel void merge_tiles(int n, int tree_count, global const int* restrict first_samples,
                         global const sampled_tree* restrict trees, int all_samples, int widenings,
-                        global const double2* restrict samples, global const int* restrict from,
+                        global const coordinate2* restrict samples, global const int* restrict from,
                         global int* restrict to, global int* restrict ranks) {
   const int w = get_global_id(0);
   if (w < n) {
@@ -123,7 +124,7 @@ kernel void merge_tiles(int n, int tree_count, global const int* restrict first_
       const int runs = min(MERGED_RUNS, own.samples / run - first_run);
       const int begin = own.first_sample + first_run * run;
       global const int* const order = from + axis * all_samples + begin;
-      const double2 p = samples[sample];
+      const coordinate2 p = samples[sample];
       int before[MERGED_RUNS];
       for (int r = 0; r < MERGED_RUNS; ++r) before[r] = 0;
       // All runs are as long as each other, so that the searches take their steps at the same time.
@@ -131,7 +132,7 @@ kernel void merge_tiles(int n, int tree_count, global const int* restrict first_
         for (int r = 0; r < MERGED_RUNS; ++r) {
           const int next = before[r] + step;
           if (r < runs && next <= run) {
-            const double2 q = samples[order[r * run + next - 1]];
+            const coordinate2 q = samples[order[r * run + next - 1]];
             if (r < my_run ? !precedes(p, q, axis) : precedes(q, p, axis)) before[r] = next;
           }
         }
@@ -151,7 +152,7 @@ typedef struct {
   int pivot_rank;
 } node_part;
 
-static inline node_part part_of(sample_tile tile, int level, int all_samples, global const double2* samples,
+static inline node_part part_of(sample_tile tile, int level, int all_samples, global const coordinate2* samples,
                                 global const int* order, global const int* ranks) {
   node_part part;
   part.size = node_samples(tile.own, level);
@@ -173,7 +174,7 @@ static inline int goes_below(int sample, node_part part, global const int* ranks
 // than the one along the axis go low. order: along x, then along y.
 kernel void count_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
                         global const sampled_tree* restrict trees, int all_samples, int level,
-                        global const double2* restrict samples, global const int* restrict order,
+                        global const coordinate2* restrict samples, global const int* restrict order,
                         global const int* restrict ranks, global cut_node* restrict nodes,
                         global uint* restrict counts) {
   local uint sums[LARGEST_TILE_GROUP];
@@ -200,7 +201,7 @@ kernel void count_tiles(int tiles, int tree_count, global const int* restrict fi
 // along the axis falls apart by position, the other one by a stable split.
 kernel void split_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
                         global const sampled_tree* restrict trees, int all_samples, int level,
-                        global const double2* restrict samples, global const uint* restrict counts,
+                        global const coordinate2* restrict samples, global const uint* restrict counts,
                         global const int* restrict from, global const int* restrict ranks, global int* restrict to) {
   local uint sums[LARGEST_TILE_GROUP];
   const int me = get_local_id(0), group = get_local_size(0);
@@ -234,7 +235,7 @@ static inline int is_below(int2 sample, int2 cut) { return (cut.x ? sample.y : s
 // ranks lead back to samples. order: both orders are then that of the leaves.
 kernel void cut_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
                       global const sampled_tree* restrict trees, int all_samples,
-                      global const double2* restrict samples, global const int* restrict sorted,
+                      global const coordinate2* restrict samples, global const int* restrict sorted,
                       global const int* restrict ranks, global const int* from, global cut_node* restrict nodes,
                       global int* order) {
   local int2 by_axis[2 * LARGEST_SAMPLE_TILE];
@@ -257,8 +258,8 @@ kernel void cut_tiles(int tiles, int tree_count, global const int* restrict firs
   for (int size = tile.size; size > own.leaf; size /= 2) {
     for (int begin = me * size; begin < tile.size; begin += group * size) {
       const int low = begin + size / 4, high = begin + size - 1 - size / 4;
-      const double width = samples[sorted[by_x[high].x]].x - samples[sorted[by_x[low].x]].x;
-      const double height = samples[sorted[by_y[high].x]].y - samples[sorted[by_y[low].x]].y;
+      const coordinate width = rounded_difference(samples[sorted[by_x[high].x]].x, samples[sorted[by_x[low].x]].x);
+      const coordinate height = rounded_difference(samples[sorted[by_y[high].x]].y, samples[sorted[by_y[low].x]].y);
       const int axis = height > width;
       const int2 pivot = axis ? by_y[begin + size / 2] : by_x[begin + size / 2];
       cuts[begin / size] = VECTOR(int2, axis, axis ? pivot.y : pivot.x);

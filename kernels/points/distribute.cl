@@ -15,7 +15,7 @@
 #include "shared/prefetch.h"
 #include "shared/records.h"
 
-kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const double* restrict input,
+kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const coordinate* restrict input,
                          global const cut_node* restrict nodes, global int* restrict block_of_point,
                          global int* restrict cursors, global uint* restrict counts) {
   const int c = get_global_id(0);
@@ -26,7 +26,7 @@ kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, g
     const int blocks = 1 << chunk.depth;
     for (int b = 0; b < blocks; ++b) cursor[b] = 0;
     for (int i = chunk.first; i < chunk.last; i += DESCENTS) {
-      fetch_bytes(&input[2 * min(chunk.last, i + STREAM_AHEAD)], DESCENTS * sizeof(double2));
+      fetch_bytes(&input[2 * min(chunk.last, i + STREAM_AHEAD)], DESCENTS * sizeof(coordinate2));
       int block[DESCENTS];
       find_leaves(i, chunk.last, input, tree, chunk.depth, block);
       for (int k = 0; k < min(DESCENTS, chunk.last - i); ++k) {
@@ -39,9 +39,9 @@ kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, g
 }
 
 kernel void move_points(int n, global const chunk_of_points* restrict chunks, global const int* restrict set_first,
-                        global const double* restrict input, scaling scale, global const int* restrict block_of_point,
-                        global const uint* restrict scanned, global int* restrict cursors,
-                        global double2* restrict points, global int* restrict source,
+                        global const coordinate* restrict input, scaling scale,
+                        global const int* restrict block_of_point, global const uint* restrict scanned,
+                        global int* restrict cursors, global coordinate2* restrict points, global int* restrict source,
                         global int* restrict representatives) {
   const int c = get_global_id(0);
   if (c < n) {

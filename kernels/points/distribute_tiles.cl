@@ -55,7 +55,7 @@ WITH_BARRIERS void write_counts(point_tile tile, local const uint* counts, int b
 
 // set_offsets: the first point of each set.
 kernel void count_tile_blocks(int n, int size, int set_count, global const int* restrict set_offsets,
-                              global const set_of_blocks* restrict sets, global const double* restrict input,
+                              global const set_of_blocks* restrict sets, global const coordinate* restrict input,
                               global const cut_node* restrict nodes, int bits, global int* restrict block_of_point,
                               global int* restrict representatives, global uint* restrict table) {
   local uint counts[1 << MOST_BLOCK_BITS];
@@ -164,8 +164,8 @@ kernel void move_keys(int n, int size, int shift, int bits, int is_first, global
 // indices: as for move_keys.
 kernel void move_tiles(int n, int size, int shift, int bits, int is_first, global const int* restrict blocks,
                        global const int* restrict indices, global const uint* restrict scanned,
-                       global const double* restrict input, scaling scale, global int* restrict moved_blocks,
-                       global double2* restrict points, global int* restrict source) {
+                       global const coordinate* restrict input, scaling scale, global int* restrict moved_blocks,
+                       global coordinate2* restrict points, global int* restrict source) {
   local uint elements[2 * PADDED_TILE];
   local int starts[1 << MOST_BLOCK_BITS];
   local ulong sums[LARGEST_TILE_GROUP];
@@ -181,8 +181,9 @@ kernel void move_tiles(int n, int size, int shift, int bits, int is_first, globa
   }
 }
 
-kernel void copy_points(int n, global const double* restrict input, scaling scale, global double2* restrict points,
-                        global int* restrict source, global int* restrict representatives) {
+kernel void copy_points(int n, global const coordinate* restrict input, scaling scale,
+                        global coordinate2* restrict points, global int* restrict source,
+                        global int* restrict representatives) {
   const int i = get_global_id(0);
   if (i < n) {
     points[i] = scaled_point(i, input, scale);

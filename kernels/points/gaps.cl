@@ -46,10 +46,10 @@ static inline gap_node node_of_group(int w, int groups, int level, int tree_coun
 }
 
 // Of the halves, no part shall have more or fewer samples than these shares of what it would have if all were equal.
-#define MOST_OF_HALF 1.4
-#define LEAST_OF_HALF 0.5
+#define MOST_OF_HALF REAL(1.4)
+#define LEAST_OF_HALF REAL(0.5)
 // No part shall have less than this share of its node.
-#define LEAST_OF_NODE 0.3
+#define LEAST_OF_NODE REAL(0.3)
 
 // A stretch of `size` samples that begins at `first`; the longest of those considered.
 typedef struct {
@@ -78,7 +78,7 @@ static inline gap_range gaps_of(gap_node node) {
   return gaps;
 }
 
-static inline double along(int sample, int axis, global const double2* samples) {
+static inline coordinate along(int sample, int axis, global const coordinate2* samples) {
   return axis ? samples[sample].y : samples[sample].x;
 }
 
@@ -89,18 +89,18 @@ typedef struct {
 } gap_cut;
 
 // In the middle of the gap that begins at a place; at the node's median sample if there is none, extent 0.
-static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, double extent, int first, int axis, int all_samples,
-                                 global const double2* samples, global const int* order) {
+static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, coordinate extent, int first, int axis, int all_samples,
+                                 global const coordinate2* samples, global const int* order) {
   gap_cut cut;
   cut.axis = axis;
   global const int* const sorted = order + axis * all_samples + node.begin;
   cut.split = node.size / 2;
-  const double2 median = samples[sorted[min(cut.split, node.size - 1)]];
+  const coordinate2 median = samples[sorted[min(cut.split, node.size - 1)]];
   cut.node = node_of(axis, median);
-  if (extent > 0.0) {
-    const double low = along(sorted[first], axis, samples);
-    const double middle = low + 0.5 * extent;
-    const double at = middle > low ? middle : low + extent;
+  if (extent > 0) {
+    const coordinate low = along(sorted[first], axis, samples);
+    const coordinate middle = low + extent / 2;
+    const coordinate at = middle > low ? middle : low + extent;
     int before = first, behind = first + gaps.size;  // the one is below the cut, the other is not
     while (behind - before > 1) {
       const int between = (before + behind) / 2;
@@ -112,7 +112,7 @@ static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, double extent, i
     }
     cut.split = behind;
     // All points that are as high as the cut go high.
-    cut.node = node_of(axis, axis ? VECTOR(double2, 0.0, at) : VECTOR(double2, at, 0.0));
+    cut.node = node_of(axis, axis ? VECTOR(coordinate2, 0, at) : VECTOR(coordinate2, at, 0));
     cut.node.minor = 0;
   }
   return cut;
@@ -122,21 +122,21 @@ static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, double extent, i
 // when they were made. ranges: of each node, where its samples begin and end.
 kernel void cut_at_gaps(int groups, int level, int tree_count, global const int* restrict first_groups,
                         global const sampled_tree* restrict trees, int all_samples,
-                        global const double2* restrict samples, global const int* restrict ranks,
+                        global const coordinate2* restrict samples, global const int* restrict ranks,
                         global const int* restrict from, global int* restrict to, global int2* ranges,
                         global cut_node* restrict nodes) {
-  local double extents[LARGEST_TILE_GROUP];
+  local coordinate extents[LARGEST_TILE_GROUP];
   local int2 places[LARGEST_TILE_GROUP];
   local uint sums[LARGEST_TILE_GROUP];
   const int me = get_local_id(0), group = get_local_size(0);
   const gap_node node = node_of_group(get_group_id(0), groups, level, tree_count, first_groups, trees, ranges);
   const gap_range gaps = gaps_of(node);
-  double extent = 0.0;
+  coordinate extent = 0;
   int2 place = VECTOR(int2, 0, 0);
   for (int axis = 0; axis < 2; ++axis) {
     global const int* const sorted = from + axis * all_samples + node.begin;
     for (int i = gaps.first + me; i <= gaps.last; i += group) {
-      const double here = along(sorted[i + gaps.size], axis, samples) - along(sorted[i], axis, samples);
+      const coordinate here = along(sorted[i + gaps.size], axis, samples) - along(sorted[i], axis, samples);
       if (here > extent) {
         extent = here;
         place = VECTOR(int2, i, axis);
@@ -159,7 +159,7 @@ kernel void cut_at_gaps(int groups, int level, int tree_count, global const int*
   // Of a node without samples.
   gap_cut cut;
   cut.axis = cut.split = 0;
-  cut.node = node_of(0, VECTOR(double2, 0.0, 0.0));
+  cut.node = node_of(0, VECTOR(coordinate2, 0, 0));
   int rank = 0;
   if (has_samples) {
     cut = cut_in_gap(node, gaps, extent, place.x, place.y, all_samples, samples, from);

@@ -2,8 +2,8 @@
 //
 // inspect reads every coordinate once, with one work-item per chunk of points. If the magnitudes of sets differ too
 // much for one scaling, inspect_sets makes an account per set, and scale_sets scales each set by its own; the latter
-// has one work-item per point. widen_points converts floats to doubles, with one work-item per point. For devices with
-// many lanes, inspect_tiles.cl takes the place of inspect.
+// has one work-item per point. In fixed point it always runs, and makes integers. widen_points converts floats to
+// doubles, with one work-item per point. For devices with many lanes, inspect_tiles.cl takes the place of inspect.
 
 #include "shared/bit_account.h"
 #include "shared/codes.h"
@@ -11,14 +11,18 @@
 #include "shared/prefetch.h"
 #include "shared/search.h"
 
-// Points of single precision from `first` on.
-kernel void widen_points(int n, ulong first, global const float* restrict narrow, global double* restrict points) {
+// Points of single precision from `first` on. The bits are those of doubles.
+kernel void widen_points(int n, ulong first, global const float_bits* restrict narrow,
+                         global double_bits* restrict points) {
   const int i = get_global_id(0);
-  if (i < n) vstore2(convert_double2(vload2(first + i, narrow)), i, points);
+  if (i < n) {
+    points[2 * (long)i] = widened_bits(narrow[2 * (first + i)]);
+    points[2 * (long)i + 1] = widened_bits(narrow[2 * (first + i) + 1]);
+  }
 }
 
 // Adds the points [low, high) to an account.
-static inline void inspect_points(int low, int high, global const double* input, global volatile int* account) {
+static inline void inspect_points(int low, int high, global const double_bits* input, global volatile int* account) {
   bit_account bits = no_bits();
   int bad = NO_BAD;
   for (int i = low; i < high; ++i) {
@@ -30,7 +34,7 @@ static inline void inspect_points(int low, int high, global const double* input,
   atomic_min(&account[INSPECT_BAD], bad);
 }
 
-kernel void inspect(int n, int chunk, global const double* restrict input, global volatile int* restrict account) {
+kernel void inspect(int n, int chunk, global const double_bits* restrict input, global volatile int* restrict account) {
   const int c = get_global_id(0);
   const int low = c * chunk;
   if (low < n) inspect_points(low, min(n, low + chunk), input, account);
@@ -38,7 +42,7 @@ kernel void inspect(int n, int chunk, global const double* restrict input, globa
 
 // accounts: one per set.
 kernel void inspect_sets(int n, int chunk, int sets, global const int* restrict offsets,
-                         global const double* restrict input, global volatile int* restrict accounts) {
+                         global const double_bits* restrict input, global volatile int* restrict accounts) {
   const int c = get_global_id(0);
   const int low = c * chunk;
   if (low < n) {
@@ -49,9 +53,13 @@ kernel void inspect_sets(int n, int chunk, int sets, global const int* restrict 
   }
 }
 
-// shifts: by set.
+// shifts: by set. Without double precision, points are made of the bits of doubles.
 kernel void scale_sets(int n, int sets, global const int* restrict offsets, global const int* restrict shifts,
-                       global const double* restrict input, global double* restrict scaled_input) {
+                       global const double_bits* restrict input, global coordinate* restrict scaled_input) {
   const int i = get_global_id(0);
-  if (i < n) vstore2(scaled_point(i, input, scale_of(shifts[segment_of(i, sets, offsets)])), i, scaled_input);
+  if (i < n) {
+    const int shift = shifts[segment_of(i, sets, offsets)];
+    scaled_input[2 * (long)i] = scaled_bits(input[2 * (long)i], shift);
+    scaled_input[2 * (long)i + 1] = scaled_bits(input[2 * (long)i + 1], shift);
+  }
 }

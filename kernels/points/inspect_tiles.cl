@@ -4,7 +4,7 @@
 #include "shared/bit_account.h"
 
 // workers: how many work-items share the points.
-kernel void inspect_tiles(int n, int workers, global const double* restrict input,
+kernel void inspect_tiles(int n, int workers, global const double_bits* restrict input,
                           global volatile int* restrict account) {
   local int own[INSPECT_NUMBERS];
   const int is_first = get_local_id(0) == 0;

@@ -14,7 +14,7 @@ BEGIN_SHARED
 #define SLENDER 4096.0
 
 // The weights of a triangle's corners at q, which lies in it. Where q lies on an edge, the opposite corner has none.
-static inline void barycentric(const double2* p, double2 q, double bound, double* weight) {
+static inline void barycentric(const double2* p, double2 q, filter_bound bound, double* weight) {
   double whole = 0.0, magnitude = 0.0;
   for (int k = 0; k < 3; ++k) {
     const double2 a = p[next_corner(k)], b = p[corner_before(k)];

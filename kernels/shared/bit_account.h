@@ -1,10 +1,12 @@
-// The account of the bits of coordinates, which kernels of points/inspect.cl and points/inspect_tiles.cl make. It needs
-// isfinite, which C++ has for kernels alone (host/native/opencl.hpp).
+// The bits of coordinates as they come from the caller, in double precision: the account of them, which kernels of
+// points/inspect.cl and points/inspect_tiles.cl make, and numbers in fixed point. By integers alone, so that devices
+// without double precision read them, too.
 #ifndef FLAUNAY_BIT_ACCOUNT_H
 #define FLAUNAY_BIT_ACCOUNT_H
 
 #include "shared/codes.h"
 #include "shared/language.h"
+#include "shared/numbers.h"
 
 BEGIN_SHARED
 
@@ -17,6 +19,7 @@ typedef struct {
 #define MAGNITUDE_BITS 0x7fffffffffffffffUL
 #define MANTISSA_BITS 0x000fffffffffffffUL
 #define HIDDEN_BIT 0x0010000000000000UL
+#define INFINITE_BITS 0x7ff0000000000000UL
 
 static inline bit_account no_bits(void) {
   const bit_account none = {0, NO_LOWEST};
@@ -29,8 +32,7 @@ static inline ulong mantissa_of(ulong magnitude) {
   return (magnitude & MANTISSA_BITS) | (magnitude > MANTISSA_BITS ? HIDDEN_BIT : 0);
 }
 
-static inline void account_for(double x, bit_account* account) {
-  const ulong magnitude = as_ulong(x) & MAGNITUDE_BITS;
+static inline void account_for(ulong magnitude, bit_account* account) {
   account->most = max(account->most, magnitude);
   if (magnitude != 0) {
     const ulong mantissa = mantissa_of(magnitude);
@@ -39,11 +41,12 @@ static inline void account_for(double x, bit_account* account) {
 }
 
 // bad: becomes the point, if it is not finite and comes before.
-static inline void account_for_point(int i, GLOBAL const double* input, bit_account* account, int* bad) {
-  const double2 p = vload2(i, input);  // which need not be aligned as pairs
-  if (isfinite(p.x) && isfinite(p.y)) {
-    account_for(p.x, account);
-    account_for(p.y, account);
+static inline void account_for_point(int i, GLOBAL const double_bits* input, bit_account* account, int* bad) {
+  // Which need not be aligned as pairs.
+  const ulong x = input[2 * (long)i] & MAGNITUDE_BITS, y = input[2 * (long)i + 1] & MAGNITUDE_BITS;
+  if (x < INFINITE_BITS && y < INFINITE_BITS) {
+    account_for(x, account);
+    account_for(y, account);
   } else {
     *bad = min(*bad, i);
   }
@@ -52,6 +55,26 @@ static inline void account_for_point(int i, GLOBAL const double* input, bit_acco
 // The exponent of the largest magnitude.
 static inline int largest_exponent(bit_account account) {
   return account.most == 0 ? NO_LARGEST : unit_of(account.most) + 63 - (int)clz(mantissa_of(account.most));
+}
+
+// A coordinate, times 2^shift, as an integer: which it is, by the host's choice of the shift.
+static inline long fixed_point(ulong bits, int shift) {
+  const ulong magnitude = bits & MAGNITUDE_BITS, mantissa = mantissa_of(magnitude);
+  if (mantissa == 0) return 0;
+  const int up = unit_of(magnitude) + shift;
+  const long integer = as_long(up >= 0 ? mantissa << up : mantissa >> -up);
+  return bits >> 63 ? -integer : integer;
+}
+
+// The bits of a float as those of a double.
+static inline ulong widened_bits(uint bits) {
+  const ulong sign = (ulong)(bits >> 31) << 63, magnitude = bits & 0x7fffffffU;
+  if (magnitude >= 0x7f800000U) return sign | INFINITE_BITS | (magnitude & 0x007fffffU) << 29;
+  if (magnitude >= 0x00800000U) return sign | ((magnitude << 29) + ((ulong)(1023 - 127) << 52));
+  if (magnitude == 0) return sign;
+  // A subnormal number, of units of 2^-149, which becomes a normal one.
+  const int leading = 63 - (int)clz(magnitude);
+  return sign | ((ulong)(1023 - 149 + leading) << 52) | (magnitude << (52 - leading) & MANTISSA_BITS);
 }
 
 END_SHARED

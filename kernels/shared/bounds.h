@@ -7,18 +7,29 @@
 
 BEGIN_SHARED
 
-// Half a unit in the last place of 1: the relative error of one operation.
-#define ROUNDOFF 0x1p-53
+// The relative error of one operation on real numbers (shared/numbers.h), and of a difference of coordinates: half a
+// unit in the last place of 1 with double precision. In single precision it is twice that and a little more, because a
+// difference may be rounded twice.
+#define DOUBLE_ROUNDOFF 0x1p-53
+#define SINGLE_ROUNDOFF 0x1.00001p-23f
+#ifdef FIXED_POINT
+#define ROUNDOFF SINGLE_ROUNDOFF
+#else
+#define ROUNDOFF DOUBLE_ROUNDOFF
+#endif
 
 // The error of a computed determinant is below its bound times the sum of its terms' magnitudes. A bound of 0 says that
-// coordinates are so coarse that nothing is rounded. The first two are Shewchuk's (1997); the derivations of the others
-// stand at hull_depth, angle_compared, nearness_filtered and centre_side_filtered.
-#define ORIENT_BOUND ((3.0 + 16.0 * ROUNDOFF) * ROUNDOFF)
-#define CIRCLE_BOUND ((10.0 + 96.0 * ROUNDOFF) * ROUNDOFF)
-#define HULL_DEPTH_BOUND (10.0 * ROUNDOFF)
-#define ANGLE_BOUND (11.0 * ROUNDOFF)
-#define NEARNESS_BOUND (6.0 * ROUNDOFF)
-#define CENTRE_SIDE_BOUND (12.0 * ROUNDOFF)
+// coordinates are so coarse that nothing is rounded. The first two are Shewchuk's (1997), (3 + 16e)e and (10 + 96e)e,
+// rounded up; the derivations of the others stand at hull_depth, angle_compared, nearness_filtered and
+// centre_side_filtered.
+#define ORIENT_BOUND_FOR(roundoff) (3.00001f * (roundoff))
+#define CIRCLE_BOUND_FOR(roundoff) (10.0001f * (roundoff))
+#define ORIENT_BOUND ORIENT_BOUND_FOR(ROUNDOFF)
+#define CIRCLE_BOUND CIRCLE_BOUND_FOR(ROUNDOFF)
+#define HULL_DEPTH_BOUND (10 * ROUNDOFF)
+#define ANGLE_BOUND (11 * ROUNDOFF)
+#define NEARNESS_BOUND (6 * ROUNDOFF)
+#define CENTRE_SIDE_BOUND (12 * ROUNDOFF)
 
 // Triangulated points: coordinates below 2^250 that are multiples of 2^-255. No product of four overflows, and none
 // underflows.

@@ -39,7 +39,7 @@ static inline centre_terms centre_terms_of(double2 a, double2 b, double2 c) {
 }
 
 // 1 if the centre lies left of the line from v to w, -1 right, 0 on it, UNDECIDED. The triangle is counter-clockwise.
-static inline int centre_side_filtered(const centre_terms* of, double2 v, double2 w, double bound) {
+static inline int centre_side_filtered(const centre_terms* of, double2 v, double2 w, filter_bound bound) {
   const double2 e = w - v, f = of->a - v;
   const double left = e.x * f.y, right = e.y * f.x;
   const double bx = e.x * of->b_from_a.x, by = e.y * of->b_from_a.y;
@@ -111,7 +111,7 @@ OUT_OF_LINE static inline int centre_side_exact(const centre_terms* of, double2 
   return sign_of_256(sum_256(doubled(product_256(cross, across)), sum_256(lifted_b, lifted_c)));
 }
 
-static inline int centre_side(const centre_terms* of, double2 v, double2 w, double bound) {
+static inline int centre_side(const centre_terms* of, double2 v, double2 w, filter_bound bound) {
   const int sign = centre_side_filtered(of, v, w, bound);
   return sign != UNDECIDED ? sign : centre_side_exact(of, v, w);
 }

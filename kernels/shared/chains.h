@@ -15,14 +15,14 @@ BEGIN_SHARED
 
 // The next vertex of the last one is 0. Vertex v brings triangle v - 1.
 typedef struct {
-  double bound;  // of in-circle tests
-  int last;      // position
+  filter_bound bound;  // of in-circle tests
+  int last;            // position
   GLOBAL const double2* places;
   GLOBAL chain_vertex* vertices;
   GLOBAL chain_edge* edges;
 } polygon;
 
-static inline polygon polygon_at(double bound, int first, int size, GLOBAL const double2* places,
+static inline polygon polygon_at(filter_bound bound, int first, int size, GLOBAL const double2* places,
                                  GLOBAL chain_vertex* vertices, GLOBAL chain_edge* edges) {
   polygon g;
   g.bound = bound;

@@ -2,16 +2,36 @@
 #ifndef FLAUNAY_COORDINATES_H
 #define FLAUNAY_COORDINATES_H
 
+#include "shared/bit_account.h"
 #include "shared/language.h"
+#include "shared/numbers.h"
 #include "shared/records.h"
 
 BEGIN_SHARED
 
-// An unsigned number in the order of the double; -0 counts as +0.
-static inline ulong orderable(double x) {
+#ifdef FIXED_POINT
+
+// An unsigned number in the order of the coordinates, and back.
+static inline ulong orderable(coordinate x) { return as_ulong(x) ^ 0x8000000000000000UL; }
+static inline coordinate from_orderable(ulong key) { return as_long(key ^ 0x8000000000000000UL); }
+
+// A coordinate of the caller's, by the bits of the double, times 2^shift.
+static inline coordinate scaled_bits(ulong bits, int shift) { return fixed_point(bits, shift); }
+
+// Scaled already.
+static inline coordinate scaled(coordinate x, scaling scale) { return x; }
+static inline coordinate2 scaled_point(int i, GLOBAL const coordinate* input, scaling scale) {
+  return vload2(i, input);
+}
+
+#else
+
+// An unsigned number in the order of the coordinates, and back; -0 counts as +0.
+static inline ulong orderable(coordinate x) {
   const ulong bits = as_ulong(x + 0.0);
   return bits >> 63 ? ~bits : bits | 0x8000000000000000UL;
 }
+static inline coordinate from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
 
 INTEGER_CONSTANT(DOUBLE_BITS, 53);  // of a normal number
 
@@ -25,13 +45,18 @@ static inline scaling scale_of(int shift) {
 }
 
 // Exact by the host's choice of the scale.
-static inline double scaled(double x, scaling scale) { return ((x * scale.s0) * scale.s1) * scale.s2; }
+static inline coordinate scaled(coordinate x, scaling scale) { return ((x * scale.s0) * scale.s1) * scale.s2; }
+
+// A coordinate of the caller's, by the bits of the double, times 2^shift; without negative zeros.
+static inline coordinate scaled_bits(ulong bits, int shift) { return scaled(as_double(bits), scale_of(shift)) + 0.0; }
 
 // Point i of the input, scaled, without negative zeros.
-static inline double2 scaled_point(int i, GLOBAL const double* input, scaling scale) {
-  const double2 p = vload2(i, input);
-  return VECTOR(double2, scaled(p.x, scale) + 0.0, scaled(p.y, scale) + 0.0);
+static inline coordinate2 scaled_point(int i, GLOBAL const coordinate* input, scaling scale) {
+  const coordinate2 p = vload2(i, input);
+  return VECTOR(coordinate2, scaled(p.x, scale) + 0.0, scaled(p.y, scale) + 0.0);
 }
+
+#endif
 
 END_SHARED
 

@@ -18,11 +18,9 @@ static inline int goes_high(ulong x, ulong y, cut_node cut) {
   return is_at_least(major, minor, cut.major, cut.minor);
 }
 
-static inline double from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
-
 // What is left of a rectangle on the one side of a cut.
 static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int is_high, scaling scale) {
-  const double at = scaled(from_orderable(cut.major), scale);
+  const coordinate at = scaled(from_orderable(cut.major), scale);
   if (cut_axis(cut)) {
     if (is_high && at > rectangle.low.y) rectangle.low.y = at;
     if (!is_high && at < rectangle.high.y) rectangle.high.y = at;
@@ -37,12 +35,12 @@ static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int i
 #define DESCENTS 16
 
 // The leaves of points [first, last) of the input, DESCENTS at most, counted from 0.
-static inline void find_leaves(int first, int last, GLOBAL const double* input, GLOBAL const cut_node* tree, int depth,
-                               int* leaves) {
+static inline void find_leaves(int first, int last, GLOBAL const coordinate* input, GLOBAL const cut_node* tree,
+                               int depth, int* leaves) {
   ulong x[DESCENTS], y[DESCENTS];
   int node[DESCENTS];
   for (int k = 0; k < DESCENTS; ++k) {
-    const double2 p = vload2(min(first + k, last - 1), input);
+    const coordinate2 p = vload2(min(first + k, last - 1), input);
     x[k] = orderable(p.x);
     y[k] = orderable(p.y);
     node[k] = 1;
@@ -54,7 +52,7 @@ static inline void find_leaves(int first, int last, GLOBAL const double* input, 
 }
 
 // The leaf of a point, counted from 0.
-static inline int leaf_of(double2 p, GLOBAL const cut_node* tree, int depth) {
+static inline int leaf_of(coordinate2 p, GLOBAL const cut_node* tree, int depth) {
   const ulong x = orderable(p.x), y = orderable(p.y);
   int node = 1;
   for (int d = 0; d < depth; ++d) node = 2 * node + goes_high(x, y, tree[node]);

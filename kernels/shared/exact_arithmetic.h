@@ -7,6 +7,8 @@
 
 #include "shared/language.h"
 
+#ifndef FIXED_POINT
+
 BEGIN_SHARED
 
 // x + y = a + b exactly, x = fl(a + b).
@@ -124,5 +126,7 @@ static inline void expansion_multiply(expansion* e, const double* factor, int co
 }
 
 END_SHARED
+
+#endif
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "shared/language.h"
 #include "shared/limits.h"
+#include "shared/numbers.h"
 
 BEGIN_SHARED
 
@@ -23,11 +24,11 @@ static inline int part_begin(int count, int depth, int j) { return (int)(((long)
 static inline int part_from(int count, int depth, int k) { return (int)((((long)k << depth) + count - 1) / count); }
 
 // 1 if the part is longer in y, by its interquartile ranges.
-static inline int axis_of(int begin, int end, GLOBAL const double2* points, GLOBAL const ranks* by_x,
+static inline int axis_of(int begin, int end, GLOBAL const coordinate2* points, GLOBAL const ranks* by_x,
                           GLOBAL const ranks* by_y) {
   const int low = begin + (end - begin) / 4, high = end - 1 - (end - begin) / 4;
-  const double width = points[by_x[high].x].x - points[by_x[low].x].x;
-  const double height = points[by_y[high].x].y - points[by_y[low].x].y;
+  const coordinate width = rounded_difference(points[by_x[high].x].x, points[by_x[low].x].x);
+  const coordinate height = rounded_difference(points[by_y[high].x].y, points[by_y[low].x].y);
   return height > width;
 }
 

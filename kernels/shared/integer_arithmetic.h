@@ -1,6 +1,4 @@
-// Exact predicates in integers: differences of doubles as integers of one unit, products and sums of 128 and 256
-// bits. Ties mostly are of coordinates with few bits, and integers decide them far sooner than expansions do; see
-// docs/exactness.md.
+// Products and sums of 128 and 256 bits, for exact predicates: see docs/exactness.md.
 #ifndef FLAUNAY_INTEGER_ARITHMETIC_H
 #define FLAUNAY_INTEGER_ARITHMETIC_H
 
@@ -95,6 +93,15 @@ static inline integer256 product_256(integer128 a, integer128 b) {
   return product;
 }
 
+static inline integer256 difference_256(integer256 a, integer256 b) {
+  integer256 difference;
+  difference.low = difference_128(a.low, b.low);
+  const int borrow = a.low.high != b.low.high ? a.low.high < b.low.high : a.low.low < b.low.low;
+  const integer128 carried = {(ulong)borrow, 0};
+  difference.high = difference_128(difference_128(a.high, b.high), carried);
+  return difference;
+}
+
 static inline integer256 sum_256(integer256 a, integer256 b) {
   integer256 sum;
   sum.low = sum_128(a.low, b.low);
@@ -102,35 +109,6 @@ static inline integer256 sum_256(integer256 a, integer256 b) {
   sum.high = plus_carry(sum_128(a.high, b.high), carry);
   return sum;
 }
-
-// A unit for differences: with `largest` the greatest magnitude of all (rounded; not 0), it makes them integers below
-// 2^bits. As a factor, a power of two.
-#define NARROW_BITS 31
-#define MIDDLE_BITS 42
-#define WIDE_BITS 62
-static inline double unit_factor(double largest, int bits) {
-  const int exponent = (int)(as_ulong(largest) >> 52);  // 1023 for [1, 2)
-  return as_double((ulong)(1023 + 1023 + bits - 1 - exponent) << 52);
-}
-
-// Whether a difference as two_sum gives it, below 2^bits units, is an integer; it is then put into *integer.
-static inline int is_integer(double2 difference, double factor, long* integer) {
-  const double high = difference.x * factor;
-  const double low = difference.y * factor;
-  const long whole_high = convert_long(high);
-  const long whole_low = convert_long(low);
-  *integer = whole_high + whole_low;
-  return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
-}
-
-// The same for at most 53 bits, which a double has: an integer has no rounding error.
-static inline int is_short_integer(double2 difference, double factor, long* integer) {
-  const double high = difference.x * factor;
-  *integer = convert_long(high);
-  return (convert_double(*integer) == high) & (difference.y == 0.0);
-}
-
-static inline double larger_magnitude(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }
 
 END_SHARED
 

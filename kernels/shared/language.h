@@ -7,11 +7,6 @@
 // VECTOR(type, components...) for a vector, INTEGER_CONSTANT(NAME, value) for a constant of type int, OUT_OF_LINE for a
 // function that is called rarely and is long (in OpenCL C nothing, unless a program chooses), and ASSERT_SIZE(type,
 // bytes), which does not compile unless the type has that size.
-//
-// double_pair is two doubles in one register, on which predicates compute side by side: with the operators + - *,
-// low and high for its elements, swapped, lows and highs for the elements of two pairs with the same place, and
-// high_negated. In OpenCL C it is double2. In C++ a struct of two doubles would do, but compilers keep its members
-// apart.
 #ifndef FLAUNAY_LANGUAGE_H
 #define FLAUNAY_LANGUAGE_H
 
@@ -19,6 +14,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 // A program that reads a header a second time, with types of its own, may choose another namespace before.
 #ifndef SHARED_NAMESPACE
@@ -61,29 +57,15 @@ struct double2 {
 inline double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
 inline double2 operator-(double2 a) { return {-a.x, -a.y}; }
 
-using double_pair [[gnu::vector_size(16)]] = double;
-inline double_pair as_pair(double2 p) { return double_pair{p.x, p.y}; }
-inline double2 as_point(double_pair p) { return {p[0], p[1]}; }
-inline double_pair load_pair(const double2* from) {
-  double_pair p;
-  std::memcpy(&p, from, sizeof p);
-  return p;
-}
-inline double low(double_pair p) { return p[0]; }
-inline double high(double_pair p) { return p[1]; }
-inline double_pair swapped(double_pair p) { return double_pair{p[1], p[0]}; }
-inline double_pair lows(double_pair p, double_pair q) { return double_pair{p[0], q[0]}; }
-inline double_pair highs(double_pair p, double_pair q) { return double_pair{p[1], q[1]}; }
-inline double_pair high_negated(double_pair p) {
-  using Bits [[gnu::vector_size(16)]] = long;
-  return reinterpret_cast<double_pair>(reinterpret_cast<Bits>(p) ^ Bits{0, static_cast<long>(1UL << 63)});
-}
-inline double_pair magnitudes(double_pair p) {
-  using Bits [[gnu::vector_size(16)]] = long;
-  return reinterpret_cast<double_pair>(reinterpret_cast<Bits>(p) & static_cast<long>(~0UL >> 1));
-}
+struct long2 {
+  long x, y;
+};
+struct float2 {
+  float x, y;
+};
 
 inline double2 vload2(std::size_t i, const double* from) { return {from[2 * i], from[2 * i + 1]}; }
+inline long2 vload2(std::size_t i, const long* from) { return {from[2 * i], from[2 * i + 1]}; }
 
 using std::fabs;
 using std::fma;
@@ -110,6 +92,8 @@ inline double as_double(ulong bits) {
 inline ulong as_ulong(long x) { return static_cast<ulong>(x); }
 inline long as_long(ulong x) { return static_cast<long>(x); }
 inline long convert_long(double x) { return static_cast<long>(x); }
+inline float convert_float(long x) { return static_cast<float>(x); }
+inline float convert_float(uint x) { return static_cast<float>(x); }
 inline double convert_double(long x) { return static_cast<double>(x); }
 __extension__ using WideLong = __int128;
 __extension__ using WideUlong = unsigned __int128;
@@ -124,7 +108,9 @@ END_SHARED
 
 #else
 
+#ifndef FIXED_POINT
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
 #pragma OPENCL FP_CONTRACT OFF
 
 #define BEGIN_SHARED
@@ -137,18 +123,6 @@ END_SHARED
 #ifndef OUT_OF_LINE
 #define OUT_OF_LINE
 #endif
-
-typedef double2 double_pair;
-static inline double_pair as_pair(double2 p) { return p; }
-static inline double2 as_point(double_pair p) { return p; }
-static inline double_pair load_pair(global const double2* from) { return *from; }
-static inline double low(double_pair p) { return p.x; }
-static inline double high(double_pair p) { return p.y; }
-static inline double_pair swapped(double_pair p) { return p.yx; }
-static inline double_pair lows(double_pair p, double_pair q) { return (double2)(p.x, q.x); }
-static inline double_pair highs(double_pair p, double_pair q) { return (double2)(p.y, q.y); }
-static inline double_pair high_negated(double_pair p) { return (double2)(p.x, -p.y); }
-static inline double_pair magnitudes(double_pair p) { return fabs(p); }
 
 // The upper half of a product. Compilers for CPUs have a type for it, which is several times as fast as their mul_hi.
 #if defined(__SIZEOF_INT128__) && (defined(__x86_64__) || defined(__aarch64__))

@@ -50,7 +50,7 @@ typedef struct {
 static inline double2 point_times(double unit, double2 p) { return VECTOR(double2, unit * p.x, unit * p.y); }
 
 // Of two vertices that are as near, the first in the order of x and y is taken.
-static inline void consider(nearby* best, int vertex, int triangle, double2 q, double bound, double unit,
+static inline void consider(nearby* best, int vertex, int triangle, double2 q, filter_bound bound, double unit,
                             GLOBAL const double2* points) {
   const double2 p = point_times(unit, points[vertex]);
   const int sign = nearness_sign(best->at, p, q, bound);
@@ -72,7 +72,7 @@ static inline int is_clear(nearby vertex, double2 q, double unit, GLOBAL const i
 }
 
 // Of points on one line, in their order: distances fall and then rise, with two equal ones at most. -1 of none.
-static inline int nearest_on_line(double2 q, int first, int end, double bound, double unit,
+static inline int nearest_on_line(double2 q, int first, int end, filter_bound bound, double unit,
                                   GLOBAL const double2* hull_points) {
   if (first == end) return -1;
   int low = first, high = end - 1;
@@ -101,7 +101,7 @@ static inline int last_of_fan(int t, int vertex, GLOBAL const fan_part* fans) {
 // such a neighbour lies inside of a cocircular polygon, so the two cells touch in no more than a point: if it is nearer
 // to q than the vertex, or as near and comes before it, so is another neighbour. Stops when `most` were looked at, and
 // returns whether these were all. looked: gets their number added.
-static inline int look_around(nearby vertex, double2 q, double bound, double unit, star_mesh mesh, uint most,
+static inline int look_around(nearby vertex, double2 q, filter_bound bound, double unit, star_mesh mesh, uint most,
                               nearby* best, uint* looked) {
   *best = vertex;
   const int start = mesh.starts[vertex.vertex];
@@ -127,7 +127,8 @@ static inline int look_around(nearby vertex, double2 q, double bound, double uni
 // Goes to the best neighbour until none is better. In a Delaunay triangulation a vertex that is not nearest has a
 // neighbour that is nearer; those that are nearest with others lie on one empty circle, whose first vertex is joined to
 // all. Stops at a vertex with very many neighbours if the first of them are not better, and returns 0.
-static inline int go_to_nearest(nearby* best, double2 q, double bound, double unit, star_mesh mesh, uint* looked) {
+static inline int go_to_nearest(nearby* best, double2 q, filter_bound bound, double unit, star_mesh mesh,
+                                uint* looked) {
   for (;;) {
     if (is_clear(*best, q, unit, mesh.clearances)) return 1;
     nearby next;
@@ -173,8 +174,8 @@ static inline double squared_distance(double2 a, double2 b) {
 
 // The best of vertices [first, end) and one that is given. Goes through the tree, of boxes around all `vertices`, in
 // the order of the vertices, and leaves out boxes that are farther than the best so far. Returns 0 if it gives up.
-static inline int search_boxes(nearby* best, double2 q, int first, int end, int vertices, double bound, double unit,
-                               star_mesh mesh, GLOBAL const vertex_box* boxes, uint* looked) {
+static inline int search_boxes(nearby* best, double2 q, int first, int end, int vertices, filter_bound bound,
+                               double unit, star_mesh mesh, GLOBAL const vertex_box* boxes, uint* looked) {
   int counts[BOX_LEVELS], begins[BOX_LEVELS];
   int level = box_levels(vertices, counts, begins) - 1;
   const int top = level;
@@ -231,9 +232,9 @@ typedef struct {
 
 // The nearest vertex of set `set`, which has triangles and levels, and vertices [first, end). looked: gets the number
 // of vertices and boxes that were looked at.
-OUT_OF_LINE static inline int nearest_by_levels(double2 q, int set, int first, int end, int vertices, double bound,
-                                                double unit, star_mesh mesh, GLOBAL const vertex_box* boxes,
-                                                level_meshes on, uint* looked) {
+OUT_OF_LINE static inline int nearest_by_levels(double2 q, int set, int first, int end, int vertices,
+                                                filter_bound bound, double unit, star_mesh mesh,
+                                                GLOBAL const vertex_box* boxes, level_meshes on, uint* looked) {
   nearby best;
   int vertex = -1;
   for (int level = on.levels - 1; level >= 0; --level) {

@@ -11,7 +11,7 @@ BEGIN_SHARED
 // 5.1 e of the magnitude below, which is rounded too, with e = 2^-53 (docs/exactness.md): NEARNESS_BOUND.
 
 // 1 if b is nearer to q than a is, -1 if a is, 0 if neither, UNDECIDED.
-static inline int nearness_filtered(double2 a, double2 b, double2 q, double bound) {
+static inline int nearness_filtered(double2 a, double2 b, double2 q, filter_bound bound) {
   const double2 ab = a - b;
   const double2 qa = a - q;
   const double2 qb = b - q;
@@ -57,7 +57,7 @@ OUT_OF_LINE static inline int nearness_exact(double2 a, double2 b, double2 q) {
   return expansion_sign(&sum);
 }
 
-static inline int nearness_sign(double2 a, double2 b, double2 q, double bound) {
+static inline int nearness_sign(double2 a, double2 b, double2 q, filter_bound bound) {
   const int sign = nearness_filtered(a, b, q, bound);
   return sign != UNDECIDED ? sign : nearness_exact(a, b, q);
 }

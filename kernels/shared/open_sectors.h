@@ -25,11 +25,11 @@ static inline int is_ghost(int state) { return state == GHOST || state == OPEN_G
 // A direction from a vertex. What is asked of it is what lies beside it, counter-clockwise: a triangle, or the outside,
 // if this is the last edge in a vertex of the hull.
 typedef struct {
-  double2 from, to;
+  coordinate2 from, to;
   int vertex, is_last;
 } direction;
 
-static inline int side_seen(double2 a, double2 b, double2 c, double bound, int exactly) {
+static inline int side_seen(coordinate2 a, coordinate2 b, coordinate2 c, filter_bound bound, int exactly) {
   const int sign = orient_filtered(a, b, c, bound);
   return sign == UNDECIDED && exactly ? orient_exact(a, b, c) : sign;
 }
@@ -48,14 +48,14 @@ static inline int where_met(const direction* d, int side) {
 // 1 if what lies counter-clockwise beside a direction is open, 0 if not, UNDECIDED, but not if `exactly`. edges: the
 // open edges of the vertex, [begin, end); points: of all vertices.
 static inline int begins_open(const direction* d, GLOBAL const open_edge* edges, int begin, int end,
-                              GLOBAL const double2* points, double bound, int exactly) {
+                              GLOBAL const coordinate2* points, filter_bound bound, int exactly) {
   int open = 1, met = MET_LATE + 1;
-  double2 nearest = d->to;
+  coordinate2 nearest = d->to;
   for (int k = begin; k < end; ++k) {
     const open_edge edge = edges[k];
     if (edge.to == d->vertex) return edge.begins;
     int here = MET_OUTSIDE;
-    double2 to = d->to;
+    coordinate2 to = d->to;
     if (edge.to >= 0) {
       to = points[edge.to];
       const int side = side_seen(d->from, d->to, to, bound, exactly);

@@ -9,8 +9,8 @@
 BEGIN_SHARED
 
 // The orders of axis 0, by (x, y), and of axis 1, by (y, -x).
-static inline int precedes(double2 p, double2 q, int axis) {
-  return axis ? comes_before(VECTOR(double2, p.y, -p.x), VECTOR(double2, q.y, -q.x)) : comes_before(p, q);
+static inline int precedes(coordinate2 p, coordinate2 q, int axis) {
+  return axis ? comes_before(VECTOR(coordinate2, p.y, -p.x), VECTOR(coordinate2, q.y, -q.x)) : comes_before(p, q);
 }
 
 // Elements to sort: a coarse key and the place of the point.
@@ -38,10 +38,10 @@ static inline void stable_pass(GLOBAL const keyed* RESTRICT from, GLOBAL keyed* 
 // Sorts elements stably by the leading bits of a coordinate, as many as tell points of this block apart. Returns
 // elements or spare, whichever holds the result.
 static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
-                                          GLOBAL const double2* points, int axis) {
+                                          GLOBAL const coordinate2* points, int axis) {
   ulong least = ~0UL, most = 0;
   for (int i = 0; i < n; ++i) {
-    const double2 p = points[i];
+    const coordinate2 p = points[i];
     const ulong key = orderable(axis ? p.y : p.x);
     least = min(least, key);
     most = max(most, key);
@@ -49,7 +49,7 @@ static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* 
   const int bits = 64 - (int)clz(most - least);
   const int dropped = max(0, bits - COARSE_BITS);
   for (int i = 0; i < n; ++i) {
-    const double2 p = points[elements[i].y];
+    const coordinate2 p = points[elements[i].y];
     elements[i].x = (uint)((orderable(axis ? p.y : p.x) - least) >> dropped);
   }
   for (int shift = 0; shift < bits - dropped; shift += COARSE_DIGIT) {
@@ -63,13 +63,13 @@ static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* 
 
 // Sorts elements of equal coarse keys by insertion; gives up, returning 0, where that would take long.
 #define INSERTIONS_A_POINT 4
-static inline int sort_ties(GLOBAL keyed* elements, int n, GLOBAL const double2* points, int axis) {
+static inline int sort_ties(GLOBAL keyed* elements, int n, GLOBAL const coordinate2* points, int axis) {
   int left = INSERTIONS_A_POINT * n;
   for (int i = 1; i < n; ++i) {
     const keyed element = elements[i];
     int j = i;
     if (elements[j - 1].x == element.x) {
-      const double2 p = points[element.y];
+      const coordinate2 p = points[element.y];
       while (j > 0 && elements[j - 1].x == element.x && precedes(p, points[elements[j - 1].y], axis)) {
         elements[j] = elements[j - 1];
         --j;
@@ -86,7 +86,7 @@ static inline int sort_ties(GLOBAL keyed* elements, int n, GLOBAL const double2*
 
 // Bottom-up merge sort, stable, by comparisons. Returns elements or spare.
 static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
-                                            GLOBAL const double2* points, int axis) {
+                                            GLOBAL const coordinate2* points, int axis) {
   for (int width = 1; width < n; width *= 2) {
     for (int begin = 0; begin < n; begin += 2 * width) {
       const int middle = min(n, begin + width), end = min(n, begin + 2 * width);
@@ -106,8 +106,8 @@ static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed
 
 // Sorts elements, whose places stand in [0, n), by the order of the axis; those of equal points stay in their order.
 // Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at worst.
-static inline GLOBAL keyed* sort_along(GLOBAL keyed* elements, GLOBAL keyed* spare, int n, GLOBAL const double2* points,
-                                       int axis) {
+static inline GLOBAL keyed* sort_along(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
+                                       GLOBAL const coordinate2* points, int axis) {
   GLOBAL keyed* sorted = sort_coarsely(elements, spare, n, points, axis);
   if (sort_ties(sorted, n, points, axis)) return sorted;
   return sort_by_merging(sorted, sorted == elements ? spare : elements, n, points, axis);

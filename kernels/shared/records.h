@@ -3,19 +3,21 @@
 #define FLAUNAY_RECORDS_H
 
 #include "shared/language.h"
+#include "shared/numbers.h"
 
 BEGIN_SHARED
 
 // Bounds of the predicates' filters: HULL_DEPTH_BOUND, ORIENT_BOUND and CIRCLE_BOUND of shared/bounds.h, or 0 where the
 // input is so coarse that floating point is exact.
 typedef struct {
-  double hull, orient, circle;
+  filter_bound hull, orient, circle;
 } filter_bounds;
-ASSERT_SIZE(filter_bounds, 24);
+ASSERT_SIZE(filter_bounds, 12);
 
-// Coordinates are scaled by the product of three powers of two, which may be no double itself.
+// Coordinates are scaled by the product of three powers of two, which may be no double itself. Those in fixed point
+// are scaled already.
 typedef struct {
-  double s0, s1, s2;
+  coordinate s0, s1, s2;
 } scaling;
 ASSERT_SIZE(scaling, 24);
 
@@ -107,7 +109,7 @@ ASSERT_SIZE(face, 24);
 // How a set's queries are scaled, and how much more its points are, which are scaled already.
 typedef struct {
   scaling scale;
-  double unit;
+  coordinate unit;
 } query_frame;
 ASSERT_SIZE(query_frame, 32);
 
@@ -127,7 +129,7 @@ ASSERT_SIZE(fan_part, 8);
 
 // A box around vertices, its sides parallel to the axes.
 typedef struct {
-  double2 low, high;
+  coordinate2 low, high;
 } vertex_box;
 ASSERT_SIZE(vertex_box, 32);
 

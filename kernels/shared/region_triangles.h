@@ -29,7 +29,7 @@ typedef struct {
   double2 p[SMALL_REGION];
   uchar chain[SMALL_REGION];
   filter_bounds bounds;
-  double angle_bound;
+  filter_bound angle_bound;
   TALLY_MEMBER
 } region_cycle;
 

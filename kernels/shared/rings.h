@@ -23,13 +23,13 @@ INTEGER_CONSTANT(MERGE_IS_NEW, -3);
 // are so coarse that ties cost nothing, polygons are small, and merges make them canonical. Otherwise they are left to
 // blocks/fans.cl, since merges that make fans of large polygons would make most of their edges again and again.
 #ifndef RINGS_TIE
-#define RINGS_TIE(a, b, c, d, bound) ((bound) == 0.0 && canonical_tie(a, b, c, d, 0.0) > 0)
+#define RINGS_TIE(a, b, c, d, bound) ((bound) == 0 && canonical_tie(a, b, c, d, 0) > 0)
 #endif
 
 // What one work-item works on: its own edges, all free at first.
 typedef struct {
   GLOBAL ring_edge* edges;
-  GLOBAL const double2* points;  // by vertex
+  GLOBAL const coordinate2* points;  // by vertex
   // An edge out of each vertex: of a hull's strict corner the counter-clockwise hull edge; NO_EDGE if there is none.
   GLOBAL int* vertex_edge;
   filter_bounds bounds;
@@ -40,7 +40,7 @@ typedef struct {
   TALLY_MEMBER
 } rings;
 
-static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const double2* points, GLOBAL int* vertex_edge,
+static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const coordinate2* points, GLOBAL int* vertex_edge,
                              filter_bounds bounds) {
   rings g;
   g.edges = edges;
@@ -82,14 +82,15 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
 #endif
 
 // What filters could not decide; out of line, so that merges have more registers.
-OUT_OF_LINE static inline int side_undecided(rings* g, double2 a, double2 b, double2 c) {
+OUT_OF_LINE static inline int side_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
   ++g->undecided;
   return EXACT_OR_STOPPED(orient_exact(a, b, c));
 }
 
-OUT_OF_LINE static inline int in_circle_undecided(rings* g, double2 a, double2 b, double2 c, double2 d, double bound) {
+OUT_OF_LINE static inline int in_circle_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
+                                                  filter_bound bound) {
   int sign = 0;
-  if (bound != 0.0) {
+  if (bound != 0) {
     ++g->undecided;
     sign = EXACT_OR_STOPPED(circle_undecided(a, b, c, d, bound));
     g->ties += sign == 0;
@@ -97,15 +98,15 @@ OUT_OF_LINE static inline int in_circle_undecided(rings* g, double2 a, double2 b
   return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, bound);
 }
 
-static inline int side_of(rings* g, double2 a, double2 b, double2 c) {
+static inline int side_of(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
   TALLY(*g, orientations, 1);
   const int sign = orient_filtered(a, b, c, g->bounds.orient);
   return sign != UNDECIDED ? sign : side_undecided(g, a, b, c);
 }
-static inline int turns_left(rings* g, double2 a, double2 b, double2 c) { return side_of(g, a, b, c) > 0; }
+static inline int turns_left(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) { return side_of(g, a, b, c) > 0; }
 
 // Is d inside of the circle through a, b, c (counter-clockwise)?
-static inline int in_circle(rings* g, double2 a, double2 b, double2 c, double2 d) {
+static inline int in_circle(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
   TALLY(*g, circles, 1);
   const int sign = circle_filtered(a, b, c, d, g->bounds.circle);
   return sign == 1 || sign == -1 ? sign > 0 : in_circle_undecided(g, a, b, c, d, g->bounds.circle);
@@ -195,7 +196,7 @@ static inline void make_pair(rings* g, int v) {
 
 // Vertices v to v + 2, in the order of axis 0.
 static inline void make_three(rings* g, int v) {
-  const double2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2];
+  const coordinate2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2];
   const int side = side_of(g, a, b, c);
   const int e = g->unused;
   const int third = side != 0;
@@ -263,7 +264,7 @@ static inline int lower_tangent(rings* g, int left, int right) {
   if (left_edge != NO_EDGE) left_edge = edges[left_edge].previous;
   for (int moves = 1; moves;) {
     TALLY(*g, steps, 1);
-    const double2 l = g->points[left], r = g->points[right];
+    const coordinate2 l = g->points[left], r = g->points[right];
     if (left_edge != NO_EDGE && turns_left(g, r, l, g->points[edges[left_edge].to])) {
       left = edges[left_edge].to;
       left_edge = edges[left_edge ^ 1].previous;
@@ -283,15 +284,15 @@ static inline int lower_tangent(rings* g, int left, int right) {
 }
 
 // Whether an apex that sees the base so lies above it.
-static inline int is_above(rings* g, double_pair left, double_pair right, double_pair apex, angle seen) {
+static inline int is_above(rings* g, coordinate_pair left, coordinate_pair right, coordinate_pair apex, angle seen) {
   TALLY(*g, orientations, 1);
   const int sign = angle_side(seen, g->bounds.orient);
   return (sign != UNDECIDED ? sign : side_undecided(g, as_point(left), as_point(right), as_point(apex))) > 0;
 }
 
 // Whether a point that sees the base so is inside of the circle through the base and an apex above it.
-static inline int rules_out(rings* g, double_pair left, double_pair right, double_pair apex, angle apex_seen,
-                            double_pair point, angle seen, double bound) {
+static inline int rules_out(rings* g, coordinate_pair left, coordinate_pair right, coordinate_pair apex,
+                            angle apex_seen, coordinate_pair point, angle seen, filter_bound bound) {
   TALLY(*g, circles, 1);
   const int sign = angle_compared(seen, apex_seen, bound);
   return sign == 1 || sign == -1
@@ -299,7 +300,7 @@ static inline int rules_out(rings* g, double_pair left, double_pair right, doubl
              : in_circle_undecided(g, as_point(left), as_point(right), as_point(apex), as_point(point), bound);
 }
 
-static inline double_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
+static inline coordinate_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
 
 // Merges what is above a base. Returns MERGE_IS_DONE, or the base at which it stopped: the rings then are as this
 // begins with them.
@@ -309,12 +310,12 @@ static inline double_pair point_at(const rings* g, int vertex) { return load_pai
 // side whose vertex stays keeps its candidate in registers.
 static inline int merge_above(rings* g, int base) {
   GLOBAL const ring_edge* edges = g->edges;
-  const double bound = angle_bound(g->bounds.circle);
+  const filter_bound bound = angle_bound(g->bounds.circle);
   int left = edges[base].to, right = edges[base ^ 1].to;
-  double_pair left_point = point_at(g, left), right_point = point_at(g, right);
+  coordinate_pair left_point = point_at(g, left), right_point = point_at(g, right);
   int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
   int left_to = edges[left_edge].to, right_to = edges[right_edge].to;
-  double_pair left_apex = point_at(g, left_to), right_apex = point_at(g, right_to);
+  coordinate_pair left_apex = point_at(g, left_to), right_apex = point_at(g, right_to);
   for (;;) {
     TALLY(*g, steps, 1);
     // Each side's candidate: the next edge that rises above the base, after removal of those that its circle rules out.
@@ -327,7 +328,7 @@ static inline int merge_above(rings* g, int base) {
     if (left_rises) {
       for (int then = edges[left_edge].next; then != (base ^ 1); then = edges[left_edge].next) {
         const int beyond_to = edges[then].to;
-        const double_pair beyond = point_at(g, beyond_to);
+        const coordinate_pair beyond = point_at(g, beyond_to);
         const angle seen = angle_of(beyond, left_point, right_point);
         if (!rules_out(g, left_point, right_point, left_apex, left_seen, beyond, seen, bound)) break;
         TALLY(*g, steps, 1);
@@ -341,7 +342,7 @@ static inline int merge_above(rings* g, int base) {
     if (right_rises) {
       for (int then = edges[right_edge].previous; then != base; then = edges[right_edge].previous) {
         const int beyond_to = edges[then].to;
-        const double_pair beyond = point_at(g, beyond_to);
+        const coordinate_pair beyond = point_at(g, beyond_to);
         const angle seen = angle_of(beyond, left_point, right_point);
         if (!rules_out(g, left_point, right_point, right_apex, right_seen, beyond, seen, bound)) break;
         TALLY(*g, steps, 1);
@@ -393,7 +394,7 @@ static inline void merge_triangulations(rings* g, int left, int right) { continu
 
 // Four vertices from v on, in the order of axis 0.
 static inline void make_four(rings* g, int v) {
-  const double2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2], d = g->points[v + 3];
+  const coordinate2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2], d = g->points[v + 3];
   // Sides of the line from a to d, on which b and c are: 1 is below.
   const int b_below = side_of(g, a, b, d), c_below = side_of(g, a, c, d);
   int straight = !b_below || !c_below;

@@ -25,15 +25,15 @@ static inline int drawn_point(sampled_tree own, ulong k) {
 // A cut, at a sample.
 typedef struct {
   int axis, sample;
-  double2 pivot;
+  coordinate2 pivot;
 } sample_cut;
 
 // Of the node with the samples of both orders from `begin` on.
-static inline sample_cut cut_of(int begin, int size, GLOBAL const double2* samples, GLOBAL const int* by_x,
+static inline sample_cut cut_of(int begin, int size, GLOBAL const coordinate2* samples, GLOBAL const int* by_x,
                                 GLOBAL const int* by_y) {
   const int low = begin + size / 4, high = begin + size - 1 - size / 4;
-  const double width = samples[by_x[high]].x - samples[by_x[low]].x;
-  const double height = samples[by_y[high]].y - samples[by_y[low]].y;
+  const coordinate width = rounded_difference(samples[by_x[high]].x, samples[by_x[low]].x);
+  const coordinate height = rounded_difference(samples[by_y[high]].y, samples[by_y[low]].y);
   sample_cut cut;
   cut.axis = height > width;
   // In one expression, GCC 12 with its sanitizers would read another element.
@@ -43,7 +43,7 @@ static inline sample_cut cut_of(int begin, int size, GLOBAL const double2* sampl
   return cut;
 }
 
-static inline cut_node node_of(int axis, double2 pivot) {
+static inline cut_node node_of(int axis, coordinate2 pivot) {
   const ulong x = orderable(pivot.x), y = orderable(pivot.y);
   cut_node node;
   node.major = axis ? y : x;

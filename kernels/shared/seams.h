@@ -20,10 +20,13 @@ BEGIN_SHARED
 INTEGER_CONSTANT(WALK_HAS_CROSSED, 0);
 INTEGER_CONSTANT(WALK_IS_WHOLE, 1);
 INTEGER_CONSTANT(WALK_HAS_STOPPED, 2);
-// For an axis, where the cut is, its middle, and more than the rounding errors of heights on it.
+// For an axis, a point on the cut, from which heights and distances are measured: seen from the input's origin, which
+// may be far away, they would be wrong by more than the seam is long. The middle of the seam, and more than the
+// rounding errors of heights on it.
 typedef struct {
   int axis;
-  double cut, middle, error;
+  coordinate2 origin;
+  real middle, error;
 } seam_line;
 
 // What a walk works on. crossings: by the edge along which it came there, and the vertex on the other side; of the
@@ -38,25 +41,29 @@ typedef struct {
 // A side of a walk: its vertex on the base, the edge along which the walk came there, and the candidate's edge.
 typedef struct {
   int vertex, from, edge, to;
-  double_pair at, apex;
+  coordinate_pair at, apex;
   angle seen;
   int rises;
 } seam_side;
 
 // Along the cut upwards, and across it to the right.
-static inline double height_of(double2 p, int axis) { return axis ? -p.x : p.y; }
-static inline double across(double2 p, int axis) { return axis ? p.y : p.x; }
+static inline real height_of(coordinate2 p, const seam_line* line) {
+  return line->axis ? difference(line->origin.x, p.x) : difference(p.y, line->origin.y);
+}
+static inline real across(coordinate2 p, const seam_line* line) {
+  return line->axis ? difference(p.y, line->origin.y) : difference(p.x, line->origin.x);
+}
 
 // The larger of the magnitudes of a half's heights.
-static inline double largest_height(const rings* g, hull_ends ends, int axis) {
-  return fmax(fabs(height_of(g->points[first_along(ends, !axis)], axis)),
-              fabs(height_of(g->points[last_along(ends, !axis)], axis)));
+static inline real largest_height(const rings* g, hull_ends ends, const seam_line* line) {
+  return fmax(fabs(height_of(g->points[first_along(ends, !line->axis)], line)),
+              fabs(height_of(g->points[last_along(ends, !line->axis)], line)));
 }
 
 // About how high half of the vertices of a half are: where it was cut itself, if that was along the seam; or else in
 // the middle of its extent.
-static inline double median_height(const rings* g, const halved_blocks* blocks, const part_halves* halves, int is_high,
-                                   hull_ends ends) {
+static inline real median_height(const rings* g, const halved_blocks* blocks, const part_halves* halves, int is_high,
+                                 hull_ends ends, const seam_line* line) {
   const block_part part = halves->part;
   const int depth = part.depth + 1, number = 2 * part.number + is_high, axis = halves->axis;
   int from = first_along(ends, !axis), to = last_along(ends, !axis);
@@ -64,34 +71,33 @@ static inline double median_height(const rings* g, const halved_blocks* blocks, 
     const int above = part.first + part_begin(part.count, depth + 1, 2 * number + 1);
     from = to = first_along(blocks->parts[above / 2].ends, !axis);
   }
-  return 0.5 * height_of(g->points[from], axis) + 0.5 * height_of(g->points[to], axis);
+  return REAL(0.5) * (height_of(g->points[from], line) + height_of(g->points[to], line));
 }
 
 // Heights have some ten roundings, of numbers that are at most twice as large.
-#define HEIGHT_ERROR 1e-14
+#define HEIGHT_ERROR (90 * ROUNDOFF)
 
 static inline seam_line seam_line_of(const rings* g, const halved_blocks* blocks, const part_halves* halves,
                                      hull_ends low, hull_ends high) {
-  const int axis = halves->axis;
-  const double of_low = median_height(g, blocks, halves, 0, low), of_high = median_height(g, blocks, halves, 1, high);
-  const double largest = fmax(largest_height(g, low, axis), largest_height(g, high, axis));
-  const seam_line line = {axis, across(g->points[last_along(low, axis)], axis), 0.5 * of_low + 0.5 * of_high,
-                          HEIGHT_ERROR * largest};
+  seam_line line = {halves->axis, g->points[last_along(low, halves->axis)], 0, 0};
+  line.middle =
+      REAL(0.5) * (median_height(g, blocks, halves, 0, low, &line) + median_height(g, blocks, halves, 1, high, &line));
+  line.error = HEIGHT_ERROR * fmax(largest_height(g, low, &line), largest_height(g, high, &line));
   return line;
 }
 
 // About how high the line through a point of the low side and one of the high side passes the cut.
-static inline double height_at_cut(const seam_line* line, double2 low, double2 high) {
-  const double run = across(high, line->axis) - across(low, line->axis);
-  const double share = run > 0 ? (line->cut - across(low, line->axis)) / run : 0.5;
-  const double from = height_of(low, line->axis);
-  return from + share * (height_of(high, line->axis) - from);
+static inline real height_at_cut(const seam_line* line, coordinate2 low, coordinate2 high) {
+  const real before = -across(low, line), run = before + across(high, line);
+  const real share = run > 0 ? before / run : REAL(0.5);
+  const real from = height_of(low, line);
+  return from + share * (height_of(high, line) - from);
 }
 
 // Whether a walk is beyond the middle, whatever the rounding errors. Edges pass the cut in their order, and both walks
 // go that far or to the other end; so the last edge of either is one of the other's.
-static inline int is_beyond(const seam* s, double2 low, double2 high) {
-  const double height = height_at_cut(&s->line, low, high);
+static inline int is_beyond(const seam* s, coordinate2 low, coordinate2 high) {
+  const real height = height_at_cut(&s->line, low, high);
   return s->is_downward ? height < s->line.middle - s->line.error : height > s->line.middle + s->line.error;
 }
 
@@ -118,17 +124,17 @@ static inline seam_side side_from(const rings* g, const seam* s, int vertex, int
   return side;
 }
 
-static inline void look_at_apex(rings* g, seam_side* side, double_pair left, double_pair right) {
+static inline void look_at_apex(rings* g, seam_side* side, coordinate_pair left, coordinate_pair right) {
   side->seen = angle_of(side->apex, left, right);
   side->rises = is_above(g, left, right, side->apex, side->seen);
 }
 
 // Marks the candidates that the circle through the base and the next one rules out.
-static inline void drop_ruled_out(rings* g, const seam* s, seam_side* side, double_pair left, double_pair right,
-                                  double bound, int is_right) {
+static inline void drop_ruled_out(rings* g, const seam* s, seam_side* side, coordinate_pair left, coordinate_pair right,
+                                  filter_bound bound, int is_right) {
   while (side->rises && side->edge != side->from) {
     const int then = kept_beyond(g, s, side->edge, is_right), beyond_to = g->edges[then].to;
-    const double_pair beyond = point_at(g, beyond_to);
+    const coordinate_pair beyond = point_at(g, beyond_to);
     const angle seen = angle_of(beyond, left, right);
     if (!rules_out(g, left, right, side->apex, side->seen, beyond, seen, bound)) break;
     TALLY(*g, steps, 1);
@@ -146,14 +152,14 @@ static inline seam_side moved_side(const rings* g, const seam* s, const seam_sid
 
 // Of a side's ends, the one from which a line to a point of the other side passes the cut lowest, as the plane is
 // turned.
-static inline int lowest_end(const rings* g, const seam* s, hull_ends ends, double2 other, int is_of_high) {
+static inline int lowest_end(const rings* g, const seam* s, hull_ends ends, coordinate2 other, int is_of_high) {
   int lowest = ends.first_x;
-  double least = INFINITY;
+  real least = INFINITY;
   for (int k = 0; k < 4; ++k) {
     const int end = k == 0 ? ends.first_x : k == 1 ? ends.last_x : k == 2 ? ends.first_y : ends.last_y;
-    const double2 p = g->points[end];
-    const double height = is_of_high ? height_at_cut(&s->line, other, p) : height_at_cut(&s->line, p, other);
-    const double turned = s->is_downward ? -height : height;
+    const coordinate2 p = g->points[end];
+    const real height = is_of_high ? height_at_cut(&s->line, other, p) : height_at_cut(&s->line, p, other);
+    const real turned = s->is_downward ? -height : height;
     lowest = turned < least ? end : lowest;
     least = turned < least ? turned : least;
   }
@@ -170,10 +176,10 @@ static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
   walk->right_edge = g->vertex_edge[walk->right];
   for (int moves = 1; moves;) {
     TALLY(*g, steps, 1);
-    const double2 l = g->points[walk->left], r = g->points[walk->right];
+    const coordinate2 l = g->points[walk->left], r = g->points[walk->right];
     const int left_inner = edges[walk->left_edge].next, right_inner = edges[walk->right_edge].previous;
-    const double2 l_outer = g->points[edges[walk->left_edge].to], r_outer = g->points[edges[walk->right_edge].to];
-    const double2 l_inner = g->points[edges[left_inner].to], r_inner = g->points[edges[right_inner].to];
+    const coordinate2 l_outer = g->points[edges[walk->left_edge].to], r_outer = g->points[edges[walk->right_edge].to];
+    const coordinate2 l_inner = g->points[edges[left_inner].to], r_inner = g->points[edges[right_inner].to];
     const int left_side = side_of(g, r, l, l_inner), right_side = side_of(g, l, r_inner, r);
     const int left_is_nearer = s->is_downward ? precedes(l_inner, l, axis) : precedes(l, l_inner, axis);
     const int right_is_nearer = s->is_downward ? precedes(r, r_inner, axis) : precedes(r_inner, r, axis);
@@ -201,10 +207,10 @@ static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
 static inline seam_walk walk_along(rings* g, const seam* s, int left, int right) {
   seam_walk walk = {left, right, NO_EDGE, NO_EDGE, 1, WALK_HAS_STOPPED};
   if (!find_seam_tangent(g, s, &walk)) return walk;
-  const double bound = angle_bound(g->bounds.circle);
+  const filter_bound bound = angle_bound(g->bounds.circle);
   seam_side l = side_from(g, s, walk.left, walk.left_edge, 0), r = side_from(g, s, walk.right, walk.right_edge, 1);
   for (;;) {
-    const double2 low = as_point(s->is_downward ? r.at : l.at), high = as_point(s->is_downward ? l.at : r.at);
+    const coordinate2 low = as_point(s->is_downward ? r.at : l.at), high = as_point(s->is_downward ? l.at : r.at);
     walk.outcome = WALK_HAS_CROSSED;
     if (is_beyond(s, low, high)) return walk;
     TALLY(*g, steps, 1);

@@ -3,6 +3,7 @@
 #define FLAUNAY_SEARCH_H
 
 #include "shared/language.h"
+#include "shared/numbers.h"
 
 BEGIN_SHARED
 
@@ -37,7 +38,7 @@ static inline int positions_below(int i, int count, GLOBAL const int* RESTRICT p
 
 // The last path vertex of first..last with u no greater than the given one; first if there is none. Projections are
 // (h, u), ascending in u.
-static inline int search_path(double u, int first, int last, GLOBAL const double2* RESTRICT path_projections) {
+static inline int search_path(real u, int first, int last, GLOBAL const real2* RESTRICT path_projections) {
   int low = first, high = last + 1;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;

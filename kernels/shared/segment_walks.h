@@ -16,7 +16,7 @@ typedef struct {
   GLOBAL const double* points;
   GLOBAL const int* triangles;
   GLOBAL const int* neighbors;
-  double bound;
+  filter_bound bound;
 } walked_mesh;
 
 // The corner of a row that holds a vertex, or that is opposite to a neighbour. Without branches, since they could not

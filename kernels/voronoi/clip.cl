@@ -53,13 +53,14 @@ static inline centre_terms terms_of(int t, global const double* input, global co
                          vload2(triangles[3 * t + 2], input));
 }
 
-static inline int side_of_edge(const centre_terms* of, int edge, int clip, global const double* corners, double bound) {
+static inline int side_of_edge(const centre_terms* of, int edge, int clip, global const double* corners,
+                               filter_bound bound) {
   return centre_side(of, corner_of(edge, corners), corner_of(next_clip_edge(edge, clip), corners), bound);
 }
 
 // STRICTLY_INSIDE, or an edge of the polygon that the centre lies on or beyond. Diagonals from corner 0 cut the polygon
 // into triangles, in which it is located by binary search.
-static inline int witness_of(const centre_terms* of, int clip, global const double* corners, double bound) {
+static inline int witness_of(const centre_terms* of, int clip, global const double* corners, filter_bound bound) {
   if (side_of_edge(of, 0, clip, corners, bound) <= 0) return 0;
   if (side_of_edge(of, clip - 1, clip, corners, bound) <= 0) return clip - 1;
   int low = 1, high = clip - 1;
@@ -93,7 +94,7 @@ static inline int is_surely_inside(double2 centre, double slack, int clip, globa
   return centre_side_rounded(centre, slack, corner_of(low, corners), corner_of(high, corners)) > 0;
 }
 
-kernel void locate_centres(int n, int points, int clip, double bound, global const double* restrict corners,
+kernel void locate_centres(int n, int points, int clip, filter_bound bound, global const double* restrict corners,
                            global const double* restrict input, global const int* restrict triangles,
                            global const double* restrict centres, global int* restrict witnesses) {
   const int t = get_global_id(0);
@@ -114,7 +115,7 @@ kernel void locate_centres(int n, int points, int clip, double bound, global con
 }
 
 // Whether triangle t and its neighbour u opposite to corner k have one circle.
-static inline int is_one_circle(int t, int k, int u, int points, double bound, global const double* input,
+static inline int is_one_circle(int t, int k, int u, int points, filter_bound bound, global const double* input,
                                 global const int* triangles, global const int* neighbors,
                                 global const double* centres) {
   const int a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
@@ -131,7 +132,7 @@ static inline int is_one_circle(int t, int k, int u, int points, double bound, g
 }
 
 // flats: gets for each triangle the set of its corners whose opposite triangle has a larger index and the same circle.
-kernel void mark_flat(int n, int points, double bound, global const double* restrict input,
+kernel void mark_flat(int n, int points, filter_bound bound, global const double* restrict input,
                       global const int* restrict triangles, global const int* restrict neighbors,
                       global const double* restrict centres, global uchar* restrict flats) {
   const int t = get_global_id(0);
@@ -316,7 +317,7 @@ kernel void write_slots(int n, int chunk, global const int* restrict triangles, 
 // The edges through which the bisector of p and q enters and leaves the polygon, with p on its left. It enters where
 // corners nearer to p are followed by others, counter-clockwise; if it goes through a corner, that is the end of the
 // edge by which it enters, or the beginning of the one by which it leaves. x is -1 if it does not meet the interior.
-static inline int2 crossed_edges(double2 p, double2 q, int clip, global const double* corners, double bound) {
+static inline int2 crossed_edges(double2 p, double2 q, int clip, global const double* corners, filter_bound bound) {
   int2 crossed = VECTOR(int2, -1, -1);
   int is_beyond = 0;
   const int first = nearness_sign(q, p, corner_of(0, corners), bound);
@@ -333,7 +334,7 @@ static inline int2 crossed_edges(double2 p, double2 q, int clip, global const do
 }
 
 static inline int side_of_centre(int t, int edge, int clip, global const double* corners, global const double* input,
-                                 global const int* triangles, double bound) {
+                                 global const int* triangles, filter_bound bound) {
   const centre_terms terms = terms_of(t, input, triangles);
   return side_of_edge(&terms, edge, clip, corners, bound);
 }
@@ -347,8 +348,8 @@ static inline int is_whole(int t, int points, global const int* triangles) {
 }
 
 // n slots. codes: 0 where write_slots has not decided; get what is inside, and stay 0 where nothing is.
-kernel void clip_slots(int n, int points, int triangle_count, int hull_count, int clip, double side_bound,
-                       double nearness_bound, global const double* restrict corners,
+kernel void clip_slots(int n, int points, int triangle_count, int hull_count, int clip, filter_bound side_bound,
+                       filter_bound nearness_bound, global const double* restrict corners,
                        global const double* restrict input, global const int* restrict triangles,
                        global const int* restrict ahead, global const int* restrict hull,
                        global const int* restrict witnesses, global const int* restrict slots,
@@ -483,7 +484,7 @@ kernel void count_corners(int n, int points, int triangle_count, int hull_count,
 // Whether the polygon lies in a cell with slots [first, end), whose edges all miss its interior. If corner 0 is nearer
 // to another point it does not, and that is nearly always so.
 static inline int is_all_nearest(uint first, uint end, int points, int triangle_count, int hull_count, int clip,
-                                 double bound, global const double* corners, global const double* input,
+                                 filter_bound bound, global const double* corners, global const double* input,
                                  global const int* triangles, global const int* ahead, global const int* hull,
                                  global const int* slots) {
   for (int k = 0; k < clip; ++k) {
@@ -499,7 +500,7 @@ static inline int is_all_nearest(uint first, uint end, int points, int triangle_
 }
 
 // n points.
-kernel void count_whole(int n, int triangle_count, int hull_count, int clip, double nearness_bound,
+kernel void count_whole(int n, int triangle_count, int hull_count, int clip, filter_bound nearness_bound,
                         global const double* restrict corners, global const double* restrict input,
                         global const int* restrict triangles, global const int* restrict ahead,
                         global const int* restrict hull, global const uint* restrict offsets,
@@ -536,7 +537,7 @@ static inline double2 clamped_to(double2 at, double2 v, double2 w) {
 
 // Where a Voronoi edge enters or leaves by an edge of the polygon, of which `end` is the corner where it may be;
 // centre: a triangle if that is the centre of its circle, else -1.
-static inline double2 point_on_edge(int p, int q, int edge, int end, int centre, int clip, double bound,
+static inline double2 point_on_edge(int p, int q, int edge, int end, int centre, int clip, filter_bound bound,
                                     global const double* corners, global const double* input,
                                     global const double* centres) {
   const double2 at_p = vload2(p, input), at_q = vload2(q, input), corner = corner_of(end, corners);
@@ -550,7 +551,7 @@ static inline double2 unscaled(double2 p, scaling scale) {
 }
 
 // n slots. box: around the polygon. unscale: to the coordinates of the caller.
-kernel void write_corners(int n, int points, int triangle_count, int hull_count, int clip, double nearness_bound,
+kernel void write_corners(int n, int points, int triangle_count, int hull_count, int clip, filter_bound nearness_bound,
                           vertex_box box, scaling unscale, global const double* restrict corners,
                           global const double* restrict input, global const int* restrict triangles,
                           global const int* restrict ahead, global const int* restrict hull,

@@ -77,7 +77,8 @@ void for_each_item(std::size_t n, const Work& work) {
 
 geometry::Magnitudes inspected(const double* coordinates, std::size_t first, std::size_t last) {
   geometry::Magnitudes magnitudes;
-  kernel::inspect_points(static_cast<int>(first), static_cast<int>(last), coordinates, &magnitudes.largest);
+  kernel::inspect_points(static_cast<int>(first), static_cast<int>(last),
+                         reinterpret_cast<const kernel::double_bits*>(coordinates), &magnitudes.largest);
   return magnitudes;
 }
 

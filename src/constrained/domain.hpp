@@ -57,7 +57,7 @@ void find_depths(host::Runtime& runtime, const DomainMesh& mesh, const DepthRule
 struct Seeds {
   std::vector<std::size_t> offsets;         ///< of sets
   std::vector<kernel::query_frame> frames;  ///< how sets are scaled
-  double bound = 0;                         ///< of orientations
+  float bound = 0;                          ///< of orientations
   std::vector<kernel::double2> places;      ///< in each set by ascending x, scaled
   std::vector<std::int32_t> numbers;        ///< those of the caller
 };

@@ -158,7 +158,7 @@ void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoin
 
 // The arguments that all kernels on one call's queries share.
 struct Pass {
-  double orient_bound, nearness_bound;
+  float orient_bound, nearness_bound;
   cl_int sets;
   Buffer<kernel::query_frame> frames;
   Buffer<cl_int> query_offsets;  // not read if there is one set

@@ -66,7 +66,7 @@ void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& 
 
 /// The queries of one call, in the order in which kernels answer them, with their triangles.
 struct LocatedQueries {
-  double orient_bound = 0;  ///< of the queries' orientations, see shared/bounds.h
+  float orient_bound = 0;  ///< of the queries' orientations, see shared/bounds.h
   cl_int sets = 0;
   Buffer<kernel::query_frame> frames{};  ///< by set
   Buffer<cl_int> query_offsets{};        ///< by set; not filled if there is one set

@@ -26,7 +26,7 @@ struct PointRange {
 /// How queries are scaled.
 struct QueryScaling {
   std::vector<kernel::query_frame> frames;  ///< by set
-  double orient_bound = 0, nearness_bound = 0;
+  float orient_bound = 0, nearness_bound = 0;
 };
 
 /// What predicates on points and queries need: coordinates are multiples of 2^lowest below 2^(largest + 1).

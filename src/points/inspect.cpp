@@ -31,7 +31,7 @@ UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& 
   runtime.map(n, kernels::scale_sets{.sets = sets,
                                      .offsets = runtime.upload(runtime.arena(), integers(offsets)),
                                      .shifts = runtime.upload(runtime.arena(), scalings.shifts),
-                                     .input = points,
+                                     .input = points.as<cl_ulong>(),
                                      .scaled_input = scaled});
   return {scaled, {0, scalings.bounds}, scalings.shifts, by_set};
 }
@@ -46,10 +46,11 @@ Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points
   const host::Sizes& sizes = runtime.sizes();
   if (sizes.tile_group != 0) {
     const std::size_t workers = std::min(n, sizes.tile_group * sizes.scan_groups);
-    runtime.launch(workers, sizes.tile_group, n,
-                   kernels::inspect_tiles{.workers = workers, .input = points, .account = account});
+    runtime.launch(
+        workers, sizes.tile_group, n,
+        kernels::inspect_tiles{.workers = workers, .input = points.as<cl_ulong>(), .account = account});
   } else {
-    runtime.chunks(n, sizes.chunk(n), kernels::inspect{.input = points, .account = account});
+    runtime.chunks(n, sizes.chunk(n), kernels::inspect{.input = points.as<cl_ulong>(), .account = account});
   }
   runtime.read(account, 0, kernel::INSPECT_NUMBERS, &magnitudes.largest);
   return magnitudes;
@@ -69,7 +70,7 @@ std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<
   runtime.chunks(n, runtime.sizes().chunk(n),
                  kernels::inspect_sets{.sets = sets,
                                        .offsets = runtime.upload(runtime.arena(), integers(offsets)),
-                                       .input = points,
+                                       .input = points.as<cl_ulong>(),
                                        .accounts = accounts});
   runtime.read(accounts, 0, kernel::INSPECT_NUMBERS * sets, &magnitudes.data()->largest);
   return magnitudes;
@@ -101,14 +102,15 @@ host::Buffer<cl_double> scaled(host::Runtime& runtime, const host::Buffer<cl_dou
   runtime.map(n, kernels::scale_sets{.sets = 1,
                                      .offsets = runtime.upload(runtime.arena(), std::vector<cl_int>{0}),
                                      .shifts = runtime.upload(runtime.arena(), std::vector<cl_int>{shift}),
-                                     .input = points,
+                                     .input = points.as<cl_ulong>(),
                                      .scaled_input = scaled});
   return scaled;
 }
 
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,
            const host::Buffer<cl_double>& wide) {
-  runtime.map(n, kernels::widen_points{.first = first, .narrow = narrow, .points = wide});
+  runtime.map(n, kernels::widen_points{
+                     .first = first, .narrow = narrow.as<cl_uint>(), .points = wide.as<cl_ulong>()});
 }
 
 }  // namespace flaunay::points

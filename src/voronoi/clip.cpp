@@ -19,7 +19,7 @@ struct DeviceClip {
   Buffer<cl_double> corners{};
   kernel::vertex_box box{};
   kernel::scaling scale{}, unscale{};
-  double circle_bound = 0, side_bound = 0, nearness_bound = 0;
+  float circle_bound = 0, side_bound = 0, nearness_bound = 0;
 };
 
 DeviceClip upload(host::Runtime& runtime, const ClipPolygon& polygon, const geometry::Scaling& scaling,

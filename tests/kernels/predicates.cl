@@ -8,7 +8,7 @@
 #include "shared/planar.h"
 
 // Cases of 7: a, b, p, cut. The filter is that of hull_depths in quickhull.cl.
-kernel void hull_filtered(int n, int axis, double bound, global const double* restrict cases,
+kernel void hull_filtered(int n, int axis, filter_bound bound, global const double* restrict cases,
                           global double* restrict depth, global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -43,7 +43,7 @@ kernel void lower_cases(int n, int axis, global const double* restrict cases, gl
 }
 
 // Cases of 6: a, b, c.
-kernel void orient_filtered_cases(int n, double bound, global const double* restrict cases,
+kernel void orient_filtered_cases(int n, filter_bound bound, global const double* restrict cases,
                                   global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -61,7 +61,7 @@ kernel void orient_exact_cases(int n, global const double* restrict cases, globa
 }
 
 // Cases of 8: a, b, c, d.
-kernel void circle_filtered_cases(int n, double bound, global const double* restrict cases,
+kernel void circle_filtered_cases(int n, filter_bound bound, global const double* restrict cases,
                                   global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -72,7 +72,7 @@ kernel void circle_filtered_cases(int n, double bound, global const double* rest
 }
 
 // The same, by the angles under which c and d see the edge from a to b. bound: of the in-circle test.
-kernel void angle_compared_cases(int n, double bound, global const double* restrict cases,
+kernel void angle_compared_cases(int n, filter_bound bound, global const double* restrict cases,
                                  global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -98,7 +98,7 @@ kernel void circle_exact_cases(int n, global const double* restrict cases, globa
   }
 }
 
-kernel void circle_canonical_cases(int n, double bound, global const double* restrict cases,
+kernel void circle_canonical_cases(int n, filter_bound bound, global const double* restrict cases,
                                    global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -109,7 +109,7 @@ kernel void circle_canonical_cases(int n, double bound, global const double* res
 }
 
 // Cases of 6: a, b, q.
-kernel void nearness_filtered_cases(int n, double bound, global const double* restrict cases,
+kernel void nearness_filtered_cases(int n, filter_bound bound, global const double* restrict cases,
                                     global char* restrict signs) {
   const int i = get_global_id(0);
   if (i < n) {
