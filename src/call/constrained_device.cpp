@@ -58,12 +58,12 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
       constrained::Result result =
           call::insert_on(*call.host, read.coordinates.data(), delaunay.point_offsets, read.triangulation,
                           points::download(runtime, given, given.size()), Options());
+      const auto constraint_edges = provide_edges(result.constraint_edges.size() / 2);
       call::write_result(runtime, buffers.triangles, std::move(result.triangles));
       call::write_result(runtime, buffers.neighbors, std::move(result.neighbors));
       call::write_result(runtime, buffers.constrained, std::move(result.constrained));
       call::write_result(runtime, buffers.segment_edges, std::move(result.segment_edges));
-      call::write_result(runtime, provide_edges(result.constraint_edges.size() / 2),
-                         std::move(result.constraint_edges));
+      call::write_result(runtime, constraint_edges, std::move(result.constraint_edges));
     } else {
       delaunay.coordinates = call::wide_points(runtime, runtime.arena(), points);
       constrained::constrain(runtime, delaunay, given, segments.count, buffers, provide_edges);
