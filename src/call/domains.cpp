@@ -86,7 +86,7 @@ void apply_domains(Implementation& self, const double* coordinates, const std::v
     apply_domains_on_host(coordinates, offsets, constraints, request, result);
     return;
   }
-  const OwnCall own(self.for_host_memory());
+  const OwnCall own(self.with_doubles(self.for_host_memory()));
   apply_domains_on(own.runtime, coordinates, offsets, constraints, request, result);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "call/device_mesh.hpp"
+#include "call/on_host.hpp"
 #include "constrained/device.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
@@ -34,6 +35,8 @@ void add(const Statistics& step, Statistics& all) {
       [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
 }
 
+}  // namespace
+
 constrained::Result insert_on(Engine& engine, const double* coordinates,
                               const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                               const std::vector<std::int32_t>& segments, const Options& options) {
@@ -49,8 +52,6 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
   return result;
 }
 
-}  // namespace
-
 constrained::Result insert_segments(Implementation& self, const double* coordinates,
                                     const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                                     const std::vector<std::int32_t>& segments, const Options& options) {
@@ -59,7 +60,9 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
   if (may_stay && size <= self.host_tuning().host_points) {
     return constrained::constrain(coordinates, offsets, delaunay, segments);
   }
-  return insert_on(self.for_host_memory(), coordinates, offsets, delaunay, segments, options);
+  Engine& engine = self.with_doubles(self.for_host_memory());
+  add_note(self.for_host_memory(), engine, "constraints", "inserted", delaunay.statistics);
+  return insert_on(engine, coordinates, offsets, delaunay, segments, options);
 }
 
 }  // namespace flaunay::call

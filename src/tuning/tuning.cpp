@@ -325,6 +325,12 @@ constexpr Row kTable[] = {
      {0},
      {0},
      "17 operations in place of 2; the self-test sets it for a device whose fma rounds twice."},
+    {"fixed_point",
+     &Tuning::fixed_point,
+     {0},
+     {0},
+     {0},
+     "Devices without double precision compute in fixed point, whatever this row says."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
@@ -500,6 +506,7 @@ Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t 
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   auto tuning =
       std::make_shared<Tuning>(tuning_of_kind(device.name(), device.type(), device.compute_units()));
+  if (!host::has_fp64(device)) tuning->fixed_point = 1;
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
@@ -519,6 +526,7 @@ std::shared_ptr<const Tuning> native_tuning() {
   tuning->sort_group = compiled.sort_group;
   tuning->fetch_ahead = compiled.fetch_ahead;
   tuning->split_products = compiled.split_products;
+  tuning->fixed_point = compiled.fixed_point;
   tuning->tile_group = compiled.tile_group;
   tuning->in_host_memory = 1;
   tuning->blocks_in_parallel = 0;

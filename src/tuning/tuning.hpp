@@ -87,6 +87,9 @@ struct Tuning : host::Sizes {
 
   /// Other than 0: kernels compute the errors of products without fma, as for devices whose fma is not exact.
   std::size_t split_products = 0;
+  /// Other than 0: kernels compute with integers and single precision instead of doubles. tuning_for sets it
+  /// for devices without double precision.
+  std::size_t fixed_point = 0;
 
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.
