@@ -12,8 +12,9 @@
 
 #include "shared/chains.h"
 
-kernel void gather_vertices(int n, int count, global const int* restrict offsets, global const coordinate2* restrict points,
-                            global const int* restrict chain, global coordinate2* restrict places) {
+kernel void gather_vertices(int n, int count, global const int* restrict offsets,
+                            global const coordinate2* restrict points, global const int* restrict chain,
+                            global coordinate2* restrict places) {
   const int i = get_global_id(0);
   if (i < min(n, offsets[count])) places[i] = points[chain[i]];
 }

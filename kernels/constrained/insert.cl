@@ -43,8 +43,8 @@ static inline uint rank_of(int constraint) {
   return x ^ x >> 15;
 }
 
-static inline walked_mesh mesh_of(global const coordinate* points, global const int* triangles, global const int* neighbors,
-                                  filter_bound bound) {
+static inline walked_mesh mesh_of(global const coordinate* points, global const int* triangles,
+                                  global const int* neighbors, filter_bound bound) {
   walked_mesh mesh;
   mesh.points = points;
   mesh.triangles = triangles;

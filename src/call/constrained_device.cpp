@@ -27,8 +27,8 @@ void insert(const call::WithDoubles& call, const DevicePoints& points, const Dev
   constrained::ConstrainedBuffers buffers;
   buffers.triangles = delaunay.triangles;
   buffers.neighbors = delaunay.neighbors;
-  buffers.constrained = call::result_buffer<cl_uchar>(runtime, edges.constrained, 6 * points.count,
-                                                      "constrained edges", made);
+  buffers.constrained =
+      call::result_buffer<cl_uchar>(runtime, edges.constrained, 6 * points.count, "constrained edges", made);
   buffers.segment_edges =
       call::result_buffer<cl_int>(runtime, edges.piece_edges, 2 * segments.count, "pieces' edges", made);
   const auto provide_edges = [&](std::size_t count) {

@@ -120,13 +120,13 @@ void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const
         constraints,
         constrained::magnitudes_at_holes(coordinates, offsets, result.added_offsets, constraints));
     const host::Runtime::Settled other_settled(with_doubles);
-    drop_holes(runtime,
-               find_holes(with_doubles,
-                          &with_doubles == &runtime
-                              ? mesh
-                              : view_triangles(with_doubles, coordinates, offsets, result),
-                          seeds, constraints),
-               regions);
+    drop_holes(
+        runtime,
+        find_holes(
+            with_doubles,
+            &with_doubles == &runtime ? mesh : view_triangles(with_doubles, coordinates, offsets, result),
+            seeds, constraints),
+        regions);
   }
   if (request.rules.outside != Outside::keep || constraints.hole_count > 0) {
     leave(runtime, mesh, regions, result);
