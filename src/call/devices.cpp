@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/compute/platform.hpp>
 
+#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/errors.hpp"
 #include "call/self_test.hpp"
@@ -67,7 +68,7 @@ std::string self_test_failure(host::Runtime& runtime) {
   return failure;
 }
 
-std::string choose_arithmetic(host::Runtime& runtime) {
+std::string make_exact(host::Runtime& runtime) {
   const std::string failure = self_test_failure(runtime);
   if (failure.empty() || runtime.is_native() || tuning_of(runtime).fixed_point != 0) return failure;
   auto fixed = std::make_shared<Tuning>(tuning_of(runtime));
@@ -145,7 +146,8 @@ std::vector<DeviceInfo> list_devices(bool self_test) {
       if (self_test) {
         try {
           host::Runtime runtime(device, tuning_for(device));
-          info.self_test_failure = call::choose_arithmetic(runtime);
+          call::choose_arithmetic(runtime);
+          info.self_test_failure = call::make_exact(runtime);
           info.self_test_passed = info.self_test_failure.empty();
           info.fixed_point = tuning_of(runtime).fixed_point != 0;
         } catch (const std::exception& error) {

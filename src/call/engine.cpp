@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "blocks/memory.hpp"
+#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/self_test.hpp"
 #include "host/device.hpp"
@@ -48,6 +49,7 @@ Engine::Engine()
 Engine::Engine(const boost::compute::context& context, const boost::compute::device& device)
     : Engine(context.get() == nullptr ? boost::compute::context(device) : context, device,
              tuning_for(device)) {
+  choose_arithmetic(runtime);
   check_arithmetic();
 }
 
@@ -78,7 +80,7 @@ void Engine::separate_buffers() {
 }
 
 void Engine::check_arithmetic() {
-  const std::string failure = choose_arithmetic(runtime);
+  const std::string failure = make_exact(runtime);
   if (!failure.empty()) {
     throw Error(ErrorKind::device,
                 fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "

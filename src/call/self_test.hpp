@@ -14,6 +14,6 @@ std::string self_test_failure(host::Runtime& runtime);
 
 /// Runs the self test. If the doubles of a device fail it, its kernels compute in fixed point from then on
 /// (Tuning::fixed_point), for which it is run again. Returns "" or what failed.
-std::string choose_arithmetic(host::Runtime& runtime);
+std::string make_exact(host::Runtime& runtime);
 
 }  // namespace flaunay::call

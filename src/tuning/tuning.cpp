@@ -20,6 +20,8 @@ using host::DeviceError;
 constexpr std::size_t kSmallRegion = kernel::DEFAULT_SMALL_REGION;
 constexpr std::size_t kLargestGroup = kernel::LARGEST_GROUP;
 constexpr std::size_t kLargestValue = std::size_t{1} << 30;
+// From this rate of fp32 over that of fp64 on, fixed point takes less time on a GPU.
+constexpr std::size_t kSlowFp64 = 8;
 
 // A value of the table: a number, or a number per compute unit of the device.
 struct Amount {
@@ -330,7 +332,14 @@ constexpr Row kTable[] = {
      {0},
      {0},
      {0},
-     "Devices without double precision compute in fixed point, whatever this row says."},
+     "Set for devices without fp64, and by its rate where that is measured (fixed_point_from)."},
+    {"fixed_point_from",
+     &Tuning::fixed_point_from,
+     {0},
+     {kSlowFp64},
+     {0},
+     "GPUs have a rate of 1/2, or of 1/16 and less; the model has both paths level at about 1/6. CPUs have "
+     "1/2."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
@@ -434,6 +443,8 @@ bool override_value(Tuning& tuning, const std::string& part) {
   const auto number = number_of(part.substr(equals + 1), kLargestValue);
   if (row == std::end(kTable) || !number) return false;
   tuning.*row->member = *number;
+  // What is chosen by hand needs no measurement.
+  if (row->member == &Tuning::fixed_point) tuning.fixed_point_from = 0;
   return true;
 }
 
@@ -493,8 +504,9 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}", Sizes::build_options(),
-                     small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "");
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}{}", Sizes::build_options(),
+                     small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "",
+                     fixed_point != 0 ? " -DFIXED_POINT" : "");
 }
 
 Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
@@ -506,10 +518,13 @@ Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t 
 std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   auto tuning =
       std::make_shared<Tuning>(tuning_of_kind(device.name(), device.type(), device.compute_units()));
-  if (!host::has_fp64(device)) tuning->fixed_point = 1;
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
+  if (!host::has_fp64(device)) {
+    tuning->fixed_point = 1;
+    tuning->fixed_point_from = 0;
+  }
   for (std::size_t* group : {&tuning->block_group, &tuning->halve_group, &tuning->sewing_group}) {
     *group = std::clamp<std::size_t>(*group, 1, std::clamp<std::size_t>(limits.work_group, 1, kLargestGroup));
   }
