@@ -333,6 +333,12 @@ constexpr Row kTable[] = {
      {0},
      {0},
      "Set for devices without fp64, and by its rate where that is measured (fixed_point_from)."},
+    {"convert_halves",
+     &Tuning::convert_halves,
+     {0},
+     {1},
+     {1},
+     "A CPU converts 64-bit integers to floats as fast as 32-bit ones, a GPU many times as slowly."},
     {"fixed_point_from",
      &Tuning::fixed_point_from,
      {0},
@@ -506,7 +512,9 @@ void fit_tiles(Tuning& tuning) {
 std::string Tuning::build_options() const {
   return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}{}", Sizes::build_options(),
                      small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "",
-                     fixed_point != 0 ? " -DFIXED_POINT" : "");
+                     fixed_point == 0      ? ""
+                     : convert_halves == 0 ? " -DFIXED_POINT"
+                                           : " -DFIXED_POINT -DCONVERT_HALVES");
 }
 
 Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
