@@ -8,7 +8,7 @@
 #include "call/insert_segments.hpp"
 #include "call/on_host.hpp"
 #include "constrained/device.hpp"
-#include "points/span.hpp"
+#include "geometry/magnitudes.hpp"
 
 namespace flaunay {
 
@@ -48,12 +48,12 @@ void insert(const call::WithDoubles& call, const DevicePoints& points, const Dev
     constrained::Result result =
         call::insert_on(*call.host, read.coordinates.data(), delaunay.point_offsets, read.triangulation,
                         points::download(runtime, given, given.size()), Options());
+    const auto constraint_edges = provide_edges(result.constraint_edges.size() / 2);
     call::write_result(runtime, buffers.triangles, std::move(result.triangles));
     call::write_result(runtime, buffers.neighbors, std::move(result.neighbors));
     call::write_result(runtime, buffers.constrained, std::move(result.constrained));
     call::write_result(runtime, buffers.segment_edges, std::move(result.segment_edges));
-    call::write_result(runtime, provide_edges(result.constraint_edges.size() / 2),
-                       std::move(result.constraint_edges));
+    call::write_result(runtime, constraint_edges, std::move(result.constraint_edges));
   } else {
     delaunay.coordinates = call::wide_points(runtime, runtime.arena(), points);
     constrained::constrain(runtime, delaunay, given, segments.count, buffers, provide_edges);
@@ -80,7 +80,7 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
     rest.wait_for.clear();
     try {
       insert({engine, nullptr, rest}, points, segments, mesh, edges);
-    } catch (const points::SpanTooWide&) {
+    } catch (const geometry::TooWideForFixedPoint&) {
       mesh.is_constrained = false;
       insert(call::with_doubles(*implementation_, rest), points, segments, mesh, edges);
     }

@@ -6,7 +6,7 @@
 #include "call/engine.hpp"
 #include "call/handles.hpp"
 #include "call/on_host.hpp"
-#include "points/span.hpp"
+#include "geometry/magnitudes.hpp"
 
 namespace flaunay::call {
 
@@ -142,7 +142,7 @@ void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangu
   if (engine.has_doubles()) return triangulate_on(engine, points, result, parts, enqueue);
   try {
     triangulate_on(engine, points, result, parts, enqueue);
-  } catch (const points::SpanTooWide& reason) {
+  } catch (const geometry::TooWideForFixedPoint& reason) {
     Engine& other = self.with_doubles(engine);
     if (other.runtime.is_native()) {
       return triangulate_on_host(self, reason.what(), points, result, parts, enqueue);

@@ -10,8 +10,8 @@ namespace flaunay::call {
 /// computed with its doubles, or if it has none, on the host.
 void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
                  const Parts& parts, const Enqueue& enqueue);
-/// The same, by this engine alone, which throws points::SpanTooWide for what it cannot compute in fixed
-/// point.
+/// The same, by this engine alone, which throws geometry::TooWideForFixedPoint for what it cannot compute in
+/// fixed point.
 void triangulate_on(Engine& engine, const DevicePoints& points, DeviceTriangulation& result,
                     const Parts& parts, const Enqueue& enqueue);
 

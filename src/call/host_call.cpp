@@ -7,10 +7,10 @@
 #include "blocks/small.hpp"
 #include "call/modes.hpp"
 #include "call/on_host.hpp"
+#include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
 #include "host/device.hpp"
 #include "points/inspect.hpp"
-#include "points/span.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
@@ -182,7 +182,7 @@ Triangulation triangulate_on_either(Implementation& self, Engine& engine, const 
   const double begin = engine.runtime.working_clock();
   try {
     return triangulate_on(engine, points, offsets, options);
-  } catch (const points::SpanTooWide& reason) {
+  } catch (const geometry::TooWideForFixedPoint& reason) {
     const double seconds = engine.runtime.working_clock() - begin;
     Engine& other = self.with_doubles(self.for_host_memory());
     other.check_size(offsets.back());

@@ -22,8 +22,8 @@ std::vector<double> widened(const HostPoints& points, std::size_t n);
 Triangulation triangulate(TriangulatorAccess::Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options);
 
-/// Triangulates sets on this engine. If the engine computes in fixed point, throws points::SpanTooWide for
-/// what that cannot represent.
+/// Triangulates sets on this engine. If the engine computes in fixed point, throws
+/// geometry::TooWideForFixedPoint for what that cannot represent.
 Triangulation triangulate_on(Engine& engine, const HostPoints& points,
                              const std::vector<std::size_t>& offsets, const Options& options);
 

@@ -5,7 +5,7 @@
 #include "call/device_mesh.hpp"
 #include "call/on_host.hpp"
 #include "constrained/device.hpp"
-#include "points/span.hpp"
+#include "geometry/magnitudes.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -64,7 +64,7 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
   Engine& engine = self.for_host_memory();
   try {
     return insert_on(engine, coordinates, offsets, delaunay, segments, options);
-  } catch (const points::SpanTooWide& reason) {
+  } catch (const geometry::TooWideForFixedPoint& reason) {
     Engine& other = self.with_doubles(engine);
     if (delaunay.statistics.note.empty()) {
       add_note(engine, other, reason.what(), "segments inserted", delaunay.statistics);

@@ -7,7 +7,6 @@
 #include "launchers/points/inspect_tiles.cl.hpp"
 #include "points/device_mesh.hpp"
 #include "points/download.hpp"
-#include "points/span.hpp"
 #include "shared/codes.h"
 #include "tuning/tuning.hpp"
 
@@ -105,10 +104,6 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
                            const std::vector<std::size_t>& offsets) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   const Magnitudes magnitudes = inspect(runtime, points, n);
-  constexpr int kStubPlaces = 62;
-  if (tuning_of(runtime).fixed_point != 0 && bits_of(magnitudes) > kStubPlaces) {
-    throw SpanTooWide(bits_of(magnitudes), kStubPlaces);
-  }
   const bool differ = differ_too_much(magnitudes);
   const bool is_fixed = tuning_of(runtime).fixed_point != 0;
   if (differ && sets > 1 && !is_fixed) return scale_sets(runtime, points, offsets);
