@@ -18,8 +18,9 @@ constrained::DomainRequest request_of(const ConstrainedOptions& options, bool ar
 void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Constraints& constraints, const constrained::DomainRequest& request,
                    ConstrainedTriangulation& result);
-/// The same on a device, or natively.
-void apply_domains_on(host::Runtime& runtime, const double* coordinates,
+/// The same on a device, or natively. with_doubles: finds holes; another one if the first one computes in
+/// fixed point.
+void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
                       const constrained::DomainRequest& request, ConstrainedTriangulation& result);
 

@@ -5,6 +5,7 @@
 #include "call/device_mesh.hpp"
 #include "call/on_host.hpp"
 #include "constrained/device.hpp"
+#include "geometry/magnitudes.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -60,9 +61,16 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
   if (may_stay && size <= self.host_tuning().host_points) {
     return constrained::constrain(coordinates, offsets, delaunay, segments);
   }
-  Engine& engine = self.with_doubles(self.for_host_memory());
-  add_note(self.for_host_memory(), engine, "constraints", "inserted", delaunay.statistics);
-  return insert_on(engine, coordinates, offsets, delaunay, segments, options);
+  Engine& engine = self.for_host_memory();
+  try {
+    return insert_on(engine, coordinates, offsets, delaunay, segments, options);
+  } catch (const geometry::TooWideForFixedPoint& error) {
+    Engine& other = self.with_doubles(engine);
+    if (delaunay.statistics.note.empty()) {
+      add_note(engine, other, error.reason(), "segments inserted", delaunay.statistics);
+    }
+    return insert_on(other, coordinates, offsets, delaunay, segments, options);
+  }
 }
 
 }  // namespace flaunay::call
