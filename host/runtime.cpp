@@ -94,6 +94,12 @@ Runtime::~Runtime() {
 
 std::string Runtime::name() const { return is_native() ? "host" : device_.name(); }
 
+std::string Runtime::identity() const {
+  const auto platform = device_.platform();
+  return fmt::format("{}\n{}\n{}\n{}\n{}", platform.name(), platform.version(), device_.vendor(),
+                     device_.name(), device_.driver_version());
+}
+
 MemorySource Runtime::memory() const { return is_native() ? native_memory() : memory_of(context_, device_); }
 
 // Makes an in-order queue. Time stamps slow some devices down, so they are only enabled for profiling.
@@ -221,10 +227,7 @@ const boost::compute::program& Runtime::find_program(const std::string& file) {
   const std::string options =
       fmt::format("-cl-std=CL1.2 {}{}", sizes_->build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");
   // Everything that a compiled program depends on.
-  const auto platform = device_.platform();
-  const std::string key =
-      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", FLAUNAY_VERSION, platform.name(), platform.version(),
-                  device_.vendor(), device_.name(), device_.driver_version(), options, source);
+  const std::string key = fmt::format("{}\n{}\n{}\n{}", FLAUNAY_VERSION, identity(), options, source);
   const ProgramCache cache(default_cache_folder());
   boost::compute::program program;
   if (const auto binary = cache.load(key)) program = program_of(*binary, options);

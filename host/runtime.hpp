@@ -55,6 +55,9 @@ class Runtime {
   const boost::compute::context& context() const { return context_; }
   /// The device's name; "host" if kernels run natively.
   std::string name() const;
+  /// What compiled programs and measurements of a device depend on besides their text: platform, device and
+  /// driver, with their versions. Only of devices.
+  std::string identity() const;
   /// The number of threads that run native kernels; 0 on a device.
   std::size_t threads() const { return is_native() ? threads_->count() : 0; }
   /// Where arenas and buffers get their memory from.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "blocks/memory.hpp"
+#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/self_test.hpp"
 #include "host/device.hpp"
@@ -60,6 +61,7 @@ Engine::Engine(const boost::compute::context& context, const boost::compute::dev
       persistent(runtime.memory()),
       even(runtime.memory()),
       odd(runtime.memory()) {
+  choose_arithmetic(runtime);
   check_arithmetic();
 }
 

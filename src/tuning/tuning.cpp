@@ -20,6 +20,8 @@ using host::DeviceError;
 constexpr std::size_t kSmallRegion = kernel::DEFAULT_SMALL_REGION;
 constexpr std::size_t kLargestGroup = kernel::LARGEST_GROUP;
 constexpr std::size_t kLargestValue = std::size_t{1} << 30;
+// From this rate of fp32 over that of fp64 on, fixed point takes less time on a GPU.
+constexpr std::size_t kSlowFp64 = 8;
 
 // A value of the table: a number, or a number per compute unit of the device.
 struct Amount {
@@ -325,6 +327,25 @@ constexpr Row kTable[] = {
      {0},
      {0},
      "17 operations in place of 2; the self-test sets it for a device whose fma rounds twice."},
+    {"fixed_point",
+     &Tuning::fixed_point,
+     {0},
+     {0},
+     {0},
+     "Set for devices without fp64, and by its rate where that is measured (fixed_point_from)."},
+    {"convert_halves",
+     &Tuning::convert_halves,
+     {0},
+     {1},
+     {1},
+     "A CPU converts 64-bit integers to floats as fast as 32-bit ones, a GPU many times as slowly."},
+    {"fixed_point_from",
+     &Tuning::fixed_point_from,
+     {0},
+     {kSlowFp64},
+     {0},
+     "GPUs have a rate of 1/2, or of 1/16 and less; the model has both paths level at about 1/6. CPUs have "
+     "1/2."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
@@ -428,6 +449,8 @@ bool override_value(Tuning& tuning, const std::string& part) {
   const auto number = number_of(part.substr(equals + 1), kLargestValue);
   if (row == std::end(kTable) || !number) return false;
   tuning.*row->member = *number;
+  // What is chosen by hand needs no measurement.
+  if (row->member == &Tuning::fixed_point) tuning.fixed_point_from = 0;
   return true;
 }
 
@@ -487,8 +510,11 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}", Sizes::build_options(),
-                     small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "");
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}{}", Sizes::build_options(),
+                     small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "",
+                     fixed_point == 0      ? ""
+                     : convert_halves == 0 ? " -DFIXED_POINT"
+                                           : " -DFIXED_POINT -DCONVERT_HALVES");
 }
 
 Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
@@ -503,6 +529,10 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
+  if (!host::has_fp64(device)) {
+    tuning->fixed_point = 1;
+    tuning->fixed_point_from = 0;
+  }
   for (std::size_t* group : {&tuning->block_group, &tuning->halve_group, &tuning->sewing_group}) {
     *group = std::clamp<std::size_t>(*group, 1, std::clamp<std::size_t>(limits.work_group, 1, kLargestGroup));
   }
@@ -519,6 +549,7 @@ std::shared_ptr<const Tuning> native_tuning() {
   tuning->sort_group = compiled.sort_group;
   tuning->fetch_ahead = compiled.fetch_ahead;
   tuning->split_products = compiled.split_products;
+  tuning->fixed_point = compiled.fixed_point;
   tuning->tile_group = compiled.tile_group;
   tuning->in_host_memory = 1;
   tuning->blocks_in_parallel = 0;

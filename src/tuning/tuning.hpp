@@ -88,6 +88,15 @@ struct Tuning : host::Sizes {
   /// Other than 0: kernels compute the errors of products without fma, as for devices whose fma is not exact.
   std::size_t split_products = 0;
 
+  /// Other than 0: kernels compute in fixed point, without fp64. Always so on devices that lack it.
+  std::size_t fixed_point = 0;
+  /// If single precision is at least so many times as fast as double precision on a GPU, it computes in fixed
+  /// point (call/arithmetic.hpp); 0: the rates are not asked for.
+  std::size_t fixed_point_from = 0;
+
+  /// Other than 0: in fixed point, differences are converted to floats by halves.
+  std::size_t convert_halves = 0;
+
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.
 

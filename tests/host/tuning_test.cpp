@@ -73,6 +73,19 @@ TEST(SmallTuning, EveryValueCanBeOverridden) {
   }
 }
 
+TEST(SmallTuning, FixedPointIsChosenByTheRateOfFp64OrByHand) {
+  EXPECT_EQ(tuning_named("gpu").fixed_point, 0u);
+  EXPECT_GT(tuning_named("gpu").fixed_point_from, 0u);
+  EXPECT_EQ(tuning_named("gpu,fixed_point=0").fixed_point_from, 0u);
+  EXPECT_EQ(tuning_named("gpu,fixed_point=1").fixed_point_from, 0u);
+  EXPECT_EQ(tuning_named("cpu").fixed_point_from, 0u);
+  const auto names_it = [](const char* name) {
+    return tuning_named(name).build_options().find("-DFIXED_POINT") != std::string::npos;
+  };
+  EXPECT_FALSE(names_it("gpu"));
+  EXPECT_TRUE(names_it("gpu,fixed_point=1"));
+}
+
 TEST(SmallTuning, GroupsOfAGivenSize) {
   const std::size_t most = limits_of(find_device("")).work_group;
   for (const std::size_t group : {1, 32, 256}) {

@@ -1,0 +1,39 @@
+// Which arithmetic a device's kernels use: double precision, or integers in fixed point and single precision
+// (Tuning::fixed_point). Results are the same; OpenCL does not tell which is faster.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "flaunay/device_memory.hpp"
+#include "host/program_cache.hpp"
+#include "host/runtime.hpp"
+
+namespace flaunay::call {
+
+/// Makes the runtime's kernels use fixed point if its device is one of those whose tuning asks for the rate
+/// of fp64 (Tuning::fixed_point_from) and fp64 is that slow. The rate is measured once per device and driver,
+/// and remembered in the folder of compiled programs. Does nothing for other devices, and if the measurement
+/// fails.
+void choose_arithmetic(host::Runtime& runtime);
+
+// ---- What it consists of, for tests
+
+/// Runs a chain of so many steps on every lane, and returns the seconds that it took.
+using RunSteps = std::function<double(Precision, std::size_t steps)>;
+
+/// How many times as long double precision takes as single precision.
+double slowness_of_fp64(const RunSteps& run_steps);
+
+/// The same of a device, which must have fp64. It takes some milliseconds.
+double measured_slowness_of_fp64(host::Runtime& runtime);
+
+/// What is remembered under a key, or else what `measure` returns, which is remembered from then on.
+double remembered_slowness(const host::ProgramCache& cache, const std::string& key,
+                           const std::function<double()>& measure);
+
+/// choose_arithmetic with a slowness that is asked for only if the tuning values need it.
+void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& slowness);
+
+}  // namespace flaunay::call
