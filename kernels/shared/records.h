@@ -108,12 +108,14 @@ typedef struct {
 } face;
 ASSERT_SIZE(face, 24);
 
-// How a set's queries are scaled, and how much more its points are, which are scaled already.
+// How a set's queries are scaled, and how much more its points are, which are scaled already: by factors, and in fixed
+// point by the powers of two `shift` and `unit`.
 typedef struct {
   scaling scale;
   coordinate unit;
+  int shift, unused;
 } query_frame;
-ASSERT_SIZE(query_frame, 32);
+ASSERT_SIZE(query_frame, 40);
 
 // A set of a locator: where its tree's nodes begin, the tree's depth, where its leaves' starts begin, its number of
 // triangles, and where its hull begins and ends.
