@@ -70,7 +70,7 @@ OUT_OF_LINE static inline int circle_exact(coordinate2 a, coordinate2 b, coordin
   return sign != NOT_SHORT ? sign : circle_wide(&from);
 }
 
-// The largest differences of circle_middle where a filter could not decide: then the determinant is below 2^125, see
+// The largest differences of circle_middle where a filter could not decide: then the determinant is below 2^127, see
 // docs/exactness.md.
 #define MIDDLE_BITS 35
 
