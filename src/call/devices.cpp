@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/compute/platform.hpp>
 
+#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/errors.hpp"
 #include "call/self_test.hpp"
@@ -111,6 +112,16 @@ std::string self_test_failure(host::Runtime& runtime) {
   return describe_failure(bits, kChecks);
 }
 
+std::string make_exact(host::Runtime& runtime) {
+  const std::string failure = self_test_failure(runtime);
+  if (failure.empty() || runtime.is_native() || tuning_of(runtime).fixed_point != 0) return failure;
+  auto fixed = std::make_shared<Tuning>(tuning_of(runtime));
+  fixed->fixed_point = 1;
+  runtime.set_sizes(fixed);
+  const std::string failure_of_fixed = self_test_failure(runtime);
+  return failure_of_fixed.empty() ? "" : failure + "; " + failure_of_fixed;
+}
+
 host::MemoryLeft usable_memory(const boost::compute::device& device, std::size_t held) {
   const host::MemoryLeft whole{device.global_memory_size(),
                                "the driver's account (CL_DEVICE_GLOBAL_MEM_SIZE)"};
@@ -138,6 +149,7 @@ DeviceInfo describe(const boost::compute::device& device) {
   info.local_memory_bytes = device.local_memory_size();
   info.work_group_size = device.max_work_group_size();
   info.fp64 = host::has_fp64(device);
+  info.fixed_point = !info.fp64;
   return info;
 }
 
@@ -162,6 +174,7 @@ DeviceInfo describe(const host::Runtime& runtime) {
     info.fp64 = true;
   } else {
     info = describe(runtime.device());
+    info.fixed_point = tuning_of(runtime).fixed_point != 0;
   }
   info.self_test_passed = true;
   return info;
@@ -174,16 +187,16 @@ std::vector<DeviceInfo> list_devices(bool self_test) {
     std::vector<DeviceInfo> infos;
     for (const boost::compute::device& device : host::all_devices()) {
       DeviceInfo info = call::describe(device);
-      if (self_test && info.fp64) {
+      if (self_test) {
         try {
           host::Runtime runtime(device, tuning_for(device));
-          info.self_test_failure = call::self_test_failure(runtime);
+          call::choose_arithmetic(runtime);
+          info.self_test_failure = call::make_exact(runtime);
           info.self_test_passed = info.self_test_failure.empty();
+          info.fixed_point = tuning_of(runtime).fixed_point != 0;
         } catch (const std::exception& error) {
           info.self_test_failure = error.what();
         }
-      } else if (self_test) {
-        info.self_test_failure = "no double precision (fp64)";
       }
       infos.push_back(info);
     }
