@@ -3,17 +3,27 @@
 #include <algorithm>
 #include <boost/compute/platform.hpp>
 
+#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/errors.hpp"
 #include "call/self_test.hpp"
 #include "host/device.hpp"
 #include "launchers/call/self_test.cl.hpp"
+#include "launchers/call/self_test_fixed.cl.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay {
 namespace call {
 
 namespace {
+
+constexpr const char* kChecksInFixedPoint[] = {"products of integers are whole",
+                                               "integers are shifted as they should be",
+                                               "integers of 256 bits are exact",
+                                               "integers are converted to floats",
+                                               "floats are exact to one unit",
+                                               "quotients of floats are exact to "
+                                               "three units"};
 
 constexpr const char* kChecks[] = {"contraction is off",
                                    "fma rounds once",
@@ -49,9 +59,49 @@ cl_uint failed_checks(host::Runtime& runtime) {
   return runtime.read_one(failed, 0);
 }
 
+// The same in fixed point.
+cl_uint failed_checks_in_fixed_point(host::Runtime& runtime) {
+  // Operands as in kernels/call/self_test_fixed.cl, and their results, which were computed with rational
+  // arithmetic.
+  const cl_long operands[] = {0x3fffffffffffffff, -0x2aaaaaaaaaaaaaab, 0x123456789abcdef1, 0};
+  const cl_float reals[] = {0x1.555556p-2f, 0x1.00008p+20f};
+  const cl_ulong expected[] = {0x6aaaaaaaaaaaaaab, 0xf555555555555555, 0xca4ab582281edee1, 0x014b66dc33f6acdc,
+                               0xffaaaaaaaaaaaaaa, 0x01aaaaaaaaaaaaaa, 0x5a6bf6646095ae57, 0xc598153d0f8cb488,
+                               0xac71c71c71c71c71, 0x00205d0b811316e1};
+  const cl_uint floats[] = {0x4e000000, 0x4daaaaab, 0x4d11a2b4, 0x49800043,
+                            0x4980003d, 0x3de38e3a, 0x34aaaa56};
+  host::Arena::Scope scope(runtime.arena());
+  const auto failed = runtime.arena().allocate<cl_uint>(1);
+  const auto upload = [&runtime](const auto& values) {
+    const auto buffer = runtime.arena().allocate<std::decay_t<decltype(values[0])>>(std::size(values));
+    runtime.write(buffer, 0, std::size(values), values);
+    return buffer;
+  };
+  runtime.launch(1, 1,
+                 kernels::self_test_fixed{.operands = upload(operands),
+                                          .reals = upload(reals),
+                                          .expected = upload(expected),
+                                          .floats = upload(floats),
+                                          .failed = failed});
+  return runtime.read_one(failed, 0);
+}
+
+template <std::size_t N>
+std::string describe_failure(cl_uint bits, const char* const (&checks)[N]) {
+  std::string failure;
+  for (std::size_t k = 0; k < N; ++k) {
+    if (bits >> k & 1)
+      failure += fmt::format("{}it does not hold that {}", failure.empty() ? "" : "; ", checks[k]);
+  }
+  return failure;
+}
+
 }  // namespace
 
 std::string self_test_failure(host::Runtime& runtime) {
+  if (tuning_of(runtime).fixed_point != 0) {
+    return describe_failure(failed_checks_in_fixed_point(runtime), kChecksInFixedPoint);
+  }
   cl_uint bits = failed_checks(runtime);
   if (bits != 0 && (bits & ~kFmaChecks) == 0 && !runtime.is_native()) {
     auto without_fma = std::make_shared<Tuning>(tuning_of(runtime));
@@ -59,12 +109,17 @@ std::string self_test_failure(host::Runtime& runtime) {
     runtime.set_sizes(without_fma);
     bits = failed_checks(runtime);
   }
-  std::string failure;
-  for (std::size_t k = 0; k < std::size(kChecks); ++k) {
-    if (bits >> k & 1)
-      failure += fmt::format("{}it does not hold that {}", failure.empty() ? "" : "; ", kChecks[k]);
-  }
-  return failure;
+  return describe_failure(bits, kChecks);
+}
+
+std::string make_exact(host::Runtime& runtime) {
+  const std::string failure = self_test_failure(runtime);
+  if (failure.empty() || runtime.is_native() || tuning_of(runtime).fixed_point != 0) return failure;
+  auto fixed = std::make_shared<Tuning>(tuning_of(runtime));
+  fixed->fixed_point = 1;
+  runtime.set_sizes(fixed);
+  const std::string failure_of_fixed = self_test_failure(runtime);
+  return failure_of_fixed.empty() ? "" : failure + "; " + failure_of_fixed;
 }
 
 host::MemoryLeft usable_memory(const boost::compute::device& device, std::size_t held) {
@@ -94,6 +149,7 @@ DeviceInfo describe(const boost::compute::device& device) {
   info.local_memory_bytes = device.local_memory_size();
   info.work_group_size = device.max_work_group_size();
   info.fp64 = host::has_fp64(device);
+  info.fixed_point = !info.fp64;
   return info;
 }
 
@@ -118,6 +174,7 @@ DeviceInfo describe(const host::Runtime& runtime) {
     info.fp64 = true;
   } else {
     info = describe(runtime.device());
+    info.fixed_point = tuning_of(runtime).fixed_point != 0;
   }
   info.self_test_passed = true;
   return info;
@@ -130,16 +187,16 @@ std::vector<DeviceInfo> list_devices(bool self_test) {
     std::vector<DeviceInfo> infos;
     for (const boost::compute::device& device : host::all_devices()) {
       DeviceInfo info = call::describe(device);
-      if (self_test && info.fp64) {
+      if (self_test) {
         try {
           host::Runtime runtime(device, tuning_for(device));
-          info.self_test_failure = call::self_test_failure(runtime);
+          call::choose_arithmetic(runtime);
+          info.self_test_failure = call::make_exact(runtime);
           info.self_test_passed = info.self_test_failure.empty();
+          info.fixed_point = tuning_of(runtime).fixed_point != 0;
         } catch (const std::exception& error) {
           info.self_test_failure = error.what();
         }
-      } else if (self_test) {
-        info.self_test_failure = "no double precision (fp64)";
       }
       infos.push_back(info);
     }

@@ -18,6 +18,10 @@ constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
 constexpr int kExponentMask = 0x7ff;
 constexpr int kExponentBias = 1023;
 
+// In fixed point, coordinates are below 2^62 in magnitude, as shared/numbers.h has it.
+constexpr int kFixedPointBits = 62;
+constexpr int kLargestOfFiniteDifferences = kExponentBias - 2;
+
 int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
 
 [[noreturn]] void throw_range(const double* coordinates, std::size_t first, std::size_t last,
@@ -126,6 +130,32 @@ Scaling scaling_for(const Magnitudes& magnitudes) {
   scaling.bounds.orient = bits <= kernel::COARSE_ORIENT_BITS ? 0 : ORIENT_BOUND;
   scaling.bounds.circle = bits <= kernel::COARSE_CIRCLE_BITS ? 0 : CIRCLE_BOUND;
   return scaling;
+}
+
+TooWideForFixedPoint::TooWideForFixedPoint(const Magnitudes& magnitudes)
+    : TooWideForFixedPoint(
+          fmt::format("coordinates whose bits span {} binary places up to 2^{} (fixed point has {})",
+                      bits_of(magnitudes), magnitudes.largest + 1, kFixedPointBits)) {}
+
+TooWideForFixedPoint::TooWideForFixedPoint(const std::string& reason)
+    : Error(ErrorKind::device,
+            fmt::format("a device without double precision (fp64) cannot take {}; use another device "
+                        "(FLAUNAY_DEVICE), or the host",
+                        reason)),
+      reason_(std::make_shared<const std::string>(reason)) {}
+
+bool fits_fixed_point(const Magnitudes& magnitudes) {
+  return bits_of(magnitudes) <= kFixedPointBits && magnitudes.largest <= kLargestOfFiniteDifferences;
+}
+
+int fixed_point_shift(const Magnitudes& magnitudes) {
+  if (!fits_fixed_point(magnitudes)) throw TooWideForFixedPoint(magnitudes);
+  return bits_of(magnitudes) == 0 ? 0 : kFixedPointBits - 1 - magnitudes.largest;
+}
+
+Bounds fixed_point_bounds(int bits) {
+  return {0, ORIENT_BOUND_FOR(SINGLE_ROUNDOFF), CIRCLE_BOUND_FOR(SINGLE_ROUNDOFF),
+          bits <= kernel::COARSE_FIXED_BITS};
 }
 
 SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -74,6 +76,29 @@ Scaling scaling_for(const Magnitudes& magnitudes);
 /// magnitudes are not accepted; the coordinates are read in that case only.
 Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t last,
                     const Magnitudes& magnitudes);
+
+/// Thrown where a set of points would have to be in fixed point, but does not fit. Such calls are to be made
+/// on a device with double precision or on the host.
+class TooWideForFixedPoint : public Error {
+ public:
+  explicit TooWideForFixedPoint(const Magnitudes& magnitudes);
+  /// What does not fit: "coordinates that ...".
+  const std::string& reason() const { return *reason_; }
+
+ private:
+  explicit TooWideForFixedPoint(const std::string& reason);
+
+  // Shared, because copying an exception must not throw.
+  std::shared_ptr<const std::string> reason_;
+};
+
+/// Whether finite coordinates fit into fixed point, and are cut as doubles are: their differences are finite.
+bool fits_fixed_point(const Magnitudes& magnitudes);
+/// The power of two by which coordinates in fixed point are multiplied, so that they have as many bits as can
+/// be. Throws TooWideForFixedPoint if they do not fit. O(1).
+int fixed_point_shift(const Magnitudes& magnitudes);
+/// The bounds of filters in fixed point, for points of so many bits (bits_of).
+Bounds fixed_point_bounds(int bits);
 
 /// The scaling of several sets of points: the same for all, or if their magnitudes differ too much, one for
 /// each.

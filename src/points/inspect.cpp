@@ -8,6 +8,7 @@
 #include "points/device_mesh.hpp"
 #include "points/download.hpp"
 #include "shared/codes.h"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::points {
 
@@ -18,20 +19,50 @@ std::vector<double> to_host(host::Runtime& runtime, const host::Buffer<cl_double
   return download(runtime, points, 2 * n);
 }
 
+// Points, each multiplied by 2^shift: the only one, or its set's.
+host::Buffer<cl_double> scaled_copy(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                    const std::vector<std::size_t>& offsets, const std::vector<int>& shifts) {
+  const auto scaled = runtime.arena().allocate<cl_double>(2 * offsets.back());
+  const std::vector<cl_int> first = shifts.size() == 1 ? std::vector<cl_int>{0} : integers(offsets);
+  runtime.map(offsets.back(), kernels::scale_sets{.sets = shifts.size(),
+                                                  .offsets = runtime.upload(runtime.arena(), first),
+                                                  .shifts = runtime.upload(runtime.arena(), shifts),
+                                                  .input = points.as<cl_ulong>(),
+                                                  .scaled_input = scaled});
+  return scaled;
+}
+
 UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
                          const std::vector<std::size_t>& offsets) {
-  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  const std::size_t n = offsets.back();
   const std::vector<Magnitudes> by_set = inspect_sets(runtime, points, offsets);
   std::vector<double> coordinates;
   if (std::any_of(by_set.begin(), by_set.end(), differ_too_much)) coordinates = to_host(runtime, points, n);
   const SetScalings scalings = set_scalings(coordinates.data(), offsets, by_set);
-  const auto scaled = runtime.arena().allocate<cl_double>(2 * n);
-  runtime.map(n, kernels::scale_sets{.sets = sets,
-                                     .offsets = runtime.upload(runtime.arena(), integers(offsets)),
-                                     .shifts = runtime.upload(runtime.arena(), scalings.shifts),
-                                     .input = points.as<cl_ulong>(),
-                                     .scaled_input = scaled});
-  return {scaled, {0, scalings.bounds}, scalings.shifts, by_set};
+  return {
+      scaled_copy(runtime, points, offsets, scalings.shifts), {0, scalings.bounds}, scalings.shifts, by_set};
+}
+
+// all: the magnitudes of all sets.
+UniformPoints in_fixed_point(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                             const std::vector<std::size_t>& offsets, const Magnitudes& all) {
+  UniformPoints uniform;
+  int bits = 0;
+  const std::size_t sets = offsets.size() - 1;
+  if (sets > 1 && !fits_fixed_point(all)) {
+    uniform.by_set = inspect_sets(runtime, points, offsets);
+    for (const Magnitudes& each : uniform.by_set) {
+      uniform.shifts.push_back(fixed_point_shift(each));
+      bits = std::max(bits, bits_of(each));
+    }
+  } else {
+    bits = bits_of(all);
+    if (sets == 1) uniform.by_set = {all};
+    uniform.shifts = {fixed_point_shift(all)};
+  }
+  uniform.scaling.bounds = fixed_point_bounds(bits);
+  uniform.coordinates = scaled_copy(runtime, points, offsets, uniform.shifts);
+  return uniform;
 }
 
 }  // namespace
@@ -79,7 +110,11 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   const Magnitudes magnitudes = inspect(runtime, points, n);
   const bool differ = differ_too_much(magnitudes);
-  if (differ && sets > 1) return scale_sets(runtime, points, offsets);
+  const bool is_fixed = tuning_of(runtime).fixed_point != 0;
+  if (differ && sets > 1 && !is_fixed) return scale_sets(runtime, points, offsets);
+  if (is_fixed && magnitudes.bad == kernel::NO_BAD && (!differ || sets > 1)) {
+    return in_fixed_point(runtime, points, offsets, magnitudes);
+  }
   std::vector<double> coordinates;
   if (differ || magnitudes.bad != kernel::NO_BAD) coordinates = to_host(runtime, points, n);
   const Scaling scaling = scaling_for(coordinates.data(), 0, n, magnitudes);
@@ -91,14 +126,7 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
 
 host::Buffer<cl_double> scaled(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n,
                                int shift) {
-  if (shift == 0) return points;
-  const auto scaled = runtime.arena().allocate<cl_double>(2 * n);
-  runtime.map(n, kernels::scale_sets{.sets = 1,
-                                     .offsets = runtime.upload(runtime.arena(), std::vector<cl_int>{0}),
-                                     .shifts = runtime.upload(runtime.arena(), std::vector<cl_int>{shift}),
-                                     .input = points.as<cl_ulong>(),
-                                     .scaled_input = scaled});
-  return scaled;
+  return shift == 0 ? points : scaled_copy(runtime, points, {0, n}, {shift});
 }
 
 void widen(host::Runtime& runtime, const host::Buffer<cl_float>& narrow, std::size_t first, std::size_t n,

@@ -135,7 +135,8 @@ constexpr Row kTable[] = {
      {1024},
      {1024},
      {6},
-     "What 32 KB of local memory hold with both orders; larger nodes cost two launches a level."},
+     "What 32 KB of local memory hold with both orders, half with 16 KB; larger nodes cost two launches a "
+     "level."},
     {"block_bits",
      &Tuning::block_bits,
      {10},
@@ -333,6 +334,12 @@ constexpr Row kTable[] = {
      {0},
      {0},
      "Set for devices without fp64, and by its rate where that is measured (fixed_point_from)."},
+    {"convert_halves",
+     &Tuning::convert_halves,
+     {0},
+     {1},
+     {1},
+     "A CPU converts 64-bit integers to floats as fast as 32-bit ones, a GPU many times as slowly."},
     {"fixed_point_from",
      &Tuning::fixed_point_from,
      {0},
@@ -491,12 +498,11 @@ Tuning tuning_of_target(const Target& target) {
 
 // Reduces sizes to what kernels have local memory for.
 void fit_tiles(Tuning& tuning) {
-  const auto fit = [](std::size_t& size, int most) {
-    size = std::clamp<std::size_t>(size, 1, static_cast<std::size_t>(most));
-  };
-  fit(tuning.point_tile, kernel::LARGEST_POINT_TILE);
-  fit(tuning.sample_tile, kernel::LARGEST_SAMPLE_TILE);
-  fit(tuning.samples_per_gap_block, kernel::LARGEST_SAMPLE_TILE);
+  const auto fit = [](std::size_t& size, std::size_t most) { size = std::clamp<std::size_t>(size, 1, most); };
+  const std::size_t samples = tuning.local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE;
+  fit(tuning.point_tile, tuning.local_bytes / kernel::LOCAL_BYTES_PER_POINT);
+  fit(tuning.sample_tile, samples);
+  fit(tuning.samples_per_gap_block, samples);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
   fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
 }
@@ -506,7 +512,9 @@ void fit_tiles(Tuning& tuning) {
 std::string Tuning::build_options() const {
   return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}{}", Sizes::build_options(),
                      small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "",
-                     fixed_point != 0 ? " -DFIXED_POINT" : "");
+                     fixed_point == 0      ? ""
+                     : convert_halves == 0 ? " -DFIXED_POINT"
+                                           : " -DFIXED_POINT -DCONVERT_HALVES");
 }
 
 Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
