@@ -8,11 +8,13 @@
 BEGIN_SHARED
 
 // Bounds of the predicates' filters: HULL_DEPTH_BOUND, ORIENT_BOUND and CIRCLE_BOUND of shared/bounds.h, or 0 where the
-// input is so coarse that floating point is exact.
+// input is so coarse that floating point is exact. In fixed point, `coarse` says instead that products of differences
+// fit into 64 bits (COARSE_FIXED_BITS).
 typedef struct {
   filter_bound hull, orient, circle;
+  int coarse;
 } filter_bounds;
-ASSERT_SIZE(filter_bounds, 12);
+ASSERT_SIZE(filter_bounds, 16);
 
 // Coordinates are scaled by the product of three powers of two, which may be no double itself. Those in fixed point
 // are scaled already.
