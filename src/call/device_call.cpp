@@ -142,10 +142,10 @@ void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangu
   if (engine.has_doubles()) return triangulate_on(engine, points, result, parts, enqueue);
   try {
     triangulate_on(engine, points, result, parts, enqueue);
-  } catch (const geometry::TooWideForFixedPoint& reason) {
+  } catch (const geometry::TooWideForFixedPoint& error) {
     Engine& other = self.with_doubles(engine);
     if (other.runtime.is_native()) {
-      return triangulate_on_host(self, reason.what(), points, result, parts, enqueue);
+      return triangulate_on_host(self, error.reason(), points, result, parts, enqueue);
     }
     other.workspace = engine.workspace;
     triangulate_on(other, points, result, parts, on_queue_of(engine, enqueue));

@@ -182,14 +182,14 @@ Triangulation triangulate_on_either(Implementation& self, Engine& engine, const 
   const double begin = engine.runtime.working_clock();
   try {
     return triangulate_on(engine, points, offsets, options);
-  } catch (const geometry::TooWideForFixedPoint& reason) {
+  } catch (const geometry::TooWideForFixedPoint& error) {
     const double seconds = engine.runtime.working_clock() - begin;
     Engine& other = self.with_doubles(self.for_host_memory());
     other.check_size(offsets.back());
     Triangulation result = triangulate_on(other, points, offsets, options);
     result.statistics.seconds += seconds;
     result.statistics.phases.insert(result.statistics.phases.begin(), {"inspect", seconds});
-    add_note(engine, other, reason.what(), "triangulated", result.statistics);
+    add_note(engine, other, error.reason(), "triangulated", result.statistics);
     return result;
   }
 }

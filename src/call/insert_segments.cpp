@@ -64,10 +64,10 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
   Engine& engine = self.for_host_memory();
   try {
     return insert_on(engine, coordinates, offsets, delaunay, segments, options);
-  } catch (const geometry::TooWideForFixedPoint& reason) {
+  } catch (const geometry::TooWideForFixedPoint& error) {
     Engine& other = self.with_doubles(engine);
     if (delaunay.statistics.note.empty()) {
-      add_note(engine, other, reason.what(), "segments inserted", delaunay.statistics);
+      add_note(engine, other, error.reason(), "segments inserted", delaunay.statistics);
     }
     return insert_on(other, coordinates, offsets, delaunay, segments, options);
   }

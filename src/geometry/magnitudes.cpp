@@ -133,10 +133,16 @@ Scaling scaling_for(const Magnitudes& magnitudes) {
 }
 
 TooWideForFixedPoint::TooWideForFixedPoint(const Magnitudes& magnitudes)
+    : TooWideForFixedPoint(
+          fmt::format("coordinates whose bits span {} binary places up to 2^{} (fixed point has {})",
+                      bits_of(magnitudes), magnitudes.largest + 1, kFixedPointBits)) {}
+
+TooWideForFixedPoint::TooWideForFixedPoint(const std::string& reason)
     : Error(ErrorKind::device,
-            fmt::format("the coordinates' bits span {} binary places up to 2^{}, and a device without double "
-                        "precision takes {}; use another device (FLAUNAY_DEVICE), or the host",
-                        bits_of(magnitudes), magnitudes.largest + 1, kFixedPointBits)) {}
+            fmt::format("a device without double precision (fp64) cannot take {}; use another device "
+                        "(FLAUNAY_DEVICE), or the host",
+                        reason)),
+      reason_(std::make_shared<const std::string>(reason)) {}
 
 bool fits_fixed_point(const Magnitudes& magnitudes) {
   return bits_of(magnitudes) <= kFixedPointBits && magnitudes.largest <= kLargestOfFiniteDifferences;

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -80,6 +82,14 @@ Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t la
 class TooWideForFixedPoint : public Error {
  public:
   explicit TooWideForFixedPoint(const Magnitudes& magnitudes);
+  /// What does not fit: "coordinates that ...".
+  const std::string& reason() const { return *reason_; }
+
+ private:
+  explicit TooWideForFixedPoint(const std::string& reason);
+
+  // Shared, because copying an exception must not throw.
+  std::shared_ptr<const std::string> reason_;
 };
 
 /// Whether finite coordinates fit into fixed point, and are cut as doubles are: their differences are finite.
