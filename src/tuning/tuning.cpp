@@ -135,7 +135,8 @@ constexpr Row kTable[] = {
      {1024},
      {1024},
      {6},
-     "What 32 KB of local memory hold with both orders; larger nodes cost two launches a level."},
+     "What 32 KB of local memory hold with both orders, half with 16 KB; larger nodes cost two launches a "
+     "level."},
     {"block_bits",
      &Tuning::block_bits,
      {10},
@@ -497,12 +498,11 @@ Tuning tuning_of_target(const Target& target) {
 
 // Reduces sizes to what kernels have local memory for.
 void fit_tiles(Tuning& tuning) {
-  const auto fit = [](std::size_t& size, int most) {
-    size = std::clamp<std::size_t>(size, 1, static_cast<std::size_t>(most));
-  };
-  fit(tuning.point_tile, kernel::LARGEST_POINT_TILE);
-  fit(tuning.sample_tile, kernel::LARGEST_SAMPLE_TILE);
-  fit(tuning.samples_per_gap_block, kernel::LARGEST_SAMPLE_TILE);
+  const auto fit = [](std::size_t& size, std::size_t most) { size = std::clamp<std::size_t>(size, 1, most); };
+  const std::size_t samples = tuning.local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE;
+  fit(tuning.point_tile, tuning.local_bytes / kernel::LOCAL_BYTES_PER_POINT);
+  fit(tuning.sample_tile, samples);
+  fit(tuning.samples_per_gap_block, samples);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
   fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
 }
