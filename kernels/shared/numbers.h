@@ -75,8 +75,8 @@ static inline real2 difference2(coordinate2 a, coordinate2 b) {
   return VECTOR(real2, real_of(a.x - b.x), real_of(a.y - b.y));
 }
 
-// The difference as a double would round it, to 53 bits, ties to even: on all devices the same. For coordinates that are
-// doubles, of at most 53 bits: their differences do not reach 2^63 when rounded.
+// The difference as a double would round it, to 53 bits, ties to even: on all devices the same. For coordinates that
+// are doubles, of at most 53 bits: their differences do not reach 2^63 when rounded.
 static inline coordinate rounded_difference(coordinate a, coordinate b) {
   const long exact = a - b;
   const ulong magnitude = as_ulong(exact < 0 ? -exact : exact);
