@@ -1,8 +1,8 @@
 // Makes what the search for nearest vertices through levels needs: shared/nearest_search.h has the search.
 //
 // 1. draw_entries, with one work-item per entry of all levels' samples, draws a vertex of each group of the level
-//    below. In fixed point give_coordinates makes doubles of them. The host triangulates the samples of all levels at
-//    once, each as a set, and makes a locator of them.
+//    below. In fixed point give_coordinates (fixed_point.cl) makes doubles of them. The host triangulates the samples
+//    of all levels at once, each as a set, and makes a locator of them.
 // 2. number_entries and find_below connect each entry with its vertex on the level below.
 // 3. begin_stars gives each vertex the triangle from which all others about it are reached counter-clockwise.
 // 4. link_fans finds, per triangle, whether the next one counter-clockwise about its first vertex belongs to the same
@@ -36,12 +36,6 @@ kernel void draw_entries(int n, int levels, int sets, int ratio, global const in
     }
     coordinates[i] = points[first_vertices[set] + at];
   }
-}
-
-// n coordinates as doubles, as blocks take them.
-kernel void give_coordinates(int n, global const coordinate* restrict coordinates, global double_bits* restrict given) {
-  const int i = get_global_id(0);
-  if (i < n) given[i] = double_bits_of(coordinates[i]);
 }
 
 // n triangles of samples. numbers: per entry, its vertex.

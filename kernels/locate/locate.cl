@@ -103,8 +103,8 @@ kernel void count_vertices(int n, global const face* restrict faces, global cons
 // Of each vertex: its number, and by number where it is, its index among the points, and its first triangle.
 kernel void number_vertices(int n, global const face* restrict faces, global const int* restrict incident,
                             global const uint* restrict firsts, global const coordinate* restrict input, scaling scale,
-                            global int* restrict numbers, global coordinate2* restrict points, global int* restrict source,
-                            global int* restrict first_triangle) {
+                            global int* restrict numbers, global coordinate2* restrict points,
+                            global int* restrict source, global int* restrict first_triangle) {
   const int t = get_global_id(0);
   if (t < n) {
 #if FETCH_AHEAD
@@ -140,7 +140,8 @@ kernel void renumber_faces(int n, global const int* restrict numbers, global fac
   }
 }
 
-// clearances: INT_MAX throughout; get the clearance of each vertex. Each edge leaves its origin in one triangle; the reverse of a hull edge is in none.
+// clearances: INT_MAX throughout; get the clearance of each vertex. Each edge leaves its origin in one triangle; the
+// reverse of a hull edge is in none.
 kernel void measure_clearances(int n, global const face* restrict faces, global const coordinate2* restrict points,
                                global volatile int* restrict clearances) {
   const int t = get_global_id(0);
@@ -202,8 +203,8 @@ kernel void start_triangles(int n, int points, int last, global const int* restr
 // beyond one of its edges, on the hull. GIVEN_UP after `most` steps. start: a triangle. points are scaled by unit more,
 // as q is.
 #define GIVEN_UP INT_MIN
-static inline int walk(coordinate2 q, int start, int most, filter_bound bound, coordinate unit, global const coordinate2* points,
-                       global const face* faces, global const int* first_triangle) {
+static inline int walk(coordinate2 q, int start, int most, filter_bound bound, coordinate unit,
+                       global const coordinate2* points, global const face* faces, global const int* first_triangle) {
   // Triangle t, the corner k that was reached last, and the edge from a to b opposite to it, which has q on its left,
   // or on it if it is the first one.
   int t = start, k = 2;
@@ -250,8 +251,8 @@ static inline int walk(coordinate2 q, int start, int most, filter_bound bound, c
 
 // Where a walk from triangle t goes that has q strictly beyond an edge, as far as the filter can decide; t if it does
 // not. Without branches, since they could not be predicted.
-static inline int step_towards(coordinate2 q, int t, filter_bound bound, coordinate unit, global const coordinate2* points,
-                               global const face* faces) {
+static inline int step_towards(coordinate2 q, int t, filter_bound bound, coordinate unit,
+                               global const coordinate2* points, global const face* faces) {
   global const face* f = &faces[t];
   const real2 a = difference2(in_frame(points[f->corner[0]], unit), q);
   const real2 b = difference2(in_frame(points[f->corner[1]], unit), q);
@@ -344,9 +345,9 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
                            global const cut_node* restrict nodes, global const int* restrict starts,
                            global const query_frame* restrict frames, global const coordinate* restrict queries,
                            global const ulong* restrict keys, global int* restrict order,
-                           global coordinate2* restrict placed, filter_bound bound, global const coordinate2* restrict points,
-                           global const face* restrict faces, global const int* restrict first_triangle,
-                           global int* restrict found) {
+                           global coordinate2* restrict placed, filter_bound bound,
+                           global const coordinate2* restrict points, global const face* restrict faces,
+                           global const int* restrict first_triangle, global int* restrict found) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -426,7 +427,8 @@ static inline nearby best_around(nearby vertex, coordinate2 q, filter_bound boun
 // Delaunay triangulation a vertex that is not nearest has a neighbour that is nearer; those that are nearest with
 // others lie on one empty circle, whose first vertex is joined to all.
 static inline int nearest_vertex(coordinate2 q, int t, int most, filter_bound bound, coordinate unit,
-                                 global const coordinate2* points, global const face* faces, global const int* clearances) {
+                                 global const coordinate2* points, global const face* faces,
+                                 global const int* clearances) {
   nearby best, before;
   best.vertex = faces[t].corner[0];
   best.triangle = t;
@@ -443,24 +445,23 @@ static inline int nearest_vertex(coordinate2 q, int t, int most, filter_bound bo
 
 // found: of find_triangles, by place; the answer is by query. In sets of long_from triangles or more, most_neighbors
 // are looked at before the search goes through levels. If there are no levels, `levels` is 0, unanswered[0] is set to
-// 1, and the query has no answer. long_sets: of a set with levels, which of those it is. sample_...: the locator of
-// samples.
-kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, int levels, int sets_with_levels,
-                           global const int* restrict query_offsets, global const mesh_set* restrict records,
-                           global const query_frame* restrict frames, global const int* restrict order,
-                           global const coordinate2* restrict placed, filter_bound bound,
-                           global const coordinate2* restrict points, global const int* restrict source,
-                           global const int* restrict clearances, global const face* restrict faces,
-                           global const coordinate2* restrict hull_points, global const int* restrict hull,
-                           global const int* restrict starts, global const fan_part* restrict fans,
-                           global const int* restrict first_vertices, global const vertex_box* restrict boxes,
-                           global const int* restrict long_sets, global const mesh_set* restrict sample_records,
-                           global const coordinate2* restrict sample_points, global const int* restrict sample_source,
-                           global const int* restrict sample_clearances, global const face* restrict sample_faces,
-                           global const coordinate2* restrict sample_hull_points, global const int* restrict sample_hull,
-                           global const int* restrict sample_starts, global const fan_part* restrict sample_fans,
-                           global const int* restrict below, global const int* restrict found,
-                           global int* restrict nearest, global volatile int* restrict unanswered) {
+// 1, and the query has no answer. are_vertices: whether answers are numbers of vertices, for nearest_off_grid.
+// long_sets: of a set with levels, which of those it is. sample_...: the locator of samples.
+kernel void nearest_points(
+    int n, int sets, int long_from, int most_neighbors, int are_vertices, int levels, int sets_with_levels,
+    global const int* restrict query_offsets, global const mesh_set* restrict records,
+    global const query_frame* restrict frames, global const int* restrict order,
+    global const coordinate2* restrict placed, filter_bound bound, global const coordinate2* restrict points,
+    global const int* restrict source, global const int* restrict clearances, global const face* restrict faces,
+    global const coordinate2* restrict hull_points, global const int* restrict hull, global const int* restrict starts,
+    global const fan_part* restrict fans, global const int* restrict first_vertices,
+    global const vertex_box* restrict boxes, global const int* restrict long_sets,
+    global const mesh_set* restrict sample_records, global const coordinate2* restrict sample_points,
+    global const int* restrict sample_source, global const int* restrict sample_clearances,
+    global const face* restrict sample_faces, global const coordinate2* restrict sample_hull_points,
+    global const int* restrict sample_hull, global const int* restrict sample_starts,
+    global const fan_part* restrict sample_fans, global const int* restrict below, global const int* restrict found,
+    global int* restrict nearest, global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
     const coordinate2 q = placed[i];
@@ -491,7 +492,7 @@ kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, i
         vertex = nearest_by_levels(q, long_sets[s], first_vertices[s], first_vertices[s + 1], first_vertices[sets],
                                    bound, unit, mesh, boxes, on, &looked);
       }
-      answer = vertex == GIVEN_UP ? -1 : source[vertex];
+      answer = vertex == GIVEN_UP ? -1 : are_vertices ? vertex : source[vertex];
     }
     nearest[order[i]] = answer;
   }

@@ -24,11 +24,12 @@ BEGIN_SHARED
 // centre_side_filtered.
 #define ORIENT_BOUND_FOR(roundoff) (3.00001f * (roundoff))
 #define CIRCLE_BOUND_FOR(roundoff) (10.0001f * (roundoff))
+#define NEARNESS_BOUND_FOR(roundoff) (6 * (roundoff))
 #define ORIENT_BOUND ORIENT_BOUND_FOR(ROUNDOFF)
 #define CIRCLE_BOUND CIRCLE_BOUND_FOR(ROUNDOFF)
 #define HULL_DEPTH_BOUND (10 * ROUNDOFF)
 #define ANGLE_BOUND (11 * ROUNDOFF)
-#define NEARNESS_BOUND (6 * ROUNDOFF)
+#define NEARNESS_BOUND NEARNESS_BOUND_FOR(ROUNDOFF)
 #define CENTRE_SIDE_BOUND (12 * ROUNDOFF)
 
 // Triangulated points: coordinates below 2^250 that are multiples of 2^-255. No product of four overflows, and none

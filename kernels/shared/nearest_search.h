@@ -83,8 +83,7 @@ static inline real clearance_in_frame(int bits, coordinate unit) {
 #define CLEARANCE_MARGIN (1 + REAL(0x1p-19))
 static inline int is_clear(nearby vertex, coordinate2 q, coordinate unit, GLOBAL const int* clearances) {
   const real clearance = clearance_in_frame(clearances[vertex.vertex], unit);
-  return clearance > LEAST_CLEARANCE &&
-         4 * CLEARANCE_MARGIN * squared_length(difference2(q, vertex.at)) < clearance;
+  return clearance > LEAST_CLEARANCE && 4 * CLEARANCE_MARGIN * squared_length(difference2(q, vertex.at)) < clearance;
 }
 
 // Of points on one line, in their order: distances fall and then rise, with two equal ones at most. -1 of none.
@@ -117,8 +116,8 @@ static inline int last_of_fan(int t, int vertex, GLOBAL const fan_part* fans) {
 // such a neighbour lies inside of a cocircular polygon, so the two cells touch in no more than a point: if it is nearer
 // to q than the vertex, or as near and comes before it, so is another neighbour. Stops when `most` were looked at, and
 // returns whether these were all. looked: gets their number added.
-static inline int look_around(nearby vertex, coordinate2 q, filter_bound bound, coordinate unit, star_mesh mesh, uint most,
-                              nearby* best, uint* looked) {
+static inline int look_around(nearby vertex, coordinate2 q, filter_bound bound, coordinate unit, star_mesh mesh,
+                              uint most, nearby* best, uint* looked) {
   *best = vertex;
   const int start = mesh.starts[vertex.vertex];
   const face beside = mesh.faces[start];

@@ -18,16 +18,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/fixed_cases.hpp"
 #include "tests/support/rounding.hpp"
 
 namespace flaunay::testing {
 namespace {
 
-using Integer = std::int64_t;
-using Cases = std::function<void(std::mt19937_64&, Integer*)>;
-
 constexpr int kUndecided = 2;
-constexpr Integer kLargest = (Integer{1} << 62) - 1;
 
 // -----------------------------------------------------------------------------------------------------------
 // Roundings
@@ -49,205 +46,6 @@ void for_each_device(const Function& function) {
     function(fixed_predicates(), device);
     function(fixed_predicates_contracted(), device);
   }
-}
-
-// -----------------------------------------------------------------------------------------------------------
-// References
-
-mpz_class integer(Integer x) { return mpz_class(static_cast<long>(x)); }
-
-mpz_class cross(const Integer* a, const Integer* b, const Integer* c, const Integer* d) {
-  return (integer(b[0]) - integer(a[0])) * (integer(d[1]) - integer(c[1])) -
-         (integer(b[1]) - integer(a[1])) * (integer(d[0]) - integer(c[0]));
-}
-
-mpz_class orientation(const Integer* p) { return cross(p, p + 2, p, p + 4); }
-
-/// The 4 x 4 determinant of rows (x, y, x^2 + y^2, 1), expanded by the lifts.
-mpz_class in_circle(const Integer* p) {
-  mpz_class determinant = 0;
-  for (int i = 0; i < 4; ++i) {
-    const Integer* others[3];
-    for (int j = 0, k = 0; j < 4; ++j) {
-      if (j != i) others[k++] = p + 2 * j;
-    }
-    const mpz_class x = integer(p[2 * i]), y = integer(p[2 * i + 1]);
-    const mpz_class term = (x * x + y * y) * cross(others[0], others[1], others[0], others[2]);
-    if (i % 2 == 0) {
-      determinant += term;
-    } else {
-      determinant -= term;
-    }
-  }
-  return determinant;
-}
-
-std::string text_of(const Integer* p, int count) {
-  std::string text;
-  for (int k = 0; k < count; ++k) text += (k == 0 ? "" : ", ") + std::to_string(p[k]);
-  return text;
-}
-
-// -----------------------------------------------------------------------------------------------------------
-// Cases
-
-Integer limited(Integer x) { return std::clamp(x, -kLargest, kLargest); }
-
-/// Of at most so many bits, of either sign.
-Integer number(std::mt19937_64& random, int bits) {
-  const auto magnitude = static_cast<Integer>(random() & ((std::uint64_t{1} << bits) - 1));
-  return (random() & 1) != 0 ? magnitude : -magnitude;
-}
-int between(std::mt19937_64& random, int low, int high) {
-  return low + static_cast<int>(random() % static_cast<std::uint64_t>(high - low + 1));
-}
-long double angle(std::mt19937_64& random) {
-  return 6.283185307179586L * static_cast<long double>(random()) * 0x1p-64L;
-}
-
-void random_points(std::mt19937_64& random, Integer* p, int count, int bits) {
-  for (int k = 0; k < 2 * count; ++k) p[k] = number(random, bits);
-}
-
-void swap_points(std::mt19937_64& random, Integer* p, int count) {
-  for (int k = count - 1; k > 0; --k) {
-    const int j = between(random, 0, k);
-    std::swap_ranges(p + 2 * k, p + 2 * k + 2, p + 2 * j);
-  }
-}
-
-/// Moves all points, as far as there is room.
-void move_points(std::mt19937_64& random, Integer* p, int count) {
-  for (int axis = 0; axis < 2; ++axis) {
-    Integer low = kLargest, high = -kLargest;
-    for (int k = 0; k < count; ++k) {
-      low = std::min(low, p[2 * k + axis]);
-      high = std::max(high, p[2 * k + axis]);
-    }
-    const bool is_up = (random() & 1) != 0;
-    const auto room = static_cast<std::uint64_t>(is_up ? kLargest - high : low + kLargest);
-    const auto by = static_cast<Integer>(random() % (room + 1) >> between(random, 0, 61));
-    for (int k = 0; k < count; ++k) p[2 * k + axis] += is_up ? by : -by;
-  }
-}
-
-void nudge_one(std::mt19937_64& random, Integer* p, int count) {
-  Integer& x = p[between(random, 0, 2 * count - 1)];
-  x = limited(x + between(random, -1, 1));
-}
-
-/// Three points on a line, or as near to it as integers can be.
-void nearly_straight(std::mt19937_64& random, Integer* p) {
-  const int bits = between(random, 1, 61);
-  random_points(random, p, 2, bits);
-  const long double t = angle(random) - 3;
-  for (int axis = 0; axis < 2; ++axis) {
-    const long double from = static_cast<long double>(p[axis]), to = static_cast<long double>(p[2 + axis]);
-    p[4 + axis] = static_cast<Integer>(std::clamp(from + t * (to - from), -0x1p61L, 0x1p61L));
-  }
-  nudge_one(random, p, 3);
-  swap_points(random, p, 3);
-  move_points(random, p, 3);
-}
-
-/// Exactly on a line.
-void straight(std::mt19937_64& random, Integer* p) {
-  const int bits = between(random, 1, 60);
-  const Integer dx = number(random, bits), dy = number(random, bits);
-  const int most = 61 - bits;
-  for (int k = 0; k < 3; ++k) {
-    const Integer steps = number(random, between(random, 0, most));
-    p[2 * k] = steps * dx;
-    p[2 * k + 1] = steps * dy;
-  }
-  move_points(random, p, 3);
-}
-
-/// Four points next to a circle, a unit off or less: often of very different distances.
-void nearly_round(std::mt19937_64& random, Integer* p) {
-  const long double radius = std::ldexp(1 + angle(random) / 7, between(random, 0, 60));
-  const long double x = static_cast<long double>(number(random, 60)),
-                    y = static_cast<long double>(number(random, 60));
-  const long double first = angle(random), spread = std::ldexp(1, -between(random, 0, 30));
-  for (int k = 0; k < 4; ++k) {
-    const long double at = (random() & 1) != 0 ? angle(random) : first + spread * angle(random);
-    p[2 * k] = limited(static_cast<Integer>(std::llrint(x + radius * std::cos(at))));
-    p[2 * k + 1] = limited(static_cast<Integer>(std::llrint(y + radius * std::sin(at))));
-  }
-  nudge_one(random, p, 4);
-}
-
-/// Exactly on a circle: a rectangle or an isosceles trapezium, turned.
-void exactly_round(std::mt19937_64& random, Integer* p) {
-  const int bits = between(random, 1, 28);
-  const Integer ux = number(random, bits), uy = number(random, bits);
-  const Integer length = number(random, between(random, 0, 30)),
-                height = number(random, between(random, 0, 30));
-  const Integer shift = number(random, between(random, 0, 30));
-  // Of the coordinates along (ux, uy) and across.
-  const Integer places[4][2] = {{-length, 0}, {length, 0}, {shift, height}, {-shift, height}};
-  for (int k = 0; k < 4; ++k) {
-    p[2 * k] = places[k][0] * ux - places[k][1] * uy;
-    p[2 * k + 1] = places[k][0] * uy + places[k][1] * ux;
-  }
-  swap_points(random, p, 4);
-  move_points(random, p, 4);
-}
-
-/// At the limits of what coordinates may be, and 0, all of them a unit off or not.
-void extreme(std::mt19937_64& random, Integer* p, int count) {
-  for (int k = 0; k < 2 * count; ++k) {
-    const Integer ends[] = {kLargest,     -kLargest,    0,
-                            kLargest - 1, 1 - kLargest, Integer{1} << between(random, 0, 61)};
-    p[k] = limited(ends[random() % 6] + between(random, -1, 1));
-  }
-}
-
-/// Points few units apart, somewhere.
-void close_together(std::mt19937_64& random, Integer* p, int count) {
-  random_points(random, p, count, between(random, 1, 6));
-  move_points(random, p, count);
-}
-
-/// Points of which some are close to others and far from the rest: magnitudes of terms differ.
-void of_all_scales(std::mt19937_64& random, Integer* p, int count) {
-  for (int k = 0; k < 2 * count; ++k) p[k] = number(random, between(random, 0, 61));
-}
-
-struct Class {
-  const char* name;
-  Cases make;
-  double zeros_least;
-};
-
-Cases of(int count, void (*make)(std::mt19937_64&, Integer*, int)) {
-  return [=](std::mt19937_64& random, Integer* p) { make(random, p, count); };
-}
-
-std::vector<Class> orientation_classes() {
-  return {{"random", [](auto& random, Integer* p) { random_points(random, p, 3, 61); }, 0},
-          {"nearly straight", nearly_straight, 0.001},
-          {"straight", straight, 1},
-          {"extreme", of(3, extreme), 0.01},
-          {"close together", of(3, close_together), 0.01},
-          {"of all scales", of(3, of_all_scales), 0}};
-}
-
-std::vector<Class> circle_classes() {
-  return {{"random", [](auto& random, Integer* p) { random_points(random, p, 4, 61); }, 0},
-          {"nearly round", nearly_round, 0.001},
-          {"round", exactly_round, 1},
-          {"extreme", of(4, extreme), 0.01},
-          {"close together", of(4, close_together), 0.01},
-          {"of all scales", of(4, of_all_scales), 0},
-          // Three on a line, or nearly, and one more.
-          {"nearly straight",
-           [](auto& random, Integer* p) {
-             nearly_straight(random, p);
-             random_points(random, p + 6, 1, 61);
-             swap_points(random, p, 4);
-           },
-           0}};
 }
 
 // -----------------------------------------------------------------------------------------------------------
@@ -329,7 +127,7 @@ TEST(SmallFixedPoint, Circles) {
 TEST(SmallFixedPoint, CirclesAtTheLimitsOfShortAndMiddleIntegers) {
   std::mt19937_64 random(7);
   int undecided = 0, zeros = 0;
-  for (int i = 0; i < 200000; ++i) {
+  for (int i = 0; i < 60000; ++i) {
     Integer p[8];
     const long double radius = std::ldexp(1 + angle(random) / 6.2831854L, between(random, 24, 40));
     const Integer x = number(random, 61), y = number(random, 61);
@@ -356,8 +154,8 @@ TEST(SmallFixedPoint, CirclesAtTheLimitsOfShortAndMiddleIntegers) {
       }
     }
   }
-  EXPECT_GT(zeros, 50000);
-  EXPECT_GT(undecided, 500000);
+  EXPECT_GT(zeros, 15000);
+  EXPECT_GT(undecided, 150000);
 }
 
 // The canonical form: what it says of four points on a circle does not depend on which three make the circle.

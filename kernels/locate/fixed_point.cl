@@ -1,12 +1,16 @@
-// Queries that are not on the grid of points in fixed point (shared/off_grid.h). The other kernels take each for the
-// place of the grid nearest to it, mostly less than one place away; from their answers these go on, with exact
-// predicates alone. Each is one pass with one work-item per query, and leaves queries on the grid as they are:
+// What locators need in fixed point alone.
 //
+// Queries that are not on the grid of points (shared/off_grid.h): locate.cl takes each for the place of the grid
+// nearest to it, mostly less than one place away. From its answers two kernels go on, with exact predicates alone. Each
+// is one pass with one work-item per query, and leaves queries on the grid as they are:
 // - locate_off_grid, after find_triangles: a visibility walk from that triangle. Queries beyond the last place are
 //   outside of every hull.
 // - nearest_off_grid, after nearest_points: greedy steps from that vertex, over a limited number of neighbours.
 //
-// With double precision every query is on the grid.
+// give_coordinates makes doubles of the samples of levels (levels.cl), as blocks take them.
+//
+// The programs of devices with double precision have these kernels too, which then do nothing, as every query is on the
+// grid.
 
 #include "shared/halfedges.h"
 #include "shared/nearest_search.h"
@@ -47,14 +51,24 @@ static inline int walk_wide(wide2 q, int start, int most, coordinate unit, globa
   return -1;
 }
 
+// As is_clear, for a query that is less than one place away in x and in y.
+static inline int is_clear_around(int vertex, coordinate2 at, coordinate2 place, coordinate unit,
+                                  global const int* clearances) {
+  const real2 away = difference2(place, at);
+  const real x = fabs(away.x) + UNIT, y = fabs(away.y) + UNIT;
+  return 4 * CLEARANCE_MARGIN * (x * x + y * y) < clearance_in_frame(clearances[vertex], unit);
+}
+
 // The nearest vertex, from one on; GIVEN_UP if it takes more than so many neighbours.
 #define GIVEN_UP INT_MIN
-static inline int descend_wide(wide2 q, int vertex, int most, coordinate unit, global const coordinate2* points,
-                               global const face* faces, global const int* first_triangle) {
+static inline int descend_wide(wide2 q, coordinate2 place, int vertex, int most, coordinate unit,
+                               global const coordinate2* points, global const face* faces,
+                               global const int* first_triangle, global const int* clearances) {
   int left = most, best = vertex, before;
   coordinate2 at = in_frame(points[vertex], unit);
   do {
     before = best;
+    if (!is_beyond_grid(place) && is_clear_around(best, at, place, unit, clearances)) return best;
     star_walk around = star_begin(before, first_triangle[before]);
     while (star_next(&around, faces)) {
       if (--left < 0) return GIVEN_UP;
@@ -102,9 +116,9 @@ kernel void locate_off_grid(int n, int sets, global const int* restrict query_of
     const wide2 q = wide_query(order[i], queries, frames[s].shift);
     if (records[s].triangles > 0 && !is_on_grid(q, placed[i])) {
       const int start = found[i] < 0 ? ~found[i] : found[i];
-      answer = is_beyond_grid(placed[i]) ? -1
-                                         : walk_wide(q, start, records[s].triangles, frames[s].unit, points,
-                                                     faces, first_triangle);
+      answer = is_beyond_grid(placed[i])
+                   ? -1
+                   : walk_wide(q, start, records[s].triangles, frames[s].unit, points, faces, first_triangle);
     }
 #endif
     answers[order[i]] = answer;
@@ -117,10 +131,10 @@ kernel void nearest_off_grid(int n, int sets, int most, global const int* restri
                              global const mesh_set* restrict records, global const query_frame* restrict frames,
                              global const int* restrict order, global const coordinate2* restrict placed,
                              global const coordinate* restrict queries, global const coordinate2* restrict points,
-                             global const int* restrict source, global const face* restrict faces,
-                             global const int* restrict first_triangle, global const coordinate2* restrict hull_points,
-                             global const int* restrict hull, global int* restrict nearest,
-                             global volatile int* restrict unanswered) {
+                             global const int* restrict source, global const int* restrict clearances,
+                             global const face* restrict faces, global const int* restrict first_triangle,
+                             global const coordinate2* restrict hull_points, global const int* restrict hull,
+                             global int* restrict nearest, global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
     const int s = sets > 1 ? segment_of(i, sets, query_offsets) : 0;
@@ -131,7 +145,7 @@ kernel void nearest_off_grid(int n, int sets, int most, global const int* restri
     const coordinate unit = frames[s].unit;
     if (answer >= 0 && !is_on_grid(q, placed[i])) {
       if (set.triangles > 0) {
-        answer = descend_wide(q, answer, most, unit, points, faces, first_triangle);
+        answer = descend_wide(q, placed[i], answer, most, unit, points, faces, first_triangle, clearances);
       } else {
         answer = hull[nearest_on_line_wide(q, set.hull, set.hull_end, unit, hull_points)];
       }
@@ -140,4 +154,10 @@ kernel void nearest_off_grid(int n, int sets, int most, global const int* restri
 #endif
     nearest[order[i]] = answer >= 0 && set.triangles > 0 ? source[answer] : answer;
   }
+}
+
+// n coordinates, and the bits of the doubles that they are.
+kernel void give_coordinates(int n, global const coordinate* restrict coordinates, global double_bits* restrict given) {
+  const int i = get_global_id(0);
+  if (i < n) given[i] = double_bits_of(coordinates[i]);
 }
