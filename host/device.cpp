@@ -34,6 +34,15 @@ std::string listing(const std::vector<boost::compute::device>& devices) {
   return text;
 }
 
+bool is_gpu(const boost::compute::device& device) { return (device.type() & CL_DEVICE_TYPE_GPU) != 0; }
+
+// The first of the best devices: GPUs are better than others, and of both those with fp64 are.
+const boost::compute::device& preferred(const std::vector<boost::compute::device>& devices) {
+  const auto rank = [](const auto& device) { return 2 * is_gpu(device) + has_fp64(device); };
+  return *std::max_element(devices.begin(), devices.end(),
+                           [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+}
+
 // The loader skips a driver that does not fit into the address space, without a word.
 std::string hint_of_address_space() {
   constexpr std::size_t kSpaceForDriver = 1024 * kMebibyte;
@@ -119,13 +128,22 @@ bool may_have_gpu([[maybe_unused]] const std::string& folder) {
 std::optional<boost::compute::device> find_gpu() {
   if (!may_have_gpu()) return {};
   try {
-    for (const auto& device : all_devices()) {
-      if ((device.type() & CL_DEVICE_TYPE_GPU) && has_fp64(device)) return device;
-    }
+    const std::vector<boost::compute::device> devices = all_devices();
+    if (devices.empty()) return {};
+    const auto& device = preferred(devices);
+    if (is_gpu(device)) return device;
   } catch (const DeviceError&) {
     // No OpenCL.
   }
   return {};
+}
+
+std::optional<boost::compute::device> find_device_with_fp64() {
+  std::vector<boost::compute::device> devices = all_devices();
+  devices.erase(std::remove_if(devices.begin(), devices.end(), [](const auto& d) { return !has_fp64(d); }),
+                devices.end());
+  if (devices.empty()) return {};
+  return preferred(devices);
 }
 
 boost::compute::device find_device(const std::string& requested) {
@@ -135,14 +153,7 @@ boost::compute::device find_device(const std::string& requested) {
   }
   const std::string wanted = wanted_device(requested);
   const std::string origin = requested.empty() ? " (FLAUNAY_DEVICE)" : "";
-  if (wanted.empty()) {
-    for (const bool gpu_only : {true, false}) {
-      for (const auto& device : devices) {
-        if (has_fp64(device) && (!gpu_only || (device.type() & CL_DEVICE_TYPE_GPU))) return device;
-      }
-    }
-    throw DeviceError(fmt::format("no OpenCL device has double precision (fp64): {}", listing(devices)));
-  }
+  if (wanted.empty()) return preferred(devices);
   if (wanted[0] == '#') {
     std::size_t index = 0;
     for (const char c : wanted.substr(1)) {

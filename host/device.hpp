@@ -22,7 +22,7 @@ std::size_t physical_memory();
 /// empty if neither names one.
 std::string wanted_device(const std::string& given);
 
-/// Finds the first GPU with fp64; nothing if there is none, or no OpenCL.
+/// Finds the first GPU with fp64, or if there is none, the first GPU; nothing if there is none, or no OpenCL.
 std::optional<boost::compute::device> find_gpu();
 
 /// Whether this system may have a GPU, as far as its device files in `folder` tell. Loading OpenCL to look
@@ -30,12 +30,15 @@ std::optional<boost::compute::device> find_gpu();
 /// OpenCL's drivers (OCL_ICD_VENDORS, OCL_ICD_FILENAMES, OPENCL_VENDOR_PATH).
 bool may_have_gpu(const std::string& folder = "/dev");
 
-/// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else the first GPU with fp64,
-/// else the first device with fp64), "#k" (the k-th of all_devices), or a part of a device's or platform's
-/// name in upper or lower case. Throws DeviceError, which lists the devices, if none matches.
+/// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else the GPU of find_gpu, else
+/// the first device with fp64, else the first one), "#k" (the k-th of all_devices), or a part of a device's
+/// or platform's name in upper or lower case. Throws DeviceError, which lists the devices, if none matches.
 boost::compute::device find_device(const std::string& wanted);
 
 bool has_fp64(const boost::compute::device& device);
+
+/// Finds the first GPU with fp64, or if there is none, the first device with it; nothing if there is none.
+std::optional<boost::compute::device> find_device_with_fp64();
 
 /// Whether the memory of the device is that of the host: a CPU, or a GPU without memory of its own.
 bool shares_host_memory(const boost::compute::device& device);

@@ -1,4 +1,4 @@
-// The C interface: what it returns, and what it says of bad use. c_test no-fp64: with support/no_fp64.c
+// The C interface: what it returns, and what it says of bad use. c_test no-fp64: with support/poor_device.c
 // preloaded.
 #include <CL/cl.h>
 #include <math.h>
@@ -1965,25 +1965,43 @@ static void test_bad_streams(void) {
 
 static void test_no_fp64(void) {
   flaunay_device_list* list = NULL;
-  REQUIRE(flaunay_device_list_create(0, &list) == FLAUNAY_SUCCESS);
-  const char* name = flaunay_device_list_at(list, 0)->name;
-  CHECK(flaunay_device_list_at(list, 0)->fp64 == 0);
-  flaunay_triangulator* none = NULL;
-  // Unless a device is named, the host can be used.
+  REQUIRE(flaunay_device_list_create(1, &list) == FLAUNAY_SUCCESS);
+  const flaunay_device_info* info = flaunay_device_list_at(list, 0);
+  CHECK(info->fp64 == 0 && info->fixed_point == 1);
+  CHECK(info->self_test_passed == 1 && info->self_test_failure[0] == '\0');
+  flaunay_device_list_destroy(list);
+  // Unless there is a GPU or a device is named, the host computes.
   flaunay_triangulator* on_host = NULL;
   CHECK(flaunay_triangulator_create("", &on_host) == FLAUNAY_SUCCESS);
   CHECK(strcmp(flaunay_triangulator_device(on_host)->name, "host") == 0);
+  CHECK(flaunay_triangulator_device(on_host)->fixed_point == 0);
   flaunay_triangulator_destroy(on_host);
-  CHECK(fails(flaunay_triangulator_create("#0", &none), FLAUNAY_ERROR_DEVICE, "fp64"));
-  CHECK(strstr(flaunay_last_error(), name) != NULL);
 
   cl_platform_id platform = NULL;
   REQUIRE(clGetPlatformIDs(1, &platform, NULL) == CL_SUCCESS);
   REQUIRE(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL) == CL_SUCCESS);
   context = make_context();
-  CHECK(fails(flaunay_triangulator_create_in_context(context, device, &none), FLAUNAY_ERROR_DEVICE, "fp64"));
+  flaunay_triangulator* used = NULL;
+  REQUIRE(flaunay_triangulator_create_in_context(context, device, &used) == FLAUNAY_SUCCESS);
+  const char* name = flaunay_triangulator_device(used)->name;
+  // The device takes coordinates whose bits span 62 binary places; the host takes more.
+  double corners[] = {0, 0, 1, 0, 1, 0x1p61, 0, 1};
+  for (int is_wide = 0; is_wide < 2; ++is_wide) {
+    if (is_wide) corners[7] = 0.5;
+    flaunay_triangulation* mesh = NULL;
+    REQUIRE(flaunay_triangulate(used, corners, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
+    CHECK(flaunay_triangulation_triangle_count(mesh) == 2);
+    const flaunay_statistics* statistics = flaunay_triangulation_statistics(mesh);
+    CHECK(strcmp(statistics->device, is_wide ? "host" : name) == 0);
+    CHECK(is_wide ? strstr(statistics->note, "fp64") != NULL : statistics->note[0] == '\0');
+    flaunay_triangulation_destroy(mesh);
+  }
+  flaunay_options options = {.mode = FLAUNAY_MODE_FLATTENED};
+  flaunay_triangulation* none = NULL;
+  CHECK(fails(flaunay_triangulate(used, corners, 4, NULL, 1, &options, &none), FLAUNAY_ERROR_DEVICE, "fp64"));
+  CHECK(strstr(flaunay_last_error(), name) != NULL && strstr(flaunay_last_error(), "flattened") != NULL);
+  flaunay_triangulator_destroy(used);
   clReleaseContext(context);
-  flaunay_device_list_destroy(list);
 }
 
 static void test_all(void) {

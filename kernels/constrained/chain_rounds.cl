@@ -68,8 +68,8 @@ kernel void list_long_chains(int n, global const uint2* restrict places, global 
 
 // chains: the long ones, whose vertices begin at `offsets`; those of all chains at `all`. of: the chain of each vertex.
 kernel void start_vertices(int n, int count, global const int* restrict chains, global const int* restrict offsets,
-                           global const int* restrict all, global const double2* restrict all_places,
-                           global int* restrict of, global double2* restrict places, global uchar* restrict hubs) {
+                           global const int* restrict all, global const coordinate2* restrict all_places,
+                           global int* restrict of, global coordinate2* restrict places, global uchar* restrict hubs) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int c = segment_of(i, count, offsets);
@@ -118,7 +118,7 @@ static inline int goes(const thinning* of, int v) {
 
 // stage: of the vertices that go.
 kernel void thin_chains(int n, int round, int stage, int with_hubs, global const int* restrict offsets,
-                        global const int* restrict of, global const double2* restrict places,
+                        global const int* restrict of, global const coordinate2* restrict places,
                         global const uchar* restrict hubs, global const int2* restrict list,
                         global int2* restrict thinned, global chain_vertex* restrict vertices,
                         global uchar* restrict stages) {
@@ -128,7 +128,7 @@ kernel void thin_chains(int n, int round, int stage, int with_hubs, global const
   int2 at = list[i];
   if (at.y >= 0) {
     thinning t;
-    t.g = polygon_at(0.0, first, offsets[of[i] + 1] - first, places, vertices, 0);
+    t.g = polygon_at(0, first, offsets[of[i] + 1] - first, places, vertices, 0);
     t.round = round;
     t.with_hubs = with_hubs;
     t.list = list + first;
@@ -147,13 +147,13 @@ kernel void thin_chains(int n, int round, int stage, int with_hubs, global const
 }
 
 // Removes all but one, for each long chain, and puts the first triangle. Their stage is 0.
-kernel void finish_thinning(int n, global const int* restrict offsets, global const double2* restrict places,
+kernel void finish_thinning(int n, global const int* restrict offsets, global const coordinate2* restrict places,
                             global int2* restrict lists, global chain_vertex* restrict vertices,
                             global chain_edge* restrict edges, global uchar* restrict stages COUNTERS) {
   const int c = get_global_id(0);
   if (c >= n) return;
   const int first = offsets[c];
-  const polygon g = polygon_at(0.0, first, offsets[c + 1] - first, places, vertices, edges);
+  const polygon g = polygon_at(0, first, offsets[c + 1] - first, places, vertices, edges);
   global int2* const list = lists + first;
   int v = list[0].y, steps = 0;
   while (list[v].x > 0 || list[v].y < g.last) {
@@ -189,7 +189,7 @@ static inline int is_missing(const polygon* g, int v) { return v > 0 && v < g->l
 // p + 1.
 kernel void claim_triangles(int n, int round, int pass, int longest_walk, filter_bound bound,
                             global const int* restrict offsets, global const int* restrict of,
-                            global const double2* restrict places, global chain_vertex* restrict vertices,
+                            global const coordinate2* restrict places, global chain_vertex* restrict vertices,
                             global chain_edge* restrict edges, global const uchar* restrict stages,
                             global uchar* restrict hubs, global volatile uint* restrict owners,
                             global uchar* restrict roles, global volatile uint* restrict state COUNTERS) {
@@ -243,7 +243,7 @@ static inline int has_all(const polygon* g, int v, uint key, global const uint* 
 
 // Vertices that lose wait. Clears the owners of the next round. state[0]: how many vertices are left, if counts.
 kernel void choose_vertices(int n, int round, int counts, global const int* restrict offsets,
-                            global const int* restrict of, global const double2* restrict places,
+                            global const int* restrict of, global const coordinate2* restrict places,
                             global chain_vertex* restrict vertices, global chain_edge* restrict edges,
                             global const uchar* restrict stages, global const uint* restrict owners,
                             global uint* restrict next_owners, global uchar* restrict roles,
@@ -252,7 +252,7 @@ kernel void choose_vertices(int n, int round, int counts, global const int* rest
   if (i >= n) return;
   next_owners[i] = NO_OWNER;
   const int first = offsets[of[i]], v = i - first;
-  const polygon g = polygon_at(0.0, first, offsets[of[i] + 1] - first, places, vertices, edges);
+  const polygon g = polygon_at(0, first, offsets[of[i] + 1] - first, places, vertices, edges);
   const uint key = claim_key(&g, v, stages[i], round);
   int role = roles[i];
   if (role == TAKES && !has_all(&g, v, key, owners + first)) role = WAITS;
@@ -262,13 +262,13 @@ kernel void choose_vertices(int n, int round, int counts, global const int* rest
 }
 
 kernel void insert_vertices(int n, int round, global const int* restrict offsets, global const int* restrict of,
-                            global const double2* restrict places, global chain_vertex* restrict vertices,
+                            global const coordinate2* restrict places, global chain_vertex* restrict vertices,
                             global chain_edge* restrict edges, global const uchar* restrict stages,
                             global const uint* restrict owners, global const uchar* restrict roles) {
   const int i = get_global_id(0);
   if (i >= n || roles[i] == WAITS) return;
   const int first = offsets[of[i]], v = i - first;
-  const polygon g = polygon_at(0.0, first, offsets[of[i] + 1] - first, places, vertices, edges);
+  const polygon g = polygon_at(0, first, offsets[of[i] + 1] - first, places, vertices, edges);
   const chain_vertex at = g.vertices[v];
   // The only triangle that it looks at otherwise is its own, which it leaves.
   const uint key = roles[i] == TAKES ? claim_key(&g, v, stages[i], round) : NO_OWNER;
@@ -279,7 +279,7 @@ kernel void insert_vertices(int n, int round, global const int* restrict offsets
 // The result
 
 kernel void check_triangles(int n, filter_bound bound, global const int* restrict offsets,
-                            global const int* restrict of, global const double2* restrict places,
+                            global const int* restrict of, global const coordinate2* restrict places,
                             global chain_vertex* restrict vertices, global chain_edge* restrict edges,
                             global volatile uint* restrict wrong) {
   const int i = get_global_id(0);
@@ -299,12 +299,12 @@ static inline int3 ascending(const polygon* g, int triangle) {
 
 // jumps: per vertex, one whose number of ancestors is known to be so much less.
 kernel void link_apexes(int n, global const int* restrict offsets, global const int* restrict of,
-                        global const double2* restrict places, global chain_vertex* restrict vertices,
+                        global const coordinate2* restrict places, global chain_vertex* restrict vertices,
                         global chain_edge* restrict edges, global int2* restrict jumps) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
-  const polygon g = polygon_at(0.0, first, offsets[of[i] + 1] - first, places, vertices, edges);
+  const polygon g = polygon_at(0, first, offsets[of[i] + 1] - first, places, vertices, edges);
   if (v == 0 || v == g.last) {
     jumps[i] = VECTOR(int2, i, 0);
   } else {
@@ -323,7 +323,7 @@ kernel void jump_apexes(int n, global const int2* restrict jumps, global int2* r
 // Chains that are wrong are gift-wrapped, by the work-items of their first vertices.
 kernel void write_chain_rows(int n, filter_bound bound, global const int* restrict chains,
                              global const int* restrict offsets, global const int* restrict all,
-                             global const int* restrict of, global const double2* restrict places,
+                             global const int* restrict of, global const coordinate2* restrict places,
                              global chain_vertex* restrict vertices, global chain_edge* restrict edges,
                              global const int2* restrict jumps, global const uint* restrict wrong,
                              global int* restrict triangles) {

@@ -12,14 +12,15 @@
 
 #include "shared/chains.h"
 
-kernel void gather_vertices(int n, int count, global const int* restrict offsets, global const double2* restrict points,
-                            global const int* restrict chain, global double2* restrict places) {
+kernel void gather_vertices(int n, int count, global const int* restrict offsets,
+                            global const coordinate2* restrict points, global const int* restrict chain,
+                            global coordinate2* restrict places) {
   const int i = get_global_id(0);
   if (i < min(n, offsets[count])) places[i] = points[chain[i]];
 }
 
 kernel void triangulate_chains(int n, int wrapped_most, int alone_most, filter_bound bound,
-                               global const int* restrict offsets, global const double2* restrict places,
+                               global const int* restrict offsets, global const coordinate2* restrict places,
                                global chain_vertex* restrict vertices, global chain_edge* restrict edges,
                                global int* restrict triangles) {
   const int c = get_global_id(0);

@@ -1,5 +1,5 @@
 // Domains of a triangulation with constraints: regions, their depths, and what is left of the triangles. The elements
-// are triangles, segments, constraint edges or regions of all sets at once; no kernel but those of holes knows of sets.
+// are triangles, segments, constraint edges or regions of all sets at once; no kernel knows of sets.
 //
 // 1. Regions. start_regions joins what is connected within chunks of triangles without crossing a constraint, and
 //    join_regions what is connected between them: to a forest in which every parent has a smaller number, so that roots
@@ -14,16 +14,14 @@
 // 4. Depths. Each pass of reach_regions over the borders goes one level further from outside. Where there are too many
 //    levels the host goes on, one region after the other (src/constrained/domain.cpp). finish_regions says which
 //    regions are left.
-// 5. Holes. find_holes, one pass over the triangles, finds those that contain seeds; drop_holes marks their regions.
+// 5. Holes. drop_holes marks the regions of the triangles that contain seeds, which holes.cl has found.
 // 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets and
 //    write_depths do the rest.
 
-#include "shared/coordinates.h"
+#include "shared/bit_account.h"
 #include "shared/domains.h"
+#include "shared/language.h"
 #include "shared/meanwhile.h"
-#include "shared/planar.h"
-#include "shared/records.h"
-#include "shared/search.h"
 
 // Where another work-item has joined meanwhile: an older parent is an ancestor, too, and what an old root is taken for
 // is checked when it is joined (shared/meanwhile.h).
@@ -121,7 +119,7 @@ kernel void number_regions(int n, global const uint* restrict numbers, global in
 // The pieces of a segment are on its way from the lexicographically smaller end to the other one. changes: 0
 // throughout; gets 1 where a piece's edges begin, and -1 where they end; with the winding rule the opposite if the
 // segment goes the other way than its edges.
-kernel void cover_edges(int n, int rule, global const double* restrict input, global const int* restrict segments,
+kernel void cover_edges(int n, int rule, global const double_bits* restrict input, global const int* restrict segments,
                         global const int* restrict representatives, global const int* restrict piece_offsets,
                         global const int* restrict piece_edges, global const int* restrict edges,
                         global volatile uint* restrict changes) {
@@ -129,7 +127,7 @@ kernel void cover_edges(int n, int rule, global const double* restrict input, gl
   if (s < n) {
     const int a = representatives[segments[2 * s]], b = representatives[segments[2 * s + 1]];
     if (a != b) {
-      const int is_turned = comes_before(vload2(b, input), vload2(a, input));
+      const int is_turned = lies_before(b, a, input);
       int from = is_turned ? b : a;
       for (int p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
         const int first = piece_edges[2 * p], end = piece_edges[2 * p + 1];
@@ -195,10 +193,10 @@ static inline int find_edge(int from, int to, int mask, global const int* edges,
 }
 
 // What is crossed on a path over the edge from v to w from its right to its left. sums: by edge, one place further.
-static inline int crossed(int v, int w, int mask, global const double* input, global const uint* needed,
+static inline int crossed(int v, int w, int mask, global const double_bits* input, global const uint* needed,
                           global const uint* sums, global const int* edges, global const int* slots) {
   if (!needed[0]) return 1;
-  const int is_turned = comes_before(vload2(w, input), vload2(v, input));
+  const int is_turned = lies_before(w, v, input);
   const int e = is_turned ? find_edge(w, v, mask, edges, slots) : find_edge(v, w, mask, edges, slots);
   const int sum = e < 0 ? 0 : (int)sums[e + 1];
   return is_turned ? -sum : sum;
@@ -234,7 +232,7 @@ kernel void count_borders(int n, global const int* restrict neighbors, global co
 kernel void write_borders(int n, int rule, int mask, global const int* restrict triangles,
                           global const int* restrict neighbors, global const uchar* restrict constrained,
                           global const int* restrict regions, global const uint* restrict places,
-                          global const double* restrict input, global const uint* restrict needed,
+                          global const double_bits* restrict input, global const uint* restrict needed,
                           global const uint* restrict sums, global const int* restrict edges,
                           global const int* restrict slots, global int* restrict borders, global int* restrict steps) {
   const int t = get_global_id(0);
@@ -291,47 +289,6 @@ kernel void finish_regions(int n, int rule, int outside, global const int* level
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Holes
-
-// seeds: in each set by ascending x, scaled by frames. found: INT_MAX throughout; gets the first triangle that contains
-// the seed. barred: 0 throughout; gets 1 if the seed is on a constraint.
-kernel void find_holes(int n, int sets, global const int* restrict triangle_offsets,
-                       global const int* restrict hole_offsets, global const query_frame* restrict frames,
-                       filter_bound bound, global const double* restrict input, global const int* restrict triangles,
-                       global const uchar* restrict constrained, global const double2* restrict seeds,
-                       global volatile int* restrict found, global uchar* restrict barred) {
-  const int t = get_global_id(0);
-  if (t < n) {
-    const int s = segment_of(t, sets, triangle_offsets);
-    const int last = hole_offsets[s + 1];
-    int low = hole_offsets[s];
-    if (low < last) {
-      double2 p[3];
-      for (int k = 0; k < 3; ++k) p[k] = scaled_point(triangles[3 * t + k], input, frames[s].scale);
-      const double2 least = VECTOR(double2, min(p[0].x, min(p[1].x, p[2].x)), min(p[0].y, min(p[1].y, p[2].y)));
-      const double2 most = VECTOR(double2, max(p[0].x, max(p[1].x, p[2].x)), max(p[0].y, max(p[1].y, p[2].y)));
-      int high = last;
-      while (low < high) {
-        const int middle = low + (high - low) / 2;
-        if (seeds[middle].x < least.x) {
-          low = middle + 1;
-        } else {
-          high = middle;
-        }
-      }
-      for (int h = low; h < last && seeds[h].x <= most.x; ++h) {
-        const double2 q = seeds[h];
-        if (q.y < least.y || q.y > most.y) continue;
-        const int ab = orient_sign(p[0], p[1], q, bound), bc = orient_sign(p[1], p[2], q, bound),
-                  ca = orient_sign(p[2], p[0], q, bound);
-        if (ab < 0 || bc < 0 || ca < 0) continue;
-        atomic_min(&found[h], t);
-        const int on_constraint = (ab == 0 && constrained[3 * t + 2]) || (bc == 0 && constrained[3 * t]) ||
-                                  (ca == 0 && constrained[3 * t + 1]);
-        if (on_constraint) barred[h] = 1;
-      }
-    }
-  }
-}
 
 kernel void drop_holes(int n, global const int* restrict found, global const int* restrict regions,
                        global uchar* restrict left) {

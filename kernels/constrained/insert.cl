@@ -43,8 +43,8 @@ static inline uint rank_of(int constraint) {
   return x ^ x >> 15;
 }
 
-static inline walked_mesh mesh_of(global const double* points, global const int* triangles, global const int* neighbors,
-                                  filter_bound bound) {
+static inline walked_mesh mesh_of(global const coordinate* points, global const int* triangles,
+                                  global const int* neighbors, filter_bound bound) {
   walked_mesh mesh;
   mesh.points = points;
   mesh.triangles = triangles;
@@ -57,7 +57,7 @@ static inline walked_mesh mesh_of(global const double* points, global const int*
 // in the last row; -1 if it leaves the triangulation. Claims the rows if there is an array for that.
 static inline int follow(const walked_mesh* mesh, int corner, int goal, uint rank, global volatile uint* claims,
                          constraint_walk* walk) {
-  const double2 from = vload2(mesh->triangles[corner], mesh->points), to = vload2(goal, mesh->points);
+  const coordinate2 from = vload2(mesh->triangles[corner], mesh->points), to = vload2(goal, mesh->points);
   walk->origin = mesh->triangles[corner];
   walk->corner = corner;
   walk->rows = 1;
@@ -169,7 +169,7 @@ FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walke
 
 // n keys of segments, see segments.cl. flags: bytes, four in each word. ends: of the first piece, the lexicographically
 // smaller one first. Stops counting pieces at the limit.
-kernel void walk_segments(int n, uint limit, filter_bound bound, global const double* restrict points,
+kernel void walk_segments(int n, uint limit, filter_bound bound, global const coordinate* restrict points,
                           global const int* restrict triangles, global const int* restrict neighbors,
                           global const int* restrict hull, global const ulong* restrict keys,
                           global volatile uint* restrict claims, global volatile uint* restrict flags,
@@ -222,7 +222,7 @@ kernel void walk_segments(int n, uint limit, filter_bound bound, global const do
 
 // The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
 // claims: of which nothing is used any more.
-kernel void write_pieces(int n, filter_bound bound, global const double* restrict points,
+kernel void write_pieces(int n, filter_bound bound, global const coordinate* restrict points,
                          global const int* restrict triangles, global const int* restrict neighbors,
                          global const int* restrict hull, global const ulong* restrict keys,
                          global const uint* restrict offsets, global volatile uint* restrict claims,
@@ -289,7 +289,7 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   int corner = walk->corner, row = corner / 3, left = 0, right = walk->rows + 3;
   if (claims[row] != rank) return ~row;
   const int is_long = walk->rows > SHORT_WALK;
-  double2 from = VECTOR(double2, 0.0, 0.0), to = from;
+  coordinate2 from = VECTOR(coordinate2, 0, 0), to = from;
   if (is_long) {
     from = vload2(walk->origin, mesh->points);
     to = vload2(walk->goal, mesh->points);
@@ -343,7 +343,7 @@ static inline int hold_edge(int corner, uint rank, global const int* neighbors, 
 
 // offsets: of the entries. lefts: how many of these are on the left.
 kernel void choose_constraints(int n, filter_bound bound, global const int* restrict list,
-                               global const uint* restrict offsets, global const double* restrict points,
+                               global const uint* restrict offsets, global const coordinate* restrict points,
                                global const int* restrict triangles, global const int* restrict neighbors,
                                global const uint* restrict claims, global const uchar* restrict flags,
                                global constraint_walk* restrict walks, global uchar* restrict outcomes,
@@ -424,7 +424,7 @@ static inline void join(int corner, int other, const replaced_rows* rows) {
 #define BASE_CORNER 2
 
 // The circles through the chord's ends and one of the vertices between are nested: the smallest.
-static inline int apex_of(int i, int k, global const chain_entry* chain, global const double* points,
+static inline int apex_of(int i, int k, global const chain_entry* chain, global const coordinate* points,
                           filter_bound bound) {
   int best = i + 1;
   for (int j = best + 1; j < k; ++j) {
@@ -437,7 +437,7 @@ static inline int apex_of(int i, int k, global const chain_entry* chain, global 
 
 // Gift-wraps a chain of `size` entries into the rows of the entries from row_entry on.
 static inline void fill_chain(int size, global chain_entry* chain, global const chain_entry* row_entry,
-                              global const double* points, filter_bound bound, const replaced_rows* rows) {
+                              global const coordinate* points, filter_bound bound, const replaced_rows* rows) {
   int chords[SHORT_CHAINS], beyond[SHORT_CHAINS];
   int open = 1;
   chords[0] = size - 1;
@@ -474,7 +474,7 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
 kernel void fill_cavities(int n, uint mark, filter_bound bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
-                          global const double* restrict points, global int* restrict triangles,
+                          global const coordinate* restrict points, global int* restrict triangles,
                           global int* restrict neighbors, global uint* restrict claims, global uchar* restrict flags,
                           global uchar* restrict changed, global int* restrict new_corners,
                           global chain_entry* restrict entries) {
@@ -565,7 +565,7 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
 
 // The constraints of the list that have not won walk and claim again. sizes: as those of walk_segments.
 kernel void walk_constraints(int n, filter_bound bound, global const int* restrict list,
-                             global const uchar* restrict outcomes, global const double* restrict points,
+                             global const uchar* restrict outcomes, global const coordinate* restrict points,
                              global const int* restrict triangles, global const int* restrict neighbors,
                              global const uint* restrict places, global volatile uint* restrict claims,
                              global constraint_walk* restrict walks, global uint2* restrict sizes,
@@ -626,7 +626,7 @@ kernel void measure_long(int n, global const int* restrict winners, global const
 // offsets: the scanned counts. chain_offsets: where the chains begin, two per winner, and their end.
 kernel void gather_long(int n, filter_bound bound, global const int* restrict winners, global const int* restrict list,
                         global const uint* restrict offsets, global const constraint_walk* restrict walks,
-                        global const double* restrict points, global const int* restrict triangles,
+                        global const coordinate* restrict points, global const int* restrict triangles,
                         global const int* restrict neighbors, global const uint* restrict claims,
                         global const uchar* restrict flags, global chain_entry* restrict entries,
                         global int* restrict chain_offsets) {

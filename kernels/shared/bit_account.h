@@ -66,6 +66,19 @@ static inline long fixed_point(ulong bits, int shift) {
   return bits >> 63 ? -integer : integer;
 }
 
+// An unsigned number in the order of the coordinates; -0 counts as +0.
+static inline ulong order_of_bits(ulong bits) {
+  const ulong magnitude = bits & MAGNITUDE_BITS;
+  return bits == magnitude || magnitude == 0 ? ~MAGNITUDE_BITS | magnitude : ~bits;
+}
+
+// Whether point i comes before point j in the canonical order, by x, then by y.
+static inline int lies_before(int i, int j, GLOBAL const double_bits* input) {
+  const ulong x = order_of_bits(input[2 * (long)i]), other = order_of_bits(input[2 * (long)j]);
+  if (x != other) return x < other;
+  return order_of_bits(input[2 * (long)i + 1]) < order_of_bits(input[2 * (long)j + 1]);
+}
+
 // The bits of a float as those of a double.
 static inline ulong widened_bits(uint bits) {
   const ulong sign = (ulong)(bits >> 31) << 63, magnitude = bits & 0x7fffffffU;

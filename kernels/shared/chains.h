@@ -17,12 +17,12 @@ BEGIN_SHARED
 typedef struct {
   filter_bound bound;  // of in-circle tests
   int last;            // position
-  GLOBAL const double2* places;
+  GLOBAL const coordinate2* places;
   GLOBAL chain_vertex* vertices;
   GLOBAL chain_edge* edges;
 } polygon;
 
-static inline polygon polygon_at(filter_bound bound, int first, int size, GLOBAL const double2* places,
+static inline polygon polygon_at(filter_bound bound, int first, int size, GLOBAL const coordinate2* places,
                                  GLOBAL chain_vertex* vertices, GLOBAL chain_edge* edges) {
   polygon g;
   g.bound = bound;
@@ -38,7 +38,7 @@ static inline int position_of(int side) { return -1 - side; }
 static inline int own_triangle(int vertex) { return vertex - 1; }
 
 static inline int polygon_orient(const polygon* g, int a, int b, int c) {
-  return orient_sign(g->places[a], g->places[b], g->places[c], g->bound == 0.0 ? 0.0 : ORIENT_BOUND);
+  return orient_sign(g->places[a], g->places[b], g->places[c], g->bound == 0 ? 0 : ORIENT_BOUND);
 }
 static inline int polygon_circle(const polygon* g, int a, int b, int c, int d) {
   return circle_canonical(g->places[a], g->places[b], g->places[c], g->places[d], g->bound);
@@ -49,11 +49,11 @@ static inline int polygon_circle(const polygon* g, int a, int b, int c, int d) {
 
 // All vertices between are left of the chord, so the circles through its ends and one of them are nested.
 static inline int apex_of(const polygon* g, int i, int k) {
-  const double2 from = g->places[i], to = g->places[k];
+  const coordinate2 from = g->places[i], to = g->places[k];
   int best = i + 1;
-  double2 apex = g->places[best];
+  coordinate2 apex = g->places[best];
   for (int j = best + 1; j < k; ++j) {
-    const double2 other = g->places[j];
+    const coordinate2 other = g->places[j];
     if (circle_canonical(from, to, apex, other, g->bound) > 0) {
       best = j;
       apex = other;

@@ -13,7 +13,7 @@ BEGIN_SHARED
 
 // bound: of orientations, see shared/bounds.h.
 typedef struct {
-  GLOBAL const double* points;
+  GLOBAL const coordinate* points;
   GLOBAL const int* triangles;
   GLOBAL const int* neighbors;
   filter_bound bound;
@@ -38,7 +38,7 @@ typedef struct {
 // A search for the departure around a vertex, triangle by triangle: the corner there, and the sides of the segment's
 // line on which the next and the previous corner of its triangle are.
 typedef struct {
-  double2 at, goal_at;
+  coordinate2 at, goal_at;
   int goal, origin;
   int first, first_next_side, first_previous_side;
   int corner, next_side, previous_side;
@@ -46,7 +46,7 @@ typedef struct {
   int met_border;  // whether the search has begun again in the other direction
 } star_search;
 
-static inline int side_of_segment(const walked_mesh* mesh, double2 from, double2 to, int goal, int v) {
+static inline int side_of_segment(const walked_mesh* mesh, coordinate2 from, coordinate2 to, int goal, int v) {
   return v == goal ? 0 : orient_sign(from, to, vload2(v, mesh->points), mesh->bound);
 }
 

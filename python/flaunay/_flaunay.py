@@ -138,16 +138,21 @@ def _names(struct: type[ctypes.Structure], *without: str) -> list[str]:
 
 
 _STATISTICS = _names(
-    _library.Statistics, "device", "phases", "phase_count", "kernels", "kernel_count"
+    _library.Statistics, "device", "phases", "phase_count", "kernels", "kernel_count", "note"
 )
 _ROUND = _names(_library.ChunkRound)
 _CHUNK_STATISTICS = _names(
     _library.ChunkStatistics,
     *("rounds", "round_count", "devices", "device_count", "phases", "phase_count", "seconds"),
+    "note",
 )
 _TEXTS_OF_DEVICE = ["name", "platform", "vendor", "driver", "version", "type"]
+_FLAGS_OF_DEVICE = ["fp64", "fixed_point"]
 _NUMBERS_OF_DEVICE = _names(
-    _library.DeviceInfo, *_TEXTS_OF_DEVICE, "fp64", "self_test_passed", "self_test_failure"
+    _library.DeviceInfo,
+    *_TEXTS_OF_DEVICE,
+    *_FLAGS_OF_DEVICE,
+    *("self_test_passed", "self_test_failure"),
 )
 
 
@@ -162,6 +167,7 @@ def _statistics_of(statistics: Any) -> dict[str, Any]:
         "device": text_of(statistics.device),
         **_members(statistics, _STATISTICS),
         "phases": _phases_of(statistics),
+        "note": text_of(statistics.note),
     }
 
 
@@ -173,6 +179,7 @@ def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
         "devices": [{"device": text_of(row.name), "points": row.points} for row in devices],
         "phases": _phases_of(statistics),
         "seconds": statistics.seconds,
+        "note": text_of(statistics.note),
     }
 
 
@@ -180,7 +187,7 @@ def _info_of(info: Any) -> dict[str, Any]:
     return {
         **{name: text_of(getattr(info, name)) for name in _TEXTS_OF_DEVICE},
         **_members(info, _NUMBERS_OF_DEVICE),
-        "fp64": bool(info.fp64),
+        **{name: bool(getattr(info, name)) for name in _FLAGS_OF_DEVICE},
     }
 
 

@@ -197,6 +197,7 @@ class Statistics(ctypes.Structure):
         ("phase_count", c_size_t),
         ("kernels", POINTER(Kernel)),
         ("kernel_count", c_size_t),
+        ("note", c_char_p),
     ]
 
 
@@ -299,6 +300,8 @@ class ChunkStatistics(ctypes.Structure):
         ("device_count", c_size_t),
         ("phases", POINTER(Phase)),
         ("phase_count", c_size_t),
+        ("host_points", c_uint64),
+        ("note", c_char_p),
     ]
 
 
@@ -320,6 +323,7 @@ class DeviceInfo(ctypes.Structure):
         ("self_test_passed", c_int),
         ("self_test_failure", c_char_p),
         ("available_bytes", c_size_t),
+        ("fixed_point", c_int),
     ]
 
 

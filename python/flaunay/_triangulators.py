@@ -136,8 +136,8 @@ def devices() -> list[dict[str, Any]]:
         Of each its ``name``, ``platform``, ``vendor``, ``driver``, ``version``, ``type`` (``"CPU"``,
         ``"GPU"``, ``"accelerator"``), ``compute_units``, ``clock_mhz``, ``memory_bytes``,
         ``available_bytes`` (what can be used of it now), ``largest_buffer_bytes``,
-        ``local_memory_bytes``, ``work_group_size`` and ``fp64``: without the last, a device cannot be
-        used.
+        ``local_memory_bytes``, ``work_group_size``, ``fp64`` and ``fixed_point``: whether it has double
+        precision, and whether it computes in fixed point because it lacks that.
 
     Raises
     ------

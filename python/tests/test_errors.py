@@ -152,10 +152,22 @@ def test_a_device_without_fp64():
         """
         import flaunay
         assert not any(device["fp64"] for device in flaunay.devices())
-        assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]], mode="dwyer").triangles) == 1
-        assert len(flaunay.triangulate([[0, 0], [1, 0], [0, 1]]).triangles) == 1
+        assert all(device["fixed_point"] for device in flaunay.devices())
+        points = [[0, 0], [1, 0], [0, 1]]
+        assert len(flaunay.triangulate(points, mode="dwyer").triangles) == 1
+        assert len(flaunay.triangulate(points).triangles) == 1
+        mesh = flaunay.triangulate(points, device="#0")
+        assert len(mesh.triangles) == 1
+        assert mesh.statistics["note"] == ""
+        assert mesh.statistics["device"] == flaunay.devices()[0]["name"]
+        # The device takes coordinates whose bits span 62 binary places; the host takes more.
+        mesh = flaunay.triangulate([*points, [2.0**80, 1]], device="#0")
+        assert len(mesh.triangles) == 2
+        assert mesh.statistics["device"] == "host"
+        assert "fp64" in mesh.statistics["note"]
+        assert len(mesh.voronoi().vertices) == 2
         try:
-            flaunay.triangulate([[0, 0], [1, 0], [0, 1]], device="#0")
+            flaunay.triangulate(points, device="#0", mode="flattened")
         except flaunay.DeviceError as error:
             assert "fp64" in str(error), error
         else:

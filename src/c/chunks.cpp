@@ -42,6 +42,8 @@ struct flaunay_chunk_report {
     view.device_count = devices.size();
     view.phases = c::elements(phases);
     view.phase_count = phases.size();
+    view.host_points = cpp.host_points;
+    view.note = cpp.note.c_str();
   }
   // The view refers to the other members.
   flaunay_chunk_report(const flaunay_chunk_report&) = delete;

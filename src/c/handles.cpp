@@ -106,11 +106,12 @@ void StatisticsView::show(const Statistics& statistics) {
   view_.phase_count = phases_.size();
   view_.kernels = elements(kernels_);
   view_.kernel_count = kernels_.size();
+  view_.note = statistics.note.c_str();
 }
 
 void StatisticsView::clear() {
   view_ = {};
-  view_.device = "";
+  view_.device = view_.note = "";
   phases_.clear();
   kernels_.clear();
 }
@@ -131,6 +132,7 @@ flaunay_device_info view_of(const DeviceInfo& info) {
   view.local_memory_bytes = info.local_memory_bytes;
   view.work_group_size = info.work_group_size;
   view.fp64 = info.fp64;
+  view.fixed_point = info.fixed_point;
   view.self_test_passed = info.self_test_passed;
   view.self_test_failure = info.self_test_failure.c_str();
   return view;

@@ -1,7 +1,10 @@
 // The public calls for clipped Voronoi cells.
+#include <utility>
+
 #include "call/device_mesh.hpp"
 #include "call/errors.hpp"
 #include "call/handles.hpp"
+#include "call/on_host.hpp"
 #include "voronoi/clip.hpp"
 
 namespace flaunay {
@@ -27,6 +30,33 @@ points::DeviceMesh mesh_with_sets(host::Runtime& runtime, const double* coordina
   return mesh;
 }
 
+ClippedVoronoi compute_on(call::Engine& engine, const double* coordinates, std::size_t n,
+                          const Triangulation& triangulation, const voronoi::ClipPolygon& polygon) {
+  engine.check_size(n);
+  const call::OwnCall own(engine);
+  host::Runtime& runtime = own.runtime;
+  ClippedVoronoi result;
+  const host::Runtime::Settled settled(runtime);
+  const points::DeviceMesh mesh = mesh_with_sets(runtime, coordinates, n, triangulation);
+  runtime.resize(result.offsets, n + 1);
+  runtime.resize(result.areas, n);
+  runtime.resize(result.centroids, 2 * n);
+  const voronoi::ClippedBuffers buffers{runtime.output(result.offsets), runtime.output(result.areas),
+                                        runtime.output(result.centroids)};
+  Buffer<cl_double> vertices;
+  voronoi::compute_clipped(runtime, mesh, polygon, buffers, [&](std::size_t count) {
+    runtime.resize(result.vertices, 2 * count);
+    vertices = runtime.output(result.vertices);
+    return vertices;
+  });
+  runtime.fetch_later(buffers.offsets, result.offsets);
+  runtime.fetch_later(buffers.areas, result.areas);
+  runtime.fetch_later(buffers.centroids, result.centroids);
+  runtime.fetch_later(vertices, result.vertices);
+  runtime.finish();
+  return result;
+}
+
 }  // namespace
 
 ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::size_t n,
@@ -34,30 +64,8 @@ ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::siz
                                              std::size_t corner_count) {
   return call::take_turn(*implementation_, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    call::Engine& engine = implementation_->for_host_memory();
-    engine.check_size(n);
-    const call::OwnCall own(engine);
-    host::Runtime& runtime = own.runtime;
-    ClippedVoronoi result;
-    const host::Runtime::Settled settled(runtime);
-    const points::DeviceMesh mesh = mesh_with_sets(runtime, coordinates, n, triangulation);
-    runtime.resize(result.offsets, n + 1);
-    runtime.resize(result.areas, n);
-    runtime.resize(result.centroids, 2 * n);
-    const voronoi::ClippedBuffers buffers{runtime.output(result.offsets), runtime.output(result.areas),
-                                          runtime.output(result.centroids)};
-    Buffer<cl_double> vertices;
-    voronoi::compute_clipped(runtime, mesh, polygon, buffers, [&](std::size_t count) {
-      runtime.resize(result.vertices, 2 * count);
-      vertices = runtime.output(result.vertices);
-      return vertices;
-    });
-    runtime.fetch_later(buffers.offsets, result.offsets);
-    runtime.fetch_later(buffers.areas, result.areas);
-    runtime.fetch_later(buffers.centroids, result.centroids);
-    runtime.fetch_later(vertices, result.vertices);
-    runtime.finish();
-    return result;
+    return compute_on(implementation_->with_doubles(implementation_->for_host_memory()), coordinates, n,
+                      triangulation, polygon);
   });
 }
 
@@ -66,21 +74,21 @@ void Triangulator::clipped_voronoi(const DevicePoints& points, const DeviceTrian
                                    DeviceClippedVoronoi& result, const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    call::Engine& engine = implementation_->on_device();
-    engine.use_own_memory();
-    host::Runtime& runtime = engine.runtime;
-    std::size_t& made = engine.buffer_allocations;
-    call::check_enqueue(runtime, enqueue);
+    const call::WithDoubles call = call::with_doubles(*implementation_, enqueue);
+    call.device.use_own_memory();
+    host::Runtime& runtime = call.device.runtime;
+    std::size_t& made = call.device.buffer_allocations;
+    call::check_enqueue(runtime, call.enqueue);
     call::check_points(runtime, points, "points");
-    call::QueuedCall queued(runtime, enqueue);
+    call::QueuedCall queued(runtime, call.enqueue);
     Arena::Scope scope(runtime.arena());
-    const points::DeviceMesh mesh = call::mesh_of(runtime, points, triangulation);
+    points::DeviceMesh mesh = call::mesh_without_points(runtime, points, triangulation);
     const std::size_t n = points.count;
     voronoi::ClippedBuffers buffers;
     buffers.offsets = call::result_buffer<cl_int>(runtime, result.offsets, n + 1, "cell offsets", made);
     buffers.areas = call::result_buffer<cl_double>(runtime, result.areas, n, "areas", made);
     buffers.centroids = call::result_buffer<cl_double>(runtime, result.centroids, 2 * n, "centroids", made);
-    voronoi::compute_clipped(runtime, mesh, polygon, buffers, [&](std::size_t vertices) {
+    const auto make_vertices = [&](std::size_t vertices) {
       result.vertex_count = vertices;
       const auto buffer =
           call::result_buffer<cl_double>(runtime, result.vertices, 2 * vertices, "vertices", made);
@@ -88,7 +96,20 @@ void Triangulator::clipped_voronoi(const DevicePoints& points, const DeviceTrian
                             mesh.representatives.memory(), points.memory, buffers.offsets.memory(),
                             buffers.areas.memory(), buffers.centroids.memory(), buffer.memory()});
       return buffer;
-    });
+    };
+    if (call.host != nullptr) {
+      const call::MeshOnHost read = call::read_mesh(runtime, points, mesh);
+      ClippedVoronoi made_there =
+          compute_on(*call.host, read.coordinates.data(), n, read.triangulation, polygon);
+      const Buffer<cl_double> vertices = make_vertices(made_there.vertices.size() / 2);
+      call::write_result(runtime, vertices, std::move(made_there.vertices));
+      call::write_result(runtime, buffers.offsets, std::move(made_there.offsets));
+      call::write_result(runtime, buffers.areas, std::move(made_there.areas));
+      call::write_result(runtime, buffers.centroids, std::move(made_there.centroids));
+    } else {
+      mesh.coordinates = call::wide_points(runtime, runtime.arena(), points);
+      voronoi::compute_clipped(runtime, mesh, polygon, buffers, make_vertices);
+    }
     queued.end();
   });
 }

@@ -48,6 +48,13 @@ points::DeviceMesh mesh_of(host::Runtime& runtime, const double* coordinates,
 
 points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
                            const DeviceTriangulation& triangulation) {
+  points::DeviceMesh mesh = mesh_without_points(runtime, points, triangulation);
+  mesh.coordinates = wide_points(runtime, runtime.arena(), points);
+  return mesh;
+}
+
+points::DeviceMesh mesh_without_points(host::Runtime& runtime, const DevicePoints& points,
+                                       const DeviceTriangulation& triangulation) {
   const Parts& parts = triangulation.parts;
   expect(!triangulation.is_constrained, "a constrained triangulation is not the dual of a Voronoi diagram");
   expect(parts.triangles && parts.neighbors && parts.hull && parts.representatives,
@@ -68,7 +75,6 @@ points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
   mesh.neighbors = input(triangulation.neighbors, 3 * mesh.triangle_count(), "neighbors");
   mesh.hull = input(triangulation.hull, mesh.hull_offsets.back(), "hull");
   mesh.representatives = input(triangulation.representatives, points.count, "representatives");
-  mesh.coordinates = wide_points(runtime, runtime.arena(), points);
   return mesh;
 }
 

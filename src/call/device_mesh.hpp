@@ -25,6 +25,9 @@ points::DeviceMesh mesh_of(host::Runtime& runtime, const double* coordinates,
 /// Makes a mesh from points and a triangulation in device memory. Throws Error(usage) if a part is missing.
 points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
                            const DeviceTriangulation& triangulation);
+/// The same without the coordinates.
+points::DeviceMesh mesh_without_points(host::Runtime& runtime, const DevicePoints& points,
+                                       const DeviceTriangulation& triangulation);
 
 /// The setting of a call on host memory other than a triangulation: the triangulator's own memory and queue,
 /// and a scope of the scratch arena.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/compute/platform.hpp>
 
+#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/errors.hpp"
 #include "call/self_test.hpp"
@@ -22,7 +23,8 @@ constexpr const char* kChecksInFixedPoint[] = {"products of integers are whole",
                                                "integers are converted to floats",
                                                "floats are exact to one unit",
                                                "quotients of floats are exact to "
-                                               "three units"};
+                                               "three units",
+                                               "floats of 2^-110 are kept"};
 
 constexpr const char* kChecks[] = {"contraction is off",
                                    "fma rounds once",
@@ -63,7 +65,7 @@ cl_uint failed_checks_in_fixed_point(host::Runtime& runtime) {
   // Operands as in kernels/call/self_test_fixed.cl, and their results, which were computed with rational
   // arithmetic.
   const cl_long operands[] = {0x3fffffffffffffff, -0x2aaaaaaaaaaaaaab, 0x123456789abcdef1, 0};
-  const cl_float reals[] = {0x1.555556p-2f, 0x1.00008p+20f};
+  const cl_float reals[] = {0x1.555556p-2f, 0x1.00008p+20f, 0x1p-55f};
   const cl_ulong expected[] = {0x6aaaaaaaaaaaaaab, 0xf555555555555555, 0xca4ab582281edee1, 0x014b66dc33f6acdc,
                                0xffaaaaaaaaaaaaaa, 0x01aaaaaaaaaaaaaa, 0x5a6bf6646095ae57, 0xc598153d0f8cb488,
                                0xac71c71c71c71c71, 0x00205d0b811316e1};
@@ -111,6 +113,16 @@ std::string self_test_failure(host::Runtime& runtime) {
   return describe_failure(bits, kChecks);
 }
 
+std::string make_exact(host::Runtime& runtime) {
+  const std::string failure = self_test_failure(runtime);
+  if (failure.empty() || runtime.is_native() || tuning_of(runtime).fixed_point != 0) return failure;
+  auto fixed = std::make_shared<Tuning>(tuning_of(runtime));
+  fixed->fixed_point = 1;
+  runtime.set_sizes(fixed);
+  const std::string failure_of_fixed = self_test_failure(runtime);
+  return failure_of_fixed.empty() ? "" : failure + "; " + failure_of_fixed;
+}
+
 host::MemoryLeft usable_memory(const boost::compute::device& device, std::size_t held) {
   const host::MemoryLeft whole{device.global_memory_size(),
                                "the driver's account (CL_DEVICE_GLOBAL_MEM_SIZE)"};
@@ -138,6 +150,7 @@ DeviceInfo describe(const boost::compute::device& device) {
   info.local_memory_bytes = device.local_memory_size();
   info.work_group_size = device.max_work_group_size();
   info.fp64 = host::has_fp64(device);
+  info.fixed_point = !info.fp64;
   return info;
 }
 
@@ -162,6 +175,7 @@ DeviceInfo describe(const host::Runtime& runtime) {
     info.fp64 = true;
   } else {
     info = describe(runtime.device());
+    info.fixed_point = tuning_of(runtime).fixed_point != 0;
   }
   info.self_test_passed = true;
   return info;
@@ -174,16 +188,16 @@ std::vector<DeviceInfo> list_devices(bool self_test) {
     std::vector<DeviceInfo> infos;
     for (const boost::compute::device& device : host::all_devices()) {
       DeviceInfo info = call::describe(device);
-      if (self_test && info.fp64) {
+      if (self_test) {
         try {
           host::Runtime runtime(device, tuning_for(device));
-          info.self_test_failure = call::self_test_failure(runtime);
+          call::choose_arithmetic(runtime);
+          info.self_test_failure = call::make_exact(runtime);
           info.self_test_passed = info.self_test_failure.empty();
+          info.fixed_point = tuning_of(runtime).fixed_point != 0;
         } catch (const std::exception& error) {
           info.self_test_failure = error.what();
         }
-      } else if (self_test) {
-        info.self_test_failure = "no double precision (fp64)";
       }
       infos.push_back(info);
     }

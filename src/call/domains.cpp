@@ -11,24 +11,36 @@ using host::Buffer;
 
 namespace {
 
-constrained::DomainMesh view(host::Runtime& runtime, const double* coordinates,
-                             const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                             const ConstrainedTriangulation& result) {
-  const auto view_of = [&runtime](const auto& values) { return runtime.view(values.data(), values.size()); };
+template <typename T>
+auto view_of(host::Runtime& runtime, const std::vector<T>& values) {
+  return runtime.view(values.data(), values.size());
+}
+
+// What holes are found by.
+constrained::DomainMesh view_triangles(host::Runtime& runtime, const double* coordinates,
+                                       const std::vector<std::size_t>& offsets,
+                                       const ConstrainedTriangulation& result) {
   constrained::DomainMesh mesh;
   mesh.triangle_offsets = result.triangle_offsets;
   mesh.points = offsets.back();
+  mesh.coordinates = runtime.view(coordinates, 2 * (mesh.points + result.added_points.size() / 2));
+  mesh.triangles = view_of(runtime, result.triangles);
+  mesh.constrained = view_of(runtime, result.constrained);
+  return mesh;
+}
+
+constrained::DomainMesh view(host::Runtime& runtime, const double* coordinates,
+                             const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                             const ConstrainedTriangulation& result) {
+  constrained::DomainMesh mesh = view_triangles(runtime, coordinates, offsets, result);
   mesh.segments = constraints.segment_count;
   mesh.edges = result.constraint_edges.size() / 2;
-  mesh.coordinates = runtime.view(coordinates, 2 * (mesh.points + result.added_points.size() / 2));
-  mesh.triangles = view_of(result.triangles);
-  mesh.neighbors = view_of(result.neighbors);
-  mesh.constrained = view_of(result.constrained);
-  mesh.representatives = view_of(result.representatives);
+  mesh.neighbors = view_of(runtime, result.neighbors);
+  mesh.representatives = view_of(runtime, result.representatives);
   mesh.segment_ends = runtime.view(constraints.segments, 2 * mesh.segments);
-  mesh.piece_offsets = view_of(result.piece_offsets);
-  mesh.piece_edges = view_of(result.piece_edges);
-  mesh.constraint_edges = view_of(result.constraint_edges);
+  mesh.piece_offsets = view_of(runtime, result.piece_offsets);
+  mesh.piece_edges = view_of(runtime, result.piece_edges);
+  mesh.constraint_edges = view_of(runtime, result.constraint_edges);
   return mesh;
 }
 
@@ -86,11 +98,16 @@ void apply_domains(Implementation& self, const double* coordinates, const std::v
     apply_domains_on_host(coordinates, offsets, constraints, request, result);
     return;
   }
-  const OwnCall own(self.for_host_memory());
-  apply_domains_on(own.runtime, coordinates, offsets, constraints, request, result);
+  Engine& engine = self.for_host_memory();
+  const OwnCall own(engine);
+  if (constraints.hole_count == 0 || engine.has_doubles()) {
+    return apply_domains_on(own.runtime, own.runtime, coordinates, offsets, constraints, request, result);
+  }
+  const OwnCall other(self.with_doubles(engine));
+  apply_domains_on(own.runtime, other.runtime, coordinates, offsets, constraints, request, result);
 }
 
-void apply_domains_on(host::Runtime& runtime, const double* coordinates,
+void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
                       const constrained::DomainRequest& request, ConstrainedTriangulation& result) {
   host::Arena::Scope scope(runtime.arena());
@@ -102,7 +119,14 @@ void apply_domains_on(host::Runtime& runtime, const double* coordinates,
     const constrained::Seeds seeds = constrained::make_seeds(
         constraints,
         constrained::magnitudes_at_holes(coordinates, offsets, result.added_offsets, constraints));
-    drop_holes(runtime, mesh, seeds, constraints, regions);
+    const host::Runtime::Settled other_settled(with_doubles);
+    drop_holes(
+        runtime,
+        find_holes(
+            with_doubles,
+            &with_doubles == &runtime ? mesh : view_triangles(with_doubles, coordinates, offsets, result),
+            seeds, constraints),
+        regions);
   }
   if (request.rules.outside != Outside::keep || constraints.hole_count > 0) {
     leave(runtime, mesh, regions, result);

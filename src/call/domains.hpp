@@ -13,13 +13,14 @@ namespace flaunay::call {
 constrained::DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
 
 /// Labels a triangulation, which must have neighbours, and leaves out what the request and the holes say, on
-/// the engine for host memory or, if it is small and no device was named, on the calling thread.
+/// the engine for host memory with doubles or, if it is small and no device was named, on the calling thread.
 /// coordinates: of all points, those that splitting added too; offsets: without those.
 void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Constraints& constraints, const constrained::DomainRequest& request,
                    ConstrainedTriangulation& result);
-/// The same on a device, or natively.
-void apply_domains_on(host::Runtime& runtime, const double* coordinates,
+/// The same on a device, or natively. with_doubles: finds holes; another one if the first one computes in
+/// fixed point.
+void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
                       const constrained::DomainRequest& request, ConstrainedTriangulation& result);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "blocks/memory.hpp"
 #include "call/arithmetic.hpp"
@@ -37,39 +38,49 @@ std::size_t largest_call(const host::MemorySource& memory) {
   return std::min(kMostPoints, memory.largest / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge)));
 }
 
-boost::compute::device checked_device(const boost::compute::device& device) {
-  if (host::has_fp64(device)) return device;
-  throw host::DeviceError(fmt::format(
-      "{} has no double precision (fp64), which exactness needs; flaunay devices lists the others",
-      device.name()));
-}
-
-boost::compute::context context_of(const boost::compute::device& device) {
-  return boost::compute::context(checked_device(device));
-}
-
 }  // namespace
 
 Engine::Engine()
     : runtime(native_tuning()), persistent(runtime.memory()), even(runtime.memory()), odd(runtime.memory()) {
+  separate_buffers();
   check_arithmetic();
 }
 
 Engine::Engine(const boost::compute::context& context, const boost::compute::device& device)
-    : runtime(context.get() == nullptr ? context_of(device) : context, checked_device(device),
-              tuning_for(device)),
-      persistent(runtime.memory()),
-      even(runtime.memory()),
-      odd(runtime.memory()) {
+    : Engine(context.get() == nullptr ? boost::compute::context(device) : context, device,
+             tuning_for(device)) {
   choose_arithmetic(runtime);
   check_arithmetic();
 }
 
+Engine::Engine(const boost::compute::context& context, const boost::compute::device& device,
+               std::shared_ptr<const Tuning> tuning)
+    : runtime(context, device, std::move(tuning)),
+      persistent(runtime.memory()),
+      even(runtime.memory()),
+      odd(runtime.memory()) {
+  separate_buffers();
+}
+
+std::unique_ptr<Engine> Engine::with_doubles() const {
+  const boost::compute::device& device = runtime.device();
+  if (!host::has_fp64(device)) return nullptr;
+  auto tuning = std::make_shared<Tuning>(tuning_of(runtime));
+  tuning->fixed_point = 0;
+  std::unique_ptr<Engine> engine(new Engine(runtime.context(), device, std::move(tuning)));
+  if (!self_test_failure(engine->runtime).empty()) return nullptr;
+  return engine;
+}
+
+bool Engine::has_doubles() const { return tuning_of(runtime).fixed_point == 0; }
+
+void Engine::separate_buffers() {
+  if (runtime.sizes().separate_buffers == 0) return;
+  for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
+}
+
 void Engine::check_arithmetic() {
-  if (runtime.sizes().separate_buffers != 0) {
-    for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
-  }
-  const std::string failure = self_test_failure(runtime);
+  const std::string failure = make_exact(runtime);
   if (!failure.empty()) {
     throw Error(ErrorKind::device,
                 fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "

@@ -10,15 +10,23 @@
 
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::call {
 
 struct Engine {
   /// Runs kernels natively on threads of the host, without OpenCL.
   Engine();
-  /// Runs them on a device, in the given context or, if that is null, in one of its own. Throws Error(device)
-  /// if the device lacks fp64 or if its arithmetic fails the self-test.
+  /// Runs them on a device, in the given context or, if that is null, in one of its own: in double precision,
+  /// or in fixed point if its tuning says so, if it lacks fp64, or if its doubles fail the self-test. Throws
+  /// Error(device) if it fails the self-test of fixed point, too.
   Engine(const boost::compute::context& context, const boost::compute::device& device);
+  /// Makes an engine with double precision on the same device and in the same context. Null if the device
+  /// lacks fp64 or fails its self-test.
+  std::unique_ptr<Engine> with_doubles() const;
+
+  /// Whether kernels may compute with doubles; otherwise they compute in fixed point.
+  bool has_doubles() const;
 
   /// The largest number of points of one call, with the memory that is free now.
   std::size_t capacity() const;
@@ -47,6 +55,9 @@ struct Engine {
   std::size_t held_bytes() const;
 
  private:
+  Engine(const boost::compute::context& context, const boost::compute::device& device,
+         std::shared_ptr<const Tuning> tuning);
+  void separate_buffers();
   void check_arithmetic();
   std::size_t allocations() const;
 

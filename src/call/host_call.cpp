@@ -6,6 +6,8 @@
 #include "blocks/run.hpp"
 #include "blocks/small.hpp"
 #include "call/modes.hpp"
+#include "call/on_host.hpp"
+#include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
 #include "host/device.hpp"
 #include "points/inspect.hpp"
@@ -144,8 +146,6 @@ Triangulation empty_result(Engine& self, std::size_t sets) {
   return result;
 }
 
-namespace {
-
 Triangulation triangulate_on(Engine& self, const HostPoints& points, const std::vector<std::size_t>& offsets,
                              const Options& options) {
   const std::size_t n = offsets.back();
@@ -173,6 +173,27 @@ Triangulation triangulate_on(Engine& self, const HostPoints& points, const std::
   return result;
 }
 
+namespace {
+
+// What fixed point cannot represent is computed by an engine with doubles.
+Triangulation triangulate_on_either(Implementation& self, Engine& engine, const HostPoints& points,
+                                    const std::vector<std::size_t>& offsets, const Options& options) {
+  if (engine.has_doubles()) return triangulate_on(engine, points, offsets, options);
+  const double begin = engine.runtime.working_clock();
+  try {
+    return triangulate_on(engine, points, offsets, options);
+  } catch (const geometry::TooWideForFixedPoint& error) {
+    const double seconds = engine.runtime.working_clock() - begin;
+    Engine& other = self.with_doubles(self.for_host_memory());
+    other.check_size(offsets.back());
+    Triangulation result = triangulate_on(other, points, offsets, options);
+    result.statistics.seconds += seconds;
+    result.statistics.phases.insert(result.statistics.phases.begin(), {"inspect", seconds});
+    add_note(engine, other, error.reason(), "triangulated", result.statistics);
+    return result;
+  }
+}
+
 }  // namespace
 
 Triangulation triangulate(TriangulatorAccess::Implementation& self, const HostPoints& points,
@@ -186,7 +207,7 @@ Triangulation triangulate(TriangulatorAccess::Implementation& self, const HostPo
   if (may_be_small && are_small(tuning_of(engine.runtime), offsets)) {
     return triangulate_small(points, offsets, options);
   }
-  return triangulate_on(engine, points, offsets, options);
+  return triangulate_on_either(self, engine, points, offsets, options);
 }
 
 }  // namespace flaunay::call

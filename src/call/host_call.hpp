@@ -22,6 +22,11 @@ std::vector<double> widened(const HostPoints& points, std::size_t n);
 Triangulation triangulate(TriangulatorAccess::Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options);
 
+/// Triangulates sets on this engine. If the engine computes in fixed point, throws
+/// geometry::TooWideForFixedPoint for what that cannot represent.
+Triangulation triangulate_on(Engine& engine, const HostPoints& points,
+                             const std::vector<std::size_t>& offsets, const Options& options);
+
 /// Returns a result for this many sets without any triangles.
 Triangulation empty_result(Engine& self, std::size_t sets);
 

@@ -1,10 +1,28 @@
 #include "call/implementation.hpp"
 
+#include <fmt/format.h>
+
 #include "host/device.hpp"
 
 namespace flaunay {
 
 using call::Engine;
+
+namespace {
+
+// Whether the device that nobody has named passes the self-test, as one without fp64 may not. The host does
+// as well.
+bool can_be_used(call::Implementation& self) {
+  try {
+    with_errors([&self] { self.on_device(); });
+    return true;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::device) throw;
+    return false;
+  }
+}
+
+}  // namespace
 
 Triangulator::Implementation::Implementation(const std::string& wanted) : host_tuning_(native_tuning()) {
   const std::string name = host::wanted_device(wanted);
@@ -34,23 +52,60 @@ Engine& Triangulator::Implementation::on_device() {
   return *device_;
 }
 
-Engine& Triangulator::Implementation::for_host_memory() {
+Engine& Triangulator::Implementation::native() {
   const std::lock_guard lock(making_);
-  if (native_ != nullptr) return *native_;
-  if (is_named_ && !is_host_named_) return on_device();
-  if (!is_host_named_ && host::find_gpu()) return on_device();
-  native_ = std::make_unique<Engine>();
+  if (native_ == nullptr) native_ = std::make_unique<Engine>();
   return *native_;
 }
 
+bool Triangulator::Implementation::uses_device_for_host_memory() {
+  if (is_named_) return !is_host_named_;
+  if (!uses_gpu_) {
+    const auto gpu = host::find_gpu();
+    uses_gpu_ = gpu && (host::has_fp64(*gpu) || can_be_used(*this));
+  }
+  return *uses_gpu_;
+}
+
+Engine& Triangulator::Implementation::for_host_memory() {
+  const std::lock_guard lock(making_);
+  return uses_device_for_host_memory() ? on_device() : native();
+}
+
+Engine& Triangulator::Implementation::with_doubles(Engine& engine) {
+  const std::lock_guard lock(making_);
+  if (engine.has_doubles()) return engine;
+  if (!has_looked_for_doubles_) device_with_doubles_ = engine.with_doubles();
+  has_looked_for_doubles_ = true;
+  return device_with_doubles_ != nullptr ? *device_with_doubles_ : native();
+}
+
+Engine& Triangulator::Implementation::on_any_device_with_doubles(const std::string& what) {
+  const std::lock_guard lock(making_);
+  Engine& engine = with_doubles(on_device());
+  if (!engine.runtime.is_native()) return engine;
+  if (other_device_ == nullptr && !is_named_) {
+    if (const auto device = host::find_device_with_fp64()) {
+      other_device_ = std::make_unique<Engine>(boost::compute::context(), *device);
+    }
+  }
+  if (other_device_ != nullptr && other_device_->has_doubles()) return *other_device_;
+  throw Error(ErrorKind::device,
+              fmt::format("{} needs double precision (fp64), which {} lacks; take mode blocks, recursive or "
+                          "dwyer, or another device",
+                          what, device_->runtime.name()));
+}
+
 void Triangulator::Implementation::settle() {
-  if (device_ != nullptr) device_->runtime.settle();
+  for (const auto* engine : {&device_, &device_with_doubles_, &other_device_}) {
+    if (*engine != nullptr) (*engine)->runtime.settle();
+  }
 }
 
 void Triangulator::Implementation::note_held_bytes() {
   const std::lock_guard lock(making_);
-  for (Engine* engine : {device_.get(), native_.get()}) {
-    if (engine != nullptr) engine->held_at_rest = engine->held_bytes();
+  for (const auto* engine : {&device_, &native_, &device_with_doubles_, &other_device_}) {
+    if (*engine != nullptr) (*engine)->held_at_rest = (*engine)->held_bytes();
   }
 }
 

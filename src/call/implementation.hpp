@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "call/engine.hpp"
@@ -26,6 +27,14 @@ struct Triangulator::Implementation {
   call::Engine& on_device();
   /// The engine of calls on host memory. Throws as on_device if it is a device that cannot be used.
   call::Engine& for_host_memory();
+  /// What runs natively, made when it is first needed.
+  call::Engine& native();
+  /// The engine that has doubles in place of this one, which is on_device() or for_host_memory(): itself, or
+  /// another one on the same device and in its context, or native() if that device has no doubles.
+  call::Engine& with_doubles(call::Engine& engine);
+  /// The engine for what needs a device and doubles. Throws Error(device), which names `what`, if the device
+  /// lacks them. If no device is named, it may be another one.
+  call::Engine& on_any_device_with_doubles(const std::string& what);
   /// Whether a device was named, on which all work is to be done.
   bool is_named() const { return is_named_; }
   /// The sizes that hold without a device.
@@ -38,12 +47,18 @@ struct Triangulator::Implementation {
   std::atomic<bool> is_busy{false};  ///< whether a call is running; see Turn
 
  private:
+  bool uses_device_for_host_memory();
+
   bool is_named_ = false;
   bool is_host_named_ = false;
   std::shared_ptr<const Tuning> host_tuning_;
   // Held while an engine is made or looked for.
   std::recursive_mutex making_;
   std::unique_ptr<call::Engine> device_, native_;
+  // For calls that need doubles, if device_ computes in fixed point: on the same device, or on another one.
+  std::unique_ptr<call::Engine> device_with_doubles_, other_device_;
+  bool has_looked_for_doubles_ = false;
+  std::optional<bool> uses_gpu_;  ///< for host memory, if no device is named; empty until it is looked for
 };
 
 /// Gives functions that are not members of Triangulator access to its implementation.

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "call/device_mesh.hpp"
+#include "call/on_host.hpp"
 #include "constrained/device.hpp"
+#include "geometry/magnitudes.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -34,6 +36,8 @@ void add(const Statistics& step, Statistics& all) {
       [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
 }
 
+}  // namespace
+
 constrained::Result insert_on(Engine& engine, const double* coordinates,
                               const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                               const std::vector<std::int32_t>& segments, const Options& options) {
@@ -49,8 +53,6 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
   return result;
 }
 
-}  // namespace
-
 constrained::Result insert_segments(Implementation& self, const double* coordinates,
                                     const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                                     const std::vector<std::int32_t>& segments, const Options& options) {
@@ -59,7 +61,16 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
   if (may_stay && size <= self.host_tuning().host_points) {
     return constrained::constrain(coordinates, offsets, delaunay, segments);
   }
-  return insert_on(self.for_host_memory(), coordinates, offsets, delaunay, segments, options);
+  Engine& engine = self.for_host_memory();
+  try {
+    return insert_on(engine, coordinates, offsets, delaunay, segments, options);
+  } catch (const geometry::TooWideForFixedPoint& error) {
+    Engine& other = self.with_doubles(engine);
+    if (delaunay.statistics.note.empty()) {
+      add_note(engine, other, error.reason(), "segments inserted", delaunay.statistics);
+    }
+    return insert_on(other, coordinates, offsets, delaunay, segments, options);
+  }
 }
 
 }  // namespace flaunay::call

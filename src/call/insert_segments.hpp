@@ -17,4 +17,9 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
                                     const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                                     const std::vector<std::int32_t>& segments, const Options& options);
 
+/// The same on an engine with doubles.
+constrained::Result insert_on(Engine& engine, const double* coordinates,
+                              const std::vector<std::size_t>& offsets, Triangulation& delaunay,
+                              const std::vector<std::int32_t>& segments, const Options& options);
+
 }  // namespace flaunay::call

@@ -9,6 +9,7 @@
 #include "call/device_mesh.hpp"
 #include "call/errors.hpp"
 #include "call/handles.hpp"
+#include "call/on_host.hpp"
 #include "geometry/magnitudes.hpp"
 #include "interpolate/interpolate.hpp"
 #include "interpolate/natural.hpp"
@@ -19,10 +20,14 @@ using host::Arena;
 using host::Buffer;
 
 struct Locator::Implementation {
-  Implementation(std::shared_ptr<Triangulator::Implementation> used, call::Engine& used_engine)
-      : owner(std::move(used)), engine(used_engine), own(engine.runtime.memory()) {
+  Implementation(std::shared_ptr<Triangulator::Implementation> used, call::Engine& used_engine,
+                 call::Engine* used_device)
+      : owner(std::move(used)), engine(used_engine), device(used_device), own(engine.runtime.memory()) {
     if (engine.runtime.sizes().separate_buffers) own.separate_buffers();
   }
+
+  /// Whether the host computes, and the caller's arrays are in device memory.
+  bool is_on_host() const { return device != &engine; }
 
   // Kernels use 32-bit indices for the coordinates of queries, and for columns.
   static void check_queries(std::size_t m, std::size_t columns) {
@@ -47,17 +52,25 @@ struct Locator::Implementation {
       const std::size_t m = offsets.back();
       check_queries(m, columns);
       call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
-      const call::OwnCall own_call(engine);
-      host::Runtime& runtime = own_call.runtime;
-      std::vector<Result> result;
-      runtime.resize(result, m * columns);
-      const host::Runtime::Settled settled(runtime);
-      const auto output = runtime.output(result);
-      work(runtime, runtime.view(queries, 2 * m), m, offsets, output);
-      runtime.fetch_later(output, result);
-      runtime.finish();
-      return result;
+      return compute<Result>(m * columns, [&](host::Runtime& runtime, const Buffer<Result>& results) {
+        work(runtime, runtime.view(queries, 2 * m), m, offsets, results);
+      });
     });
+  }
+
+  /// Computes so many results in host memory. work(runtime, results) enqueues the kernels that write them.
+  template <typename Result, typename Work>
+  std::vector<Result> compute(std::size_t count, const Work& work) {
+    const call::OwnCall own_call(engine);
+    host::Runtime& runtime = own_call.runtime;
+    std::vector<Result> result;
+    runtime.resize(result, count);
+    const host::Runtime::Settled settled(runtime);
+    const Buffer<Result> output = runtime.output(result);
+    work(runtime, output);
+    runtime.fetch_later(output, result);
+    runtime.finish();
+    return result;
   }
 
   /// Runs a call on device memory. work(runtime) enqueues it.
@@ -65,14 +78,16 @@ struct Locator::Implementation {
   void on_device(const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
       call::expect(
-          !engine.runtime.is_native(),
+          device != nullptr,
           "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
           "make it from device memory, or name a device");
-      engine.use_own_memory();
-      call::check_enqueue(engine.runtime, enqueue);
-      call::QueuedCall queued(engine.runtime, enqueue);
-      Arena::Scope scope(engine.runtime.arena());
-      work(engine.runtime);
+      call::Engine& first = owner->on_device();
+      const Enqueue own_enqueue = device == &first ? enqueue : call::on_queue_of(first, enqueue);
+      device->use_own_memory();
+      call::check_enqueue(device->runtime, own_enqueue);
+      call::QueuedCall queued(device->runtime, own_enqueue);
+      Arena::Scope scope(device->runtime.arena());
+      work(device->runtime);
       queued.end();
     });
   }
@@ -87,19 +102,39 @@ struct Locator::Implementation {
       check_queries(queries.count, columns);
       const std::vector<std::size_t> offsets = call::checked_offsets(runtime, queries);
       const auto output = call::result_buffer<Result>(runtime, result, queries.count * columns, what,
-                                                      engine.buffer_allocations);
+                                                      device->buffer_allocations);
       std::vector<cl_mem> buffers{queries.memory, queries.device_offsets, result.memory()};
       buffers.insert(buffers.end(), read.begin(), read.end());
       call::check_distinct(buffers);
-      work(runtime, call::wide_points(runtime, runtime.arena(), queries), queries.count, offsets, output);
+      if (!is_on_host()) {
+        work(runtime, call::wide_points(runtime, runtime.arena(), queries), queries.count, offsets, output);
+        return;
+      }
+      const std::vector<double> points = call::read_wide_points(runtime, queries);
+      call::write_result(
+          runtime, output,
+          compute<Result>(queries.count * columns, [&](host::Runtime& native, const Buffer<Result>& results) {
+            work(native, native.view(points.data(), points.size()), queries.count, offsets, results);
+          }));
     });
   }
+
+  /// The caller's numbers in device memory, where the engine has them. To be called in a call of its runtime.
+  Buffer<cl_double> given(cl_mem memory, std::size_t count, const char* what) {
+    const auto there = call::given_buffer<cl_double>(device->runtime, memory, count, what);
+    if (!is_on_host()) return there;
+    return engine.runtime.upload(engine.runtime.arena(), points::download(device->runtime, there, count));
+  }
+
+  /// Makes the locator of a triangulation in host memory.
+  void make_from(const double* coordinates, const std::vector<std::size_t>& offsets,
+                 const Triangulation& triangulation);
 
   /// The length of the array of values.
   std::size_t numbers(std::size_t columns) const {
     call::expect(columns > 0, "values have no columns: a point needs at least one number");
-    check_numbers(points, columns);
-    return points * columns;
+    check_numbers(point_count, columns);
+    return point_count * columns;
   }
 
   static flaunay::interpolate::NaturalWeights natural_weights(Interpolation method) {
@@ -145,17 +180,35 @@ struct Locator::Implementation {
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
-  call::Engine& engine;  ///< one of the owner's
+  call::Engine& engine;  ///< one of the owner's, with doubles
+  call::Engine*
+      device;  ///< has the caller's device memory: the engine, or if that is native, another or none
   Arena own;
   locate::Locator locator;
-  std::size_t points = 0;
+  std::size_t point_count = 0;
 };
 
 std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator, bool on_device) {
   const auto& owner = triangulator.implementation_;
   return with_errors([&] {
-    return std::make_unique<Implementation>(owner, on_device ? owner->on_device() : owner->for_host_memory());
+    call::Engine& asked = on_device ? owner->on_device() : owner->for_host_memory();
+    call::Engine& engine = owner->with_doubles(asked);
+    call::Engine* const device = !engine.runtime.is_native()  ? &engine
+                                 : !asked.runtime.is_native() ? &asked
+                                                              : nullptr;
+    return std::make_unique<Implementation>(owner, engine, device);
   });
+}
+
+void Locator::Implementation::make_from(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                        const Triangulation& triangulation) {
+  engine.check_size(offsets.empty() ? 0 : offsets.back());
+  const call::OwnCall own_call(engine);
+  const host::Runtime::Settled settled(own_call.runtime);
+  const points::DeviceMesh mesh = call::mesh_of(own_call.runtime, coordinates, offsets, triangulation);
+  locator = locate::make_locator(own_call.runtime, own, mesh);
+  point_count = offsets.back();
+  own_call.runtime.finish();
 }
 
 Locator::Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
@@ -165,32 +218,25 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates, std::siz
 Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
     : implementation_(make(triangulator, false)) {
-  call::take_turn(*implementation_->owner, [&] {
-    implementation_->engine.check_size(offsets.empty() ? 0 : offsets.back());
-    const call::OwnCall own_call(implementation_->engine);
-    const host::Runtime::Settled settled(own_call.runtime);
-    const points::DeviceMesh mesh = call::mesh_of(own_call.runtime, coordinates, offsets, triangulation);
-    implementation_->locator = locate::make_locator(own_call.runtime, implementation_->own, mesh);
-    implementation_->points = offsets.back();
-    own_call.runtime.finish();
-  });
+  call::take_turn(*implementation_->owner,
+                  [&] { implementation_->make_from(coordinates, offsets, triangulation); });
 }
 
 Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
                  const DeviceTriangulation& triangulation, const Enqueue& enqueue)
     : implementation_(make(triangulator, true)) {
-  call::take_turn(*implementation_->owner, enqueue, [&] {
-    call::Engine& engine = implementation_->engine;
-    engine.use_own_memory();
-    host::Runtime& runtime = engine.runtime;
-    call::check_enqueue(runtime, enqueue);
+  Implementation& self = *implementation_;
+  self.on_device(enqueue, [&](host::Runtime& runtime) {
     call::check_points(runtime, points, "points");
-    call::QueuedCall queued(runtime, enqueue);
-    Arena::Scope scope(runtime.arena());
-    implementation_->locator =
-        locate::make_locator(runtime, implementation_->own, call::mesh_of(runtime, points, triangulation));
-    implementation_->points = points.count;
-    queued.end();
+    points::DeviceMesh mesh = call::mesh_without_points(runtime, points, triangulation);
+    if (self.is_on_host()) {
+      const call::MeshOnHost read = call::read_mesh(runtime, points, mesh);
+      self.make_from(read.coordinates.data(), mesh.point_offsets, read.triangulation);
+    } else {
+      mesh.coordinates = call::wide_points(runtime, runtime.arena(), points);
+      self.locator = locate::make_locator(runtime, self.own, mesh);
+      self.point_count = points.count;
+    }
   });
 }
 
@@ -274,10 +320,8 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
         const bool are_given = options.device_gradients != nullptr;
         const auto gradients = Implementation::gradients_by(
             options.estimation, are_given,
-            call::given_buffer<cl_double>(runtime, options.device_gradients, are_given ? 2 * numbers : 0,
-                                          "gradients"));
-        implementation_->interpolate(runtime, options,
-                                     call::given_buffer<cl_double>(runtime, values, numbers, "values"),
+            implementation_->given(options.device_gradients, are_given ? 2 * numbers : 0, "gradients"));
+        implementation_->interpolate(runtime, options, implementation_->given(values, numbers, "values"),
                                      gradients, all...);
       });
 }
@@ -287,28 +331,29 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
   return call::take_turn(*implementation_->owner, [&] {
     const std::size_t numbers = implementation_->numbers(columns);
     if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
-    const call::OwnCall own_call(implementation_->engine);
-    host::Runtime& runtime = own_call.runtime;
-    std::vector<double> result;
-    runtime.resize(result, 2 * numbers);
-    const host::Runtime::Settled settled(runtime);
-    const auto output = runtime.output(result);
-    implementation_->estimate_gradients(runtime, runtime.view(values, numbers), columns, options, output);
-    runtime.fetch_later(output, result);
-    runtime.finish();
-    return result;
+    return implementation_->compute<double>(2 * numbers, [&](host::Runtime& runtime,
+                                                             const Buffer<double>& results) {
+      implementation_->estimate_gradients(runtime, runtime.view(values, numbers), columns, options, results);
+    });
   });
 }
 
 void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t columns,
                         const GradientOptions& options, const Enqueue& enqueue) {
-  implementation_->on_device(enqueue, [&](host::Runtime& runtime) {
-    const std::size_t numbers = implementation_->numbers(columns);
+  Implementation& self = *implementation_;
+  self.on_device(enqueue, [&](host::Runtime& runtime) {
+    const std::size_t numbers = self.numbers(columns);
     const auto output = call::result_buffer<cl_double>(runtime, gradients, 2 * numbers, "gradients",
-                                                       implementation_->engine.buffer_allocations);
+                                                       self.device->buffer_allocations);
     call::check_distinct({values, gradients.memory()});
-    implementation_->estimate_gradients(
-        runtime, call::given_buffer<cl_double>(runtime, values, numbers, "values"), columns, options, output);
+    const auto estimate = [&](host::Runtime& used, const Buffer<cl_double>& results) {
+      self.estimate_gradients(used, self.given(values, numbers, "values"), columns, options, results);
+    };
+    if (self.is_on_host()) {
+      call::write_result(runtime, output, self.compute<cl_double>(2 * numbers, estimate));
+    } else {
+      estimate(runtime, output);
+    }
   });
 }
 

@@ -1,5 +1,7 @@
 #include "call/modes.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <utility>
 
@@ -62,7 +64,8 @@ research::Triangulation run_blocks(TriangulatorAccess::Implementation& self, con
 research::Triangulation run_levels(TriangulatorAccess::Implementation& self, const Request& request,
                                    const flattened::Solvers& solvers) {
   const std::size_t n = request.offsets.back();
-  Engine& engine = self.on_device();
+  Engine& engine =
+      self.on_any_device_with_doubles(fmt::format("mode {}", research::to_string(request.options.mode)));
   engine.check_size(n);
   research::Triangulation result;
   static_cast<Triangulation&>(result) = empty_result(engine, request.offsets.size() - 1);

@@ -5,6 +5,7 @@
 #include "call/engine.hpp"
 #include "call/errors.hpp"
 #include "call/handles.hpp"
+#include "call/on_host.hpp"
 #include "geometry/magnitudes.hpp"
 #include "voronoi/clip.hpp"
 
@@ -76,6 +77,20 @@ void relax_points(call::Engine& engine, const Buffer<cl_double>& points, std::si
   }
 }
 
+std::vector<double> relax_on(call::Engine& engine, const double* coordinates, std::size_t n,
+                             const voronoi::ClipPolygon& polygon, std::size_t iterations) {
+  engine.check_size(n);
+  engine.begin_call(false);
+  std::vector<double> relaxed(2 * n);
+  const host::Runtime::Settled settled(engine.runtime);
+  Arena::Scope scope(engine.odd);
+  const auto points = engine.odd.allocate<cl_double>(2 * n);
+  engine.runtime.write(points, 0, 2 * n, coordinates);
+  relax_points(engine, points, n, polygon, iterations);
+  engine.runtime.read(points, 0, 2 * n, relaxed.data());
+  return relaxed;
+}
+
 }  // namespace
 
 std::vector<double> Triangulator::relax(const double* coordinates, std::size_t n, const double* corners,
@@ -83,17 +98,8 @@ std::vector<double> Triangulator::relax(const double* coordinates, std::size_t n
   return call::take_turn(*implementation_, [&] {
     geometry::check_coordinates(coordinates, n);
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    call::Engine& engine = implementation_->for_host_memory();
-    engine.check_size(n);
-    engine.begin_call(false);
-    std::vector<double> relaxed(2 * n);
-    const host::Runtime::Settled settled(engine.runtime);
-    Arena::Scope scope(engine.odd);
-    const auto points = engine.odd.allocate<cl_double>(2 * n);
-    engine.runtime.write(points, 0, 2 * n, coordinates);
-    relax_points(engine, points, n, polygon, iterations);
-    engine.runtime.read(points, 0, 2 * n, relaxed.data());
-    return relaxed;
+    return relax_on(implementation_->with_doubles(implementation_->for_host_memory()), coordinates, n,
+                    polygon, iterations);
   });
 }
 
@@ -101,24 +107,31 @@ void Triangulator::relax(const DevicePoints& points, const double* corners, std:
                          std::size_t iterations, DeviceBuffer& result, const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    call::Engine& engine = implementation_->on_device();
+    const call::WithDoubles call = call::with_doubles(*implementation_, enqueue);
+    call::Engine& engine = call.device;
     engine.use_own_memory();
     host::Runtime& runtime = engine.runtime;
-    call::check_enqueue(runtime, enqueue);
+    call::check_enqueue(runtime, call.enqueue);
     call::check_points(runtime, points, "points");
     engine.check_size(points.count);
-    call::QueuedCall queued(runtime, enqueue);
+    call::QueuedCall queued(runtime, call.enqueue);
     if (call::checked_offsets(runtime, points).size() > 2) {
       throw Error(ErrorKind::usage, "points of several sets cannot be relaxed in one call");
     }
     const auto relaxed = call::result_buffer<cl_double>(runtime, result, 2 * points.count, "relaxed points",
                                                         engine.buffer_allocations);
     call::check_distinct({points.memory, relaxed.memory()});
-    {
-      Arena::Scope scope(runtime.arena());
-      runtime.copy(call::wide_points(runtime, runtime.arena(), points), 0, relaxed, 0, 2 * points.count);
+    if (call.host != nullptr) {
+      const std::vector<double> read = call::read_wide_points(runtime, points);
+      call::write_result(runtime, relaxed,
+                         relax_on(*call.host, read.data(), points.count, polygon, iterations));
+    } else {
+      {
+        Arena::Scope scope(runtime.arena());
+        runtime.copy(call::wide_points(runtime, runtime.arena(), points), 0, relaxed, 0, 2 * points.count);
+      }
+      relax_points(engine, relaxed, points.count, polygon, iterations);
     }
-    relax_points(engine, relaxed, points.count, polygon, iterations);
     queued.end();
   });
 }

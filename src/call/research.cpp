@@ -90,7 +90,7 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     check_options(uncounted);
     call::Implementation& owner = TriangulatorAccess::implementation(triangulator);
     const call::Turn turn(owner);
-    call::Engine& self = owner.on_device();
+    call::Engine& self = owner.on_any_device_with_doubles("a partition");
     self.check_size(n);
     geometry::check_coordinates(coordinates, n);
     Partition result;

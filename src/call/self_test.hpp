@@ -12,4 +12,8 @@ namespace flaunay::call {
 /// (Tuning::split_products).
 std::string self_test_failure(host::Runtime& runtime);
 
+/// Runs the self test. If the doubles of a device fail it, its kernels compute in fixed point from then on
+/// (Tuning::fixed_point), for which it is run again. Returns "" or what failed.
+std::string make_exact(host::Runtime& runtime);
+
 }  // namespace flaunay::call

@@ -116,7 +116,7 @@ Triangulation Triangulator::triangulate(const float* coordinates, const std::vec
 void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
                                const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue,
-                  [&] { call::triangulate(implementation_->on_device(), points, result, parts, enqueue); });
+                  [&] { call::triangulate(*implementation_, points, result, parts, enqueue); });
 }
 
 std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {

@@ -256,7 +256,7 @@ class Round {
       give_back(worker.number, k, std::current_exception());
       return false;
     }
-    const std::size_t duplicates = mesh.statistics.duplicates, undecided = mesh.statistics.undecided;
+    const Statistics statistics = mesh.statistics;
     auto finished = std::make_shared<FinishedChunk>(
         worker.threads, std::move(points), std::move(mesh),
         Place{is_last() ? whole_plane() : chunks_[k].rectangle, call_.all}, call_.scaling);
@@ -268,8 +268,7 @@ class Round {
         return false;
       }
     }
-    const std::optional<std::uint64_t> first_row =
-        publish(k, worker.number, *finished, duplicates, undecided);
+    const std::optional<std::uint64_t> first_row = publish(k, worker.number, *finished, statistics);
     if (!first_row) return true;  // another one failed
     if (worker.writing.valid()) worker.writing.get();
     worker.writing =
@@ -295,14 +294,16 @@ class Round {
 
   // Ends the turn of chunk k. Returns the number of its first row, unless the round has failed.
   std::optional<std::uint64_t> publish(std::size_t k, std::size_t solver, const FinishedChunk& chunk,
-                                       std::size_t duplicates, std::size_t undecided) {
+                                       const Statistics& made) {
     const std::lock_guard lock(mutex_);
     if (error_) return std::nullopt;
     const std::uint64_t first_row = call_.rows;
     call_.rows += chunk.triangles();
-    if (is_first_) call_.vertices += chunk.points().size() - duplicates;
-    statistics_.duplicates += duplicates;
-    statistics_.undecided += undecided;
+    if (is_first_) call_.vertices += chunk.points().size() - made.duplicates;
+    statistics_.duplicates += made.duplicates;
+    statistics_.undecided += made.undecided;
+    if (!made.note.empty()) statistics_.host_points += chunk.points().size();
+    if (statistics_.note.empty()) statistics_.note = made.note;
     statistics_.device_points[solver] += chunk.points().size();
     result_.points += chunk.points().size();
     result_.triangles += chunk.triangles();

@@ -157,7 +157,7 @@ int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) 
   }
   outputs.files().commit();
   progress.finish();
-  if (!request.quiet) print(note + chunk_summary(statistics, facts));
+  if (!request.quiet) print(note + host_note(statistics.note) + chunk_summary(statistics, facts));
   return kSuccess;
 }
 

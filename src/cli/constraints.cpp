@@ -352,7 +352,8 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   if (!work.quiet) {
     std::string text = work.profile ? kernel_table(mesh.statistics) : "";
     for (const std::string& note : map.notes) text += "note: " + note + "\n";
-    print(text + empty_note(mesh, request) + summary(mesh.statistics, facts));
+    print(text + empty_note(mesh, request) + host_note(mesh.statistics.note) +
+          summary(mesh.statistics, facts));
   }
   return kSuccess;
 }

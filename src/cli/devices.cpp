@@ -20,8 +20,7 @@ std::string gibibytes(std::size_t bytes) {
 }
 
 std::string self_test(const DeviceInfo& device) {
-  if (device.self_test_passed) return "passed";
-  if (!device.fp64) return "unusable: no fp64";
+  if (device.self_test_passed) return device.fixed_point ? "passed, in fixed point" : "passed";
   return "failed: " + device.self_test_failure;
 }
 

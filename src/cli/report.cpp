@@ -83,6 +83,8 @@ std::uint64_t count_chunks(const ChunkStatistics& statistics) {
 
 using Json = nlohmann::ordered_json;
 
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
 Json constraints_json(const std::optional<ConstraintFacts>& constraints) {
   if (!constraints) return Json();
   return {{"segments", constraints->segments},
@@ -170,6 +172,8 @@ std::string chunk_statistics_json(const ChunkStatistics& statistics, const RunFa
     chunks["devices"].push_back(
         {{"device", statistics.devices[k]}, {"points", statistics.device_points.at(k)}});
   }
+  chunks["host_points"] = statistics.host_points;
+  json["note"] = text_or_null(statistics.note);
   return text_of(json);
 }
 
@@ -194,6 +198,8 @@ std::string degenerate_note(const Statistics& statistics) {
   return fmt::format(
       "note: all {} distinct points are on one line: no triangles; the hull is those, in order\n", distinct);
 }
+
+std::string host_note(const std::string& note) { return note.empty() ? "" : "note: " + note + "\n"; }
 
 std::string kernel_table(const Statistics& statistics) {
   std::vector<KernelStatistics> kernels = statistics.kernels;
@@ -235,8 +241,8 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   Json json;
   json["flaunay"] = version();
   // The keys are always the same; values that a mode does not have are null.
-  const auto text_or_null = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
   json["device"] = statistics.device;
+  json["note"] = text_or_null(statistics.note);
   json["mode"] = facts.mode;
   json["cut"] = text_or_null(facts.cut);
   json["hull_variant"] = text_or_null(facts.dividing_paths);

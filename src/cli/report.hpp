@@ -45,6 +45,9 @@ std::string partition_summary(const research::Partition& partition, const RunFac
 /// A line that says why there are no triangles; empty if there are some.
 std::string degenerate_note(const Statistics& statistics);
 
+/// A line that says what the device left to the host (Statistics::note); empty if it left nothing.
+std::string host_note(const std::string& note);
+
 /// The kernels' times as a table, the slowest kernel first.
 std::string kernel_table(const Statistics& statistics);
 

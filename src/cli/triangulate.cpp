@@ -189,7 +189,8 @@ int triangulate(const TriangulateRequest& request) {
 
   if (!request.quiet) {
     print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
-          degenerate_note(mesh.statistics) + summary(mesh.statistics, facts));
+          degenerate_note(mesh.statistics) + host_note(mesh.statistics.note) +
+          summary(mesh.statistics, facts));
   }
   return kSuccess;
 }

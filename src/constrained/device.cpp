@@ -56,12 +56,13 @@ struct Walks {
 class Insertion {
  public:
   Insertion(host::Runtime& runtime, const DeviceMesh& delaunay, const Buffer<cl_int>& segments,
-            std::size_t segment_count, const ConstrainedBuffers& result)
+            std::size_t segment_count, const ScaledPoints& points, const ConstrainedBuffers& result)
       : runtime_(runtime),
         arena_(runtime.arena()),
         delaunay_(delaunay),
         segments_(segments),
         segment_count_(segment_count),
+        points_(points),
         result_(result),
         n_(delaunay.points()),
         rows_(delaunay.triangle_count()) {
@@ -75,7 +76,6 @@ class Insertion {
   }
 
   void run(const ProvideEdges& provide) {
-    points_ = scale_points(runtime_, delaunay_);
     copy_rows();
     clear_status();
     const auto ends = arena_.allocate<cl_int>(2 * segment_count_);
@@ -572,10 +572,10 @@ class Insertion {
   const DeviceMesh& delaunay_;
   const Buffer<cl_int>& segments_;
   std::size_t segment_count_;
+  const ScaledPoints& points_;
   const ConstrainedBuffers& result_;
   std::size_t n_, rows_;
 
-  ScaledPoints points_;
   Buffer<cl_uint> status_{};
   cl_uint last_status_[kernel::INSERTION_NUMBERS] = {};
   Buffer<cl_uint> marks_{};       // a bit per vertex: whether it is an end of a constraint
@@ -591,7 +591,8 @@ class Insertion {
 void constrain(host::Runtime& runtime, const DeviceMesh& delaunay, const Buffer<cl_int>& segments,
                std::size_t segment_count, const ConstrainedBuffers& result, const ProvideEdges& provide) {
   Arena::Scope scope(runtime.arena());
-  Insertion(runtime, delaunay, segments, segment_count, result).run(provide);
+  const ScaledPoints points = scale_points(runtime, delaunay);
+  Insertion(runtime, delaunay, segments, segment_count, points, result).run(provide);
 }
 
 namespace {
@@ -616,18 +617,20 @@ Result constrain(host::Runtime& runtime, const double* coordinates, const std::v
   if (segments.size() % 2 != 0) check_segments(offsets, segments);
   Arena::Scope scope(runtime.arena());
   Result result;
+  const host::Runtime::Settled settled(runtime);
+  DeviceMesh mesh;
+  mesh.point_offsets = offsets;
+  mesh.coordinates = runtime.view_later(coordinates, 2 * mesh.points());
+  // Before anything is changed, since fixed point may not suffice.
+  const ScaledPoints points = scale_points(runtime, mesh);
   result.triangles = std::move(delaunay.triangles);
   result.neighbors = std::move(delaunay.neighbors);
   runtime.resize(result.constrained, result.triangles.size());
   runtime.resize(result.segment_edges, segments.size());
   if (with_halfedges) runtime.resize(result.halfedges, result.triangles.size());
-  const host::Runtime::Settled settled(runtime);
 
-  DeviceMesh mesh;
-  mesh.point_offsets = offsets;
   mesh.triangle_offsets = delaunay.triangle_offsets;
   mesh.hull_offsets = delaunay.hull_offsets;
-  mesh.coordinates = runtime.view_later(coordinates, 2 * mesh.points());
   mesh.hull = runtime.view_later(delaunay.hull.data(), delaunay.hull.size());
   mesh.representatives = runtime.view_later(delaunay.representatives.data(), delaunay.representatives.size());
   mesh.triangles = in_place(runtime, result.triangles);
@@ -639,11 +642,11 @@ Result constrain(host::Runtime& runtime, const double* coordinates, const std::v
       .constrained = runtime.output(result.constrained),
       .segment_edges = runtime.output(result.segment_edges)};
   Buffer<cl_int> edges;
-  constrain(runtime, mesh, runtime.view_later(segments.data(), segments.size()), segments.size() / 2, buffers,
-            [&](std::size_t count) {
-              runtime.resize(result.constraint_edges, 2 * count);
-              return edges = runtime.output(result.constraint_edges);
-            });
+  const auto ends = runtime.view_later(segments.data(), segments.size());
+  Insertion(runtime, mesh, ends, segments.size() / 2, points, buffers).run([&](std::size_t count) {
+    runtime.resize(result.constraint_edges, 2 * count);
+    return edges = runtime.output(result.constraint_edges);
+  });
   runtime.fetch_later(buffers.triangles, result.triangles);
   runtime.fetch_later(buffers.neighbors, result.neighbors);
   if (with_halfedges) runtime.fetch_later(buffers.halfedges, result.halfedges);

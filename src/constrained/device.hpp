@@ -26,9 +26,10 @@ struct ConstrainedBuffers {
 using ProvideEdges = std::function<Buffer<cl_int>(std::size_t edges)>;
 
 /// Makes segments edges of a triangulation in device memory. segments: two indices of points each. Throws
-/// what the twin throws; results are unspecified then. Waits about once per round, of which there are
-/// O(log segments) as a rule. Segments that overlap so much that they have very many edges in common, more
-/// than 16 per point and segment, are left to the twin.
+/// what the twin throws, and geometry::TooWideForFixedPoint before anything is changed; results are
+/// unspecified otherwise. Waits about once per round, of which there are O(log segments) as a rule. Segments
+/// that overlap so much that they have very many edges in common, more than 16 per point and segment, are
+/// left to the twin.
 void constrain(host::Runtime& runtime, const points::DeviceMesh& delaunay, const Buffer<cl_int>& segments,
                std::size_t segment_count, const ConstrainedBuffers& result, const ProvideEdges& provide);
 

@@ -10,6 +10,7 @@
 #include "constrained/borders.hpp"
 #include "host/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
+#include "launchers/constrained/holes.cl.hpp"
 #include "locate/query_range.hpp"
 #include "points/device_mesh.hpp"
 #include "shared/domains.h"
@@ -69,7 +70,7 @@ Weights weigh_edges(host::Runtime& runtime, const DomainMesh& mesh, const DepthR
   // One place more at the end, where segments along the last edge end.
   weights.sums = filled(runtime, mesh.edges + 2, cl_uint{0});
   runtime.map(mesh.segments, kernels::cover_edges{.rule = rules.fill,
-                                                  .input = mesh.coordinates,
+                                                  .input = mesh.coordinates.as<cl_ulong>(),
                                                   .segments = mesh.segment_ends,
                                                   .representatives = mesh.representatives,
                                                   .piece_offsets = mesh.piece_offsets,
@@ -123,7 +124,7 @@ Borders find_borders(host::Runtime& runtime, const DomainMesh& mesh, const Depth
                                                 .constrained = mesh.constrained,
                                                 .regions = regions.of_triangles,
                                                 .places = places,
-                                                .input = mesh.coordinates,
+                                                .input = mesh.coordinates.as<cl_ulong>(),
                                                 .needed = weights.needed,
                                                 .sums = weights.sums,
                                                 .edges = mesh.constraint_edges,
@@ -295,10 +296,11 @@ void check_seeds(const Seeds& seeds, const Constraints& constraints, const std::
                                             is_on_constraint ? "on a constraint" : "in no triangle"));
 }
 
-void drop_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
-                const Constraints& constraints, Regions& regions) {
+std::vector<std::int32_t> find_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
+                                     const Constraints& constraints) {
   const std::size_t count = seeds.places.size();
-  if (count == 0) return;
+  std::vector<std::int32_t> triangles(count);
+  if (count == 0) return triangles;
   Arena::Scope scope(runtime.arena());
   const auto found = filled(runtime, count, kNone);
   const auto barred = filled(runtime, count, cl_uchar{0});
@@ -319,14 +321,20 @@ void drop_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& see
                                   .seeds = runtime.upload(runtime.arena(), std::move(places)),
                                   .found = found,
                                   .barred = barred});
-  std::vector<std::int32_t> triangles(count);
   std::vector<std::uint8_t> on_constraint(count);
   runtime.read_later(found, 0, count, triangles.data());
   runtime.read_later(barred, 0, count, on_constraint.data());
   runtime.finish();
   check_seeds(seeds, constraints, triangles, on_constraint);
-  runtime.map(count,
-              kernels::drop_holes{.found = found, .regions = regions.of_triangles, .left = regions.left});
+  return triangles;
+}
+
+void drop_holes(host::Runtime& runtime, const std::vector<std::int32_t>& triangles, Regions& regions) {
+  if (triangles.empty()) return;
+  Arena::Scope scope(runtime.arena());
+  runtime.map(triangles.size(), kernels::drop_holes{.found = runtime.upload(runtime.arena(), triangles),
+                                                    .regions = regions.of_triangles,
+                                                    .left = regions.left});
 }
 
 LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regions& regions) {

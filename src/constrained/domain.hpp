@@ -72,10 +72,13 @@ Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Mag
 void check_seeds(const Seeds& seeds, const Constraints& constraints, const std::vector<std::int32_t>& found,
                  const std::vector<std::uint8_t>& barred);
 
-/// Leaves out the regions of seeds. Throws what check_seeds throws. Waits once. O(n log m) for m seeds, if
-/// not many have an x coordinate in the range of one triangle.
-void drop_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
-                const Constraints& constraints, Regions& regions);
+/// The triangles of seeds. Reads the coordinates, the triangles and the constrained edges of the mesh, with
+/// doubles, which the runtime must have. Throws what check_seeds throws. Waits once. O(n log m) for m seeds,
+/// if not many have an x coordinate in the range of one triangle.
+std::vector<std::int32_t> find_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
+                                     const Constraints& constraints);
+/// Leaves out the regions of triangles. Does not wait.
+void drop_holes(host::Runtime& runtime, const std::vector<std::int32_t>& triangles, Regions& regions);
 
 /// Where the triangles and regions that are left go.
 struct LeftPlaces {

@@ -133,10 +133,16 @@ Scaling scaling_for(const Magnitudes& magnitudes) {
 }
 
 TooWideForFixedPoint::TooWideForFixedPoint(const Magnitudes& magnitudes)
+    : TooWideForFixedPoint(
+          fmt::format("coordinates whose bits span {} binary places up to 2^{} (fixed point has {})",
+                      bits_of(magnitudes), magnitudes.largest + 1, kFixedPointBits)) {}
+
+TooWideForFixedPoint::TooWideForFixedPoint(const std::string& reason)
     : Error(ErrorKind::device,
-            fmt::format("the coordinates' bits span {} binary places up to 2^{}, and a device without double "
-                        "precision takes {}; use another device (FLAUNAY_DEVICE), or the host",
-                        bits_of(magnitudes), magnitudes.largest + 1, kFixedPointBits)) {}
+            fmt::format("a device without double precision (fp64) cannot take {}; use another device "
+                        "(FLAUNAY_DEVICE), or the host",
+                        reason)),
+      reason_(std::make_shared<const std::string>(reason)) {}
 
 bool fits_fixed_point(const Magnitudes& magnitudes) {
   return bits_of(magnitudes) <= kFixedPointBits && magnitudes.largest <= kLargestOfFiniteDifferences;
@@ -147,8 +153,9 @@ int fixed_point_shift(const Magnitudes& magnitudes) {
   return bits_of(magnitudes) == 0 ? 0 : kFixedPointBits - 1 - magnitudes.largest;
 }
 
-Bounds fixed_point_bounds() {
-  return {0, ORIENT_BOUND_FOR(SINGLE_ROUNDOFF), CIRCLE_BOUND_FOR(SINGLE_ROUNDOFF)};
+Bounds fixed_point_bounds(int bits) {
+  return {0, ORIENT_BOUND_FOR(SINGLE_ROUNDOFF), CIRCLE_BOUND_FOR(SINGLE_ROUNDOFF),
+          bits <= kernel::COARSE_FIXED_BITS};
 }
 
 SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -80,6 +82,14 @@ Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t la
 class TooWideForFixedPoint : public Error {
  public:
   explicit TooWideForFixedPoint(const Magnitudes& magnitudes);
+  /// What does not fit: "coordinates that ...".
+  const std::string& reason() const { return *reason_; }
+
+ private:
+  explicit TooWideForFixedPoint(const std::string& reason);
+
+  // Shared, because copying an exception must not throw.
+  std::shared_ptr<const std::string> reason_;
 };
 
 /// Whether finite coordinates fit into fixed point, and are cut as doubles are: their differences are finite.
@@ -87,8 +97,8 @@ bool fits_fixed_point(const Magnitudes& magnitudes);
 /// The power of two by which coordinates in fixed point are multiplied, so that they have as many bits as can
 /// be. Throws TooWideForFixedPoint if they do not fit. O(1).
 int fixed_point_shift(const Magnitudes& magnitudes);
-/// The bounds of filters in fixed point.
-Bounds fixed_point_bounds();
+/// The bounds of filters in fixed point, for points of so many bits (bits_of).
+Bounds fixed_point_bounds(int bits);
 
 /// The scaling of several sets of points: the same for all, or if their magnitudes differ too much, one for
 /// each.

@@ -210,7 +210,7 @@ class Run {
   ChunkPoints triangulate(ChunkPoints own) {
     const bool is_first = result_.statistics.rounds.empty(), is_last = workers_.count == 1;
     ChunkPoints open;
-    enum { kPoints, kWorkers, kTriangles, kOpen, kDuplicates, kHull, kUndecided, kSums };
+    enum { kPoints, kWorkers, kTriangles, kOpen, kDuplicates, kHull, kUndecided, kOnHost, kSums };
     std::vector<std::int64_t> sums(kSums, 0);
     const auto points = static_cast<std::int64_t>(own.size());
     ranks_.together([&] {
@@ -220,6 +220,7 @@ class Run {
       sums[kWorkers] = 1;
       sums[kDuplicates] = static_cast<std::int64_t>(mesh.statistics.duplicates);
       sums[kUndecided] = static_cast<std::int64_t>(mesh.statistics.undecided);
+      if (!mesh.statistics.note.empty()) sums[kOnHost] = points;
       const FinishedChunk finished(threads_, std::move(own), std::move(mesh), {rectangle(), frame_.all},
                                    frame_.scaling);
       sums[kTriangles] = static_cast<std::int64_t>(finished.triangles());
@@ -242,6 +243,7 @@ class Run {
     statistics.undecided += at(kUndecided);
     statistics.triangles += at(kTriangles);
     statistics.hull_vertices += at(kHull);
+    statistics.host_points += at(kOnHost);
     return open;
   }
 

@@ -90,6 +90,7 @@ std::string statistics_json(const Request& request, const Statistics& statistics
   json["points_per_second"] = static_cast<double>(statistics.points) / statistics.seconds;
   json["undecided_predicates"] = statistics.undecided;
   json["device"] = statistics.device;
+  json["host_points"] = statistics.host_points;
   json["phases"] = nlohmann::ordered_json::array();
   for (const PhaseStatistics& phase : statistics.phases)
     json["phases"].push_back({{"name", phase.name}, {"seconds", phase.seconds}});
@@ -111,14 +112,24 @@ std::string statistics_json(const Request& request, const Statistics& statistics
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string summary(const Statistics& statistics, int ranks) {
+std::string host_note(const Statistics& statistics) {
+  if (statistics.host_points == 0) return "";
   return fmt::format(
-      "{} points, {} duplicates, {} triangles, {} hull vertices; on {} ranks in {} rounds in {:.3f} s, "
-      "{:.0f} points "
-      "per second\n",
-      statistics.points, statistics.duplicates, statistics.triangles, statistics.hull_vertices, ranks,
-      statistics.rounds.size(), statistics.seconds,
-      static_cast<double>(statistics.points) / std::max(statistics.seconds, 1e-9));
+      "note: {} points were triangulated on the hosts, whose devices have no double precision (fp64) for "
+      "coordinates that span so many binary places\n",
+      statistics.host_points);
+}
+
+std::string summary(const Statistics& statistics, int ranks) {
+  return host_note(statistics) +
+         fmt::format(
+             "{} points, {} duplicates, {} triangles, {} hull vertices; on {} ranks in {} rounds in {:.3f} "
+             "s, "
+             "{:.0f} points "
+             "per second\n",
+             statistics.points, statistics.duplicates, statistics.triangles, statistics.hull_vertices, ranks,
+             statistics.rounds.size(), statistics.seconds,
+             static_cast<double>(statistics.points) / std::max(statistics.seconds, 1e-9));
 }
 
 // What is written of an array, and from which row on.

@@ -9,16 +9,23 @@
 
 namespace flaunay::points {
 
-/// Returns the first `count` values. They are copied on the device first, because the caller's buffer may not
-/// permit the host to read it. Waits.
+/// Returns `count` values from `first` on. They are copied on the device first, because the caller's buffer
+/// may not permit the host to read it. Waits.
 template <typename T>
-std::vector<T> download(host::Runtime& runtime, const host::Buffer<T>& from, std::size_t count) {
+std::vector<T> download(host::Runtime& runtime, const host::Buffer<T>& from, std::size_t first,
+                        std::size_t count) {
   std::vector<T> values(count);
   const host::Buffer<T> copy(
       host::allocate_memory(runtime.memory(), std::max<std::size_t>(1, count) * sizeof(T)), count);
-  runtime.copy(from, 0, copy, 0, count);
+  runtime.copy(from, first, copy, 0, count);
   runtime.read(copy, 0, count, values.data());
   return values;
+}
+
+/// Returns the first `count` values.
+template <typename T>
+std::vector<T> download(host::Runtime& runtime, const host::Buffer<T>& from, std::size_t count) {
+  return download(runtime, from, 0, count);
 }
 
 }  // namespace flaunay::points

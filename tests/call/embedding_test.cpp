@@ -58,6 +58,13 @@ class Worlds : public ::testing::Environment {
 [[maybe_unused]] ::testing::Environment* const kWorlds = ::testing::AddGlobalTestEnvironment(new Worlds);
 
 Embedder& embedder() { return Worlds::get().embedder; }
+
+// Modes that go level by level need double precision.
+bool runs(research::Mode mode) {
+  const bool goes_by_levels = mode == research::Mode::flattened || mode == research::Mode::recursive_device ||
+                              mode == research::Mode::partition;
+  return !goes_by_levels || triangulator().device().fp64;
+}
 Triangulator& embedded() { return Worlds::get().in_context; }
 
 DevicePoints points_in(const Memory& memory, std::size_t count) {
@@ -198,6 +205,7 @@ TEST(SmallEmbedding, PointsMayBeFloatsAndBeginAnywhere) {
 TEST(SmallEmbedding, FloatsOfTheHostAreTheSameNumbers) {
   for (const research::Mode mode :
        {research::Mode::blocks, research::Mode::flattened, research::Mode::dwyer}) {
+    if (!runs(mode)) continue;
     const std::vector<float> narrow = narrowed(make_fixture("uniform", 60, 9));
     const Coordinates wide(narrow.begin(), narrow.end());
     research::Options options;
@@ -216,6 +224,7 @@ TEST(SmallEmbedding, HalfedgesOfEveryMode) {
   for (const research::Mode mode :
        {research::Mode::blocks, research::Mode::flattened, research::Mode::recursive, research::Mode::dwyer,
         research::Mode::partition}) {
+    if (!runs(mode)) continue;
     SCOPED_TRACE(to_string(mode));
     research::Options options;
     options.mode = mode;
@@ -684,6 +693,7 @@ TEST(SmallEmbedding, ACallDuringAnotherIsAUsageError) {
   EXPECT_TRUE(same(again.triangles, mesh.triangles));
   for (const auto& [name, call] : calls) {
     SCOPED_TRACE(name);
+    if ((name == "research" || name == "partition") && !runs(research::Mode::partition)) continue;
     EXPECT_NO_THROW(call());
     if (name.find("on device") != std::string::npos) clReleaseEvent(done);
   }
@@ -1281,24 +1291,25 @@ TEST(SmallEmbeddingMisuse, PointsThatAreNotFiniteAreNamed) {
   embedded().triangulate(points, result, kAll, on_own());
 }
 
-TEST(SmallEmbeddingMisuse, DevicesWithoutFp64AreRefused) {
+TEST(SmallEmbedding, DevicesWithoutFp64AreUsed) {
   const std::string name = triangulator().device().name;
   embedder();  // which is to be made before
+  const Coordinates points = make_fixture("grid", 10000, 5);
+  const Triangulation expected = triangulator().triangulate(points.data(), 10000);
   opencl_calls().without_fp64 = true;
-  const auto refused = [](const std::vector<std::string>& parts, const std::function<void()>& work) {
-    expect_error(ErrorKind::device, parts, work);
-  };
-  refused({name, "fp64"}, [] { Triangulator t(embedder().context(), embedder().device()); });
-  refused({name, "fp64"}, [&] { Triangulator t(name); });
-  refused({"no OpenCL device has double precision"}, [] {
-    const ScopedEnvironment unset("FLAUNAY_DEVICE", nullptr);
-    Triangulator t;
-    t.context();
-  });
-  // Points in host memory need no device.
+  Triangulator in_context(embedder().context(), embedder().device()), named(name);
+  for (Triangulator* used : {&in_context, &named}) {
+    EXPECT_FALSE(used->device().fp64);
+    EXPECT_TRUE(used->device().fixed_point);
+    const Triangulation found = used->triangulate(points.data(), 10000);
+    EXPECT_EQ(found.statistics.device, name);
+    EXPECT_TRUE(same(found.triangles, expected.triangles));
+  }
+  // If there is no GPU and no device is named, points in host memory need none.
   const ScopedEnvironment unset("FLAUNAY_DEVICE", nullptr);
-  const Coordinates points = make_fixture("uniform", 10000, 5);
-  EXPECT_EQ(Triangulator().triangulate(points.data(), 10000).statistics.device, "host");
+  Triangulator own;
+  EXPECT_EQ(own.triangulate(points.data(), 10000).statistics.device, "host");
+  EXPECT_NE(own.context(), nullptr);
   opencl_calls().without_fp64 = false;
 }
 

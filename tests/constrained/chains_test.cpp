@@ -24,6 +24,7 @@
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/runtimes.hpp"
+#include "tests/support/scaled_points.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::constrained {
@@ -70,8 +71,9 @@ std::vector<std::int32_t> expected_triangles(const Case& input) {
 
 std::vector<std::int32_t> device_triangles(Runtime& runtime, const Case& input) {
   host::Arena::Scope scope(runtime.arena());
-  std::vector<cl_double2> points;
-  for (const Point p : input.points) points.push_back({{p.x, p.y}});
+  Coordinates coordinates;
+  for (const Point p : input.points) coordinates.insert(coordinates.end(), {p.x, p.y});
+  const testing::ScaledPoints points = testing::upload_points(runtime, coordinates);
   std::vector<cl_int> offsets{0}, all;
   for (const Chain& chain : input.chains) {
     all.insert(all.end(), chain.begin(), chain.end());
@@ -80,8 +82,8 @@ std::vector<std::int32_t> device_triangles(Runtime& runtime, const Case& input) 
   DeviceChains chains;
   chains.count = input.chains.size();
   chains.vertices = all.size();
-  chains.circle_bound = input.predicates.bounds.circle;
-  chains.points = upload(runtime, points);
+  chains.circle_bound = points.bounds.circle;
+  chains.points = points.coordinates.as<cl_double2>();
   chains.offsets = upload(runtime, offsets);
   chains.chain = upload(runtime, all);
   const std::size_t size = 3 * (chains.vertices - 2 * chains.count);
@@ -104,7 +106,9 @@ void expect_right(const Case& input, const std::vector<std::string>& tunings) {
 /// Under the tuning that the environment names alone, if it names one.
 std::vector<std::string> tunings() {
   if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
-  return {"own", "small", "gpu:1", "gpu:32", "gpu:64", "gpu:256"};
+  std::vector<std::string> all = {"own", "small", "gpu:1", "gpu:32", "gpu:64", "gpu:256"};
+  for (const std::string& tuning : testing::fixed_point_tunings()) all.push_back(tuning);
+  return all;
 }
 
 /// Both sides of the cavities of random segments, of which every `kept`-th becomes a constraint, so that

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "geometry/halfedges.hpp"
+#include "geometry/magnitudes.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
@@ -21,6 +22,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -31,7 +33,21 @@ using Runtimes = SharedRuntimes<make_tuned_runtime>;
 /// Under the tuning that the environment names alone, if it names one.
 std::vector<std::string> tunings() {
   if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
-  return {"own", "small", "gpu"};
+  std::vector<std::string> all = {"own", "small", "gpu"};
+  for (const std::string& tuning : fixed_point_tunings()) all.push_back(tuning);
+  return all;
+}
+
+/// Whether the runtime computes in fixed point, and a set has more bits than that takes.
+bool is_too_wide(const host::Runtime& runtime, const Coordinates& points,
+                 const std::vector<std::size_t>& offsets) {
+  constexpr int kMostBits = 62;
+  if (tuning_of(runtime).fixed_point == 0) return false;
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    const auto magnitudes = geometry::inspect(points.data(), offsets[s], offsets[s + 1]);
+    if (geometry::bits_of(magnitudes) > kMostBits) return true;
+  }
+  return false;
 }
 
 struct Outcome {
@@ -64,10 +80,16 @@ bool expect_as_twin(const Coordinates& points, const std::vector<std::size_t>& o
   geometry::write_halfedges(options, halfedges);
   for (const std::string& tuning : tunings()) {
     SCOPED_TRACE("tuning " + tuning);
-    const Outcome found = outcome_of([&] {
-      Triangulation used = delaunay;
+    Triangulation used = delaunay;
+    const auto constrain = [&] {
       return constrained::constrain(Runtimes::get(tuning), points.data(), offsets, used, segments, true);
-    });
+    };
+    if (is_too_wide(Runtimes::get(tuning), points, offsets)) {
+      EXPECT_THROW(constrain(), geometry::TooWideForFixedPoint);
+      EXPECT_TRUE(same(used.triangles, delaunay.triangles) && same(used.neighbors, delaunay.neighbors));
+      continue;
+    }
+    const Outcome found = outcome_of(constrain);
     EXPECT_EQ(found.error, expected.error);
     EXPECT_TRUE(same(found.result.triangles, expected.result.triangles));
     EXPECT_TRUE(same(found.result.neighbors, expected.result.neighbors));
@@ -156,6 +178,31 @@ TEST(SmallInsertion, AllMagnitudes) {
     const Coordinates points = scaled(random_integer_points(30, 9, 1), factor);
     expect_as_twin(points, edges_of_stretched(points, 4, 2, 1));
     expect_as_twin(points, random_segments(random, 30, 3));
+  }
+}
+
+/// Random integers below 2^bits, of as many bits as a double has, and some small ones. The first has the most
+/// bits, and another one is odd.
+Coordinates wide_points(FixtureRandom& random, std::size_t n, int bits) {
+  Coordinates points = {std::ldexp(1.0, bits - 1), 0, 0, 1};
+  while (points.size() < 2 * n) {
+    const int up = random.integer(0, 1) ? 0 : bits - 53;
+    points.push_back(std::ldexp(static_cast<double>(random.integer(0, (std::int64_t{1} << 53) - 1)), up));
+  }
+  return points;
+}
+
+// As many bits as fixed point takes, and one more.
+TEST(SmallInsertion, SpansOfFixedPoint) {
+  FixtureRandom random(8);
+  for (const int bits : {54, 61, 62, 63}) {
+    for (const double factor : {0x1p-500, 1.0, 0x1p500}) {
+      SCOPED_TRACE(std::to_string(bits) + " bits, times " + std::to_string(factor));
+      const Coordinates points = scaled(wide_points(random, 40, bits), factor);
+      ASSERT_EQ(geometry::bits_of(geometry::inspect(points.data(), 0, 40)), bits);
+      expect_as_twin(points, edges_of_stretched(points, 0x1p-4, 2, 1));
+      expect_as_twin(points, random_segments(random, 40, 3));
+    }
   }
 }
 

@@ -35,6 +35,7 @@ std::vector<std::string> tunings() {
   if (std::getenv("FLAUNAY_TUNING") != nullptr) return names;
   names.emplace_back("small");
   for (const std::size_t group : groups_to_test()) names.push_back("gpu:" + std::to_string(group));
+  for (const std::string& tuning : fixed_point_tunings()) names.push_back(tuning);
   return names;
 }
 
@@ -63,6 +64,15 @@ ConstrainedTriangulation on_host(const Case& input, ConstrainedTriangulation mes
   return mesh;
 }
 
+// By kernels; holes are found natively where there are no doubles.
+void apply_with(const std::string& tuning, const Case& input, const DomainRequest& request,
+                ConstrainedTriangulation& mesh) {
+  static host::Runtime native(native_tuning());
+  host::Runtime& runtime = Runtimes::get(tuning);
+  call::apply_domains_on(runtime, tuning_of(runtime).fixed_point == 0 ? runtime : native, input.points.data(),
+                         input.offsets, input.constraints(), request, mesh);
+}
+
 void expect_same(const ConstrainedTriangulation& found, const ConstrainedTriangulation& expected) {
   EXPECT_EQ(found.triangles, expected.triangles);
   EXPECT_EQ(found.neighbors, expected.neighbors);
@@ -78,8 +88,7 @@ void expect_kernels_as_plain(const Case& input, const DomainRequest& request) {
   for (const std::string& tuning : tunings()) {
     SCOPED_TRACE(tuning);
     ConstrainedTriangulation found = mesh;
-    call::apply_domains_on(Runtimes::get(tuning), input.points.data(), input.offsets, input.constraints(),
-                           request, found);
+    apply_with(tuning, input, request, found);
     expect_same(found, expected);
   }
 }
@@ -273,8 +282,7 @@ TEST(SmallDomains, CurvesThatAreNotClosed) {
       if (tuning.empty()) {
         on_host(input, mesh, request);
       } else {
-        call::apply_domains_on(Runtimes::get(tuning), input.points.data(), input.offsets, input.constraints(),
-                               request, mesh);
+        apply_with(tuning, input, request, mesh);
       }
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
@@ -335,8 +343,7 @@ TEST(SmallDomains, HolesAtPlaces) {
     if (tuning.empty()) {
       mesh = on_host(input, mesh, {});
     } else {
-      call::apply_domains_on(Runtimes::get(tuning), input.points.data(), input.offsets, input.constraints(),
-                             {}, mesh);
+      apply_with(tuning, input, {}, mesh);
     }
     double doubled = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
@@ -410,11 +417,10 @@ TEST(SmallDomains, HolesOfSets) {
 
 // Of all processors together.
 double seconds_of(const Case& input, const DomainRequest& request, ConstrainedTriangulation& mesh) {
-  host::Runtime& runtime = Runtimes::get("own");
   ConstrainedTriangulation warm = mesh;
-  call::apply_domains_on(runtime, input.points.data(), input.offsets, input.constraints(), request, warm);
+  apply_with("own", input, request, warm);
   const std::clock_t start = std::clock();
-  call::apply_domains_on(runtime, input.points.data(), input.offsets, input.constraints(), request, mesh);
+  apply_with("own", input, request, mesh);
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 

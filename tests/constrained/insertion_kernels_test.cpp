@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "constrained/device.hpp"
-#include "geometry/magnitudes.hpp"
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"
@@ -26,6 +25,7 @@
 #include "tests/support/integer_points.hpp"
 #include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
+#include "tests/support/scaled_points.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -42,7 +42,9 @@ using Ulongs = std::vector<cl_ulong>;
 
 std::vector<std::string> kinds() {
   if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
-  return {"own", "small", "gpu"};
+  std::vector<std::string> all = {"own", "small", "gpu"};
+  for (const std::string& tuning : fixed_point_tunings()) all.push_back(tuning);
+  return all;
 }
 
 constexpr cl_ulong kNoKey = ~cl_ulong{0};
@@ -167,7 +169,6 @@ TEST(SmallInsertionKernels, WalksOfSegments) {
       const Triangulation mesh = delaunay_of(points, offsets);
       const std::size_t rows = mesh.triangles.size() / 3;
       Plane plane(points);
-      const auto bounds = geometry::scaling_for(geometry::inspect(points.data(), 0, offsets[1])).bounds;
       std::map<std::int32_t, cl_uint> places;
       for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
         places.emplace(mesh.triangles[c], static_cast<cl_uint>(c));
@@ -181,6 +182,7 @@ TEST(SmallInsertionKernels, WalksOfSegments) {
           const auto edges = expected_edges(points, offsets, mesh, {v, w})[0];
           std::set<cl_int> crossed;
           for (const Edge& edge : edges) crossed.merge(crossed_rows(plane, mesh, edge));
+          const ScaledPoints scaled = upload_points(runtime, points);
           const auto claims = upload(runtime, Uints(rows, UNCLAIMED));
           const auto flags = upload(runtime, Uints(rows / 4 + 1, 0));
           const auto walks = guarded<kernel::constraint_walk>(runtime, 1);
@@ -190,8 +192,8 @@ TEST(SmallInsertionKernels, WalksOfSegments) {
           const auto status = upload(runtime, Uints(kernel::INSERTION_NUMBERS, 0));
           runtime.map_in_small_groups(
               1, kernels::walk_segments{.limit = 1000,
-                                        .bound = bounds.orient,
-                                        .points = upload(runtime, points),
+                                        .bound = scaled.bounds.orient,
+                                        .points = scaled.coordinates,
                                         .triangles = upload(runtime, mesh.triangles),
                                         .neighbors = upload(runtime, mesh.neighbors),
                                         .hull = upload(runtime, mesh.hull),

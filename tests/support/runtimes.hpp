@@ -30,6 +30,13 @@ inline bool tests_native() {
   return device != nullptr && device == std::string(host::kHostName);
 }
 
+/// Tunings of devices that compute in fixed point, with a CPU's sizes and with a GPU's. None natively, since
+/// the host has doubles.
+inline std::vector<std::string> fixed_point_tunings() {
+  if (tests_native()) return {};
+  return {"fixed_point=1", "gpu,fixed_point=1"};
+}
+
 /// "own": the tuning that the environment names, or else the device's.
 inline std::unique_ptr<host::Runtime> make_tuned_runtime(const std::string& tuning) {
   const char* const before = std::getenv("FLAUNAY_TUNING");

@@ -88,6 +88,8 @@ struct ChunkStatistics {
   std::vector<std::uint64_t> device_points;  ///< points of the chunks that each device triangulated
   std::vector<PhaseStatistics> phases;       ///< in the order in which they ran
   double seconds = 0;                        ///< wall time
+  std::uint64_t host_points = 0;  ///< points of the chunks that devices without fp64 left to the host
+  std::string note;               ///< Statistics::note of the first such chunk
 };
 
 /// Triangulates one set of points in chunks. What is final in a chunk is written; points around which

@@ -384,6 +384,8 @@ typedef struct flaunay_statistics {
   size_t phase_count;             ///< number of phases
   const flaunay_kernel* kernels;  ///< the slowest first; none without profile
   size_t kernel_count;            ///< number of kernels
+  /// What a device without double precision has left to the host, and why; "" if it has left nothing.
+  const char* note;
 } flaunay_statistics;
 
 /// A triangulation's sizes, arrays and statistics, as the accessors of flaunay_triangulation describe them.
@@ -505,6 +507,8 @@ typedef struct flaunay_chunk_statistics {
   size_t device_count;                  ///< number of devices
   const flaunay_phase* phases;          ///< in the order in which they ran
   size_t phase_count;                   ///< number of phases
+  uint64_t host_points;                 ///< points of the chunks that devices without fp64 left to the host
+  const char* note;                     ///< as in flaunay_statistics, of the first such chunk
 } flaunay_chunk_statistics;
 
 /// An OpenCL device.
@@ -521,12 +525,16 @@ typedef struct flaunay_device_info {
   size_t largest_buffer_bytes;    ///< CL_DEVICE_MAX_MEM_ALLOC_SIZE
   size_t local_memory_bytes;      ///< CL_DEVICE_LOCAL_MEM_SIZE
   size_t work_group_size;         ///< CL_DEVICE_MAX_WORK_GROUP_SIZE
-  int fp64;                       ///< 1 if it has double precision, without which it cannot be used
+  int fp64;                       ///< 1 if it has double precision
   int self_test_passed;           ///< 1 if the arithmetic self test was run and passed
   const char* self_test_failure;  ///< what failed, or ""
   /// What can be used of memory_bytes now. A device that shares the host's memory has at most what is free
   /// there, and what the limits of the process and of its control group leave.
   size_t available_bytes;
+  /// 1 if it computes in fixed point: it lacks fp64 or, as far as the self test was run, its doubles are not
+  /// exact or slower. What fixed point cannot do is done with its doubles or, if there are none, natively on
+  /// the host. Results are the same.
+  int fixed_point;
 } flaunay_device_info;
 
 // ---- Errors
@@ -552,8 +560,8 @@ FLAUNAY_API const char* flaunay_version(void);
 // ---- Devices
 
 /// Lists every device of every platform, in the order in which "#k" counts them. self_test other than 0:
-/// builds and runs the arithmetic self test on each device that has fp64, which takes some seconds per
-/// device. FLAUNAY_ERROR_DEVICE if there is no OpenCL platform.
+/// builds and runs the arithmetic self test on each device, which takes some seconds per device.
+/// FLAUNAY_ERROR_DEVICE if there is no OpenCL platform.
 FLAUNAY_API flaunay_status flaunay_device_list_create(int self_test, flaunay_device_list** list);
 /// Adds an OpenCL driver that comes with a program to those of the system: the shared library at `path`. If
 /// the system has a platform of the name `platform`, the driver is not used. To be called before devices are
@@ -569,13 +577,13 @@ FLAUNAY_API const flaunay_device_info* flaunay_device_list_at(const flaunay_devi
 // ---- Triangulators
 
 /// Makes a triangulator. device: NULL or "" (what FLAUNAY_DEVICE names if it is set; otherwise calls on
-/// points in host memory use the first GPU with fp64 or, if there is none, the host's cores without OpenCL),
-/// "host" (the host without OpenCL), "#k" (the k-th device of the list, from 0), or a part of a device's or
-/// platform's name in upper or lower case.
-/// A named device does all the work; otherwise small sets are triangulated on the calling thread, and OpenCL
-/// is loaded when it is first needed. Using a device for the first time compiles kernels, so keep the
-/// triangulator for the next call. FLAUNAY_ERROR_DEVICE if there is no such device, if it lacks fp64, or if
-/// its arithmetic fails the self test.
+/// points in host memory use the first GPU with fp64, or the first GPU, or if there is none, the host's cores
+/// without OpenCL), "host" (the host without OpenCL), "#k" (the k-th device of the list, from 0), or a part
+/// of a device's or platform's name in upper or lower case.
+/// A named device does all the work that it can do without fp64, if it has none; otherwise small sets are
+/// triangulated on the calling thread, and OpenCL is loaded when it is first needed. Using a device for the
+/// first time compiles kernels, so keep the triangulator for the next call. FLAUNAY_ERROR_DEVICE if there is
+/// no such device, or if its arithmetic fails the self test.
 FLAUNAY_API flaunay_status flaunay_triangulator_create(const char* device,
                                                        flaunay_triangulator** triangulator);
 /// Makes a triangulator in the caller's context, which is retained. FLAUNAY_ERROR_USAGE if the device does
@@ -588,8 +596,8 @@ FLAUNAY_API void flaunay_triangulator_destroy(flaunay_triangulator* triangulator
 /// "host".
 FLAUNAY_API const flaunay_device_info* flaunay_triangulator_device(const flaunay_triangulator* triangulator);
 /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator. This and other
-/// functions for device memory use the device that was named, or else the first GPU, or else the first device
-/// with fp64; NULL if there is none or if "host" was named.
+/// functions for device memory use the device that was named, or else the first GPU with fp64, the first GPU,
+/// the first device with fp64, or the first device; NULL if there is none or if "host" was named.
 FLAUNAY_API cl_context flaunay_triangulator_context(const flaunay_triangulator* triangulator);
 /// The OpenCL handle of the device; see flaunay_triangulator_context. Owned by the triangulator.
 FLAUNAY_API cl_device_id flaunay_triangulator_device_id(const flaunay_triangulator* triangulator);

@@ -100,6 +100,9 @@ struct Statistics {
   std::size_t merged_points = 0;
   std::vector<PhaseStatistics> phases;    ///< in the order in which they ran
   std::vector<KernelStatistics> kernels;  ///< the slowest first; empty without Options::profile
+  /// What a device without double precision has left to the host, and why, in a sentence for people; empty if
+  /// it has left nothing. The result is the same.
+  std::string note;
 };
 
 /// The triangulations of one or more point sets. Points and triangles are numbered over all sets.
@@ -142,15 +145,19 @@ struct DeviceInfo {
   std::size_t largest_buffer_bytes = 0;  ///< CL_DEVICE_MAX_MEM_ALLOC_SIZE
   std::size_t local_memory_bytes = 0;    ///< CL_DEVICE_LOCAL_MEM_SIZE
   std::size_t work_group_size = 0;       ///< CL_DEVICE_MAX_WORK_GROUP_SIZE
-  bool fp64 = false;                     ///< whether it has double precision, without which it cannot be used
+  bool fp64 = false;                     ///< whether it has double precision
+  /// Whether it computes in fixed point: it lacks fp64 or, as far as the self test was run, its doubles are
+  /// not exact or slower. What fixed point cannot do is done with its doubles or, if there are none, natively
+  /// on the host. Results are the same.
+  bool fixed_point = false;
   /// What the arithmetic self test found wrong; empty if it passed or was not run.
   std::string self_test_failure;
   bool self_test_passed = false;  ///< whether the arithmetic self test was run and passed
 };
 
 /// Lists every device of every platform, in the order in which "#k" counts them. With self_test, builds and
-/// runs the arithmetic self test on each device that has fp64, which takes some seconds per device. Throws
-/// Error(device) if there is no OpenCL platform.
+/// runs the arithmetic self test on each device, which takes some seconds per device. Throws Error(device) if
+/// there is no OpenCL platform.
 FLAUNAY_API std::vector<DeviceInfo> list_devices(bool self_test = false);
 
 // Types for points and results in device memory. Include flaunay/device_memory.hpp to use them.
@@ -210,19 +217,24 @@ struct ClippedVoronoi {
 /// another one, on another thread or from a progress callback, throws Error(usage). Triangulators on several
 /// threads may share a context and a device.
 ///
-/// If no device is named, calls on points in host memory use the first GPU with fp64 or, if there is none,
-/// the host's cores without OpenCL; small sets are triangulated on the calling thread in either case. OpenCL
-/// is loaded when it is first needed. Results do not depend on any of this.
+/// If no device is named, calls on points in host memory use the first GPU with fp64, or else the first GPU
+/// or, if there is none, the host's cores without OpenCL; small sets are triangulated on the calling thread
+/// in any case. OpenCL is loaded when it is first needed. Results do not depend on any of this.
+///
+/// A device without fp64 computes triangulations in fixed point. What that cannot represent, coordinates
+/// whose bits span more than 62 binary places, is triangulated on the host, and Statistics::note says so.
+/// Voronoi diagrams, relaxation, segments, polygons and locators are always computed on the host then, for
+/// arrays in device memory too, which are copied there and back; the call waits for that.
 class FLAUNAY_API Triangulator {
  public:
   /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
   /// (the k-th device of list_devices, from 0), a part of a device's or platform's name in upper or lower
-  /// case, or "host" for the host without OpenCL. A named device does all the work, that of small sets too.
-  /// Throws Error(device) if there is no such device, if it lacks fp64, or if its arithmetic fails the self
-  /// test.
+  /// case, or "host" for the host without OpenCL. A named device does all the work, that of small sets too,
+  /// except what a device without fp64 leaves to the host. Throws Error(device) if there is no such device,
+  /// or if its arithmetic fails the self test.
   explicit Triangulator(const std::string& device = "");
   /// Makes a triangulator in the caller's context, which is retained. Throws Error(usage) if the device does
-  /// not belong to the context, and Error(device) if it lacks fp64 or its arithmetic fails the self test.
+  /// not belong to the context, and Error(device) if its arithmetic fails the self test.
   Triangulator(cl_context context, cl_device_id device);
   /// Waits for the work that was enqueued. Locators and results of the triangulator stay valid.
   ~Triangulator();
@@ -236,8 +248,9 @@ class FLAUNAY_API Triangulator {
   /// if it cannot be used.
   DeviceInfo device() const;
   /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator. This and other
-  /// functions for device memory use the device that was named, or else the first GPU, or else the first
-  /// device with fp64. They throw Error(device) if there is none, and Error(usage) if "host" was named.
+  /// functions for device memory use the device that was named, or else the first GPU with fp64, the first
+  /// GPU, the first device with fp64, or the first device. They throw Error(device) if there is none, and
+  /// Error(usage) if "host" was named.
   cl_context context() const;
   /// The OpenCL handle of the device. Owned by the triangulator.
   cl_device_id device_id() const;

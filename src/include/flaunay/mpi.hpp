@@ -42,8 +42,10 @@ struct Statistics {
   std::uint64_t triangles = 0;      ///< number of rows of all ranks
   std::uint64_t hull_vertices = 0;  ///< number of hull vertices
   std::uint64_t undecided = 0;      ///< predicates that needed exact evaluation
-  std::vector<Round> rounds;        ///< in the order in which they ran
-  std::string device;               ///< this rank's device
+  /// Points that devices without fp64 left to their hosts; see flaunay::Statistics::note.
+  std::uint64_t host_points = 0;
+  std::vector<Round> rounds;  ///< in the order in which they ran
+  std::string device;         ///< this rank's device
   /// Points and results that this rank sent to others, in bytes.
   std::uint64_t bytes_sent = 0;
   std::vector<PhaseStatistics> phases;  ///< of this rank, with the time that it waited for others
