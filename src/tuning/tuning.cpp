@@ -353,6 +353,12 @@ constexpr Row kTable[] = {
      {0},
      "GPUs have a rate of 1/2, or of 1/16 and less; the model has both paths level at about 1/6. CPUs have "
      "1/2."},
+    {"loops_end_early",
+     &Tuning::loops_end_early,
+     {0},
+     {0},
+     {0},
+     "Set by the self-test, for Mesa's llvmpipe."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
@@ -388,6 +394,9 @@ struct NamedDevice {
 constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
+    {"llvmpipe", "gpu:8",
+     "Mesa's rusticl ends the process when it compiles __builtin_prefetch, and may refuse to unmap what it "
+     "mapped."},
 };
 
 constexpr std::size_t kPointsOfASmallBlock = 6;

@@ -55,7 +55,8 @@ struct Tuning : host::Sizes {
   std::size_t level_ratio = 2;
   /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels.
   std::size_t walk_most = 1;
-  /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call fails.
+  /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call
+  /// fails.
   std::size_t off_grid_most = 1;
 
   /// Chains of at most this many vertices are triangulated by gift-wrapping, and of those with more, a
@@ -97,6 +98,10 @@ struct Tuning : host::Sizes {
 
   /// Other than 0: in fixed point, differences are converted to floats by halves.
   std::size_t convert_halves = 0;
+
+  /// Other than 0: the device ends loops after some ten thousand turns of a work-item, so that calls are
+  /// limited to few points.
+  std::size_t loops_end_early = 0;
 
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.

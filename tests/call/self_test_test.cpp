@@ -57,7 +57,8 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
       bits(product),
       bits(rounded(third + large - mpq_class(sum))),      // two_sum
       bits(rounded(third * third - mpq_class(product))),  // two_product
-      bits(0.0)};                                         // (large + third) - large
+      bits(0.0),                                          // (large + third) - large
+      1};                                                 // what many turns of a loop begin with
   const auto failed_bits = [&](const std::vector<cl_double>& with, const std::vector<cl_ulong>& expected) {
     const auto failed = testing::upload(runtime, std::vector<cl_uint>{0xffffffff});
     runtime.launch(1, 1,
@@ -68,7 +69,7 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   };
   EXPECT_EQ(failed_bits(operands, right), 0u);
   // Which checks rest on which expected value.
-  const cl_uint checks[] = {1 | 512 | 1024, 2, 4, 8 | 32, 16 | 64 | 128, 32, 64, 256};
+  const cl_uint checks[] = {1 | 512 | 1024, 2, 4, 8 | 32, 16 | 64 | 128, 32, 64, 256, 2048};
   for (std::size_t k = 0; k < right.size(); ++k) {
     std::vector<cl_ulong> wrong = right;
     wrong[k] ^= 1;
@@ -141,7 +142,7 @@ TEST(SmallSelfTest, InFixedPointPassesHereAndFailsOnOtherBits) {
   const auto runtime = make_fixed_runtime();
   const host::Arena::Scope scope(runtime->arena());
   EXPECT_EQ(self_test_failure(*runtime), "");
-  const std::vector<cl_long> operands{0x3fffffffffffffff, -0x2aaaaaaaaaaaaaab, 0x123456789abcdef1, 0};
+  const std::vector<cl_long> operands{0x3fffffffffffffff, -0x2aaaaaaaaaaaaaab, 0x123456789abcdef1, 0, 1};
   const std::vector<cl_float> reals{0x1.555556p-2F, 0x1.00008p+20F, 0x1p-55F};
   const mpz_class a = static_cast<long>(operands[0]), b = static_cast<long>(operands[1]),
                   c = static_cast<long>(operands[2]);
@@ -194,6 +195,37 @@ TEST(SmallSelfTest, InFixedPointPassesHereAndFailsOnOtherBits) {
   std::vector<cl_float> flushed = reals;
   flushed[2] = 0;
   EXPECT_EQ(failed_bits(flushed, right, floats), 64U);
+}
+
+// Mesa's llvmpipe does so. On a tenth of what loops need there, results are right.
+TEST(SelfTest, ADeviceWhoseLoopsEndEarlyIsForFewPoints) {
+  if (testing::tests_native()) GTEST_SKIP() << "the host's loops do not";
+  const testing::ChangedKernels changed("shared/turns.h", [](std::string text) {
+    const std::string condition = "k < MANY_TURNS";
+    const std::size_t at = text.find(condition);
+    if (at == std::string::npos) throw std::logic_error("no loop");
+    return text.replace(at, condition.size(), "k < 65535");
+  });
+  for (const char* const tuning : {"fixed_point=0", "fixed_point=1"}) {
+    const auto runtime = testing::make_tuned_runtime(tuning);
+    EXPECT_EQ(self_test_failure(*runtime), "");
+    EXPECT_EQ(tuning_of(*runtime).loops_end_early, 1U);
+  }
+  Triangulator triangulator(testing::device_under_test());
+  EXPECT_EQ(triangulator.capacity(), 4096U);
+  const testing::Coordinates most = testing::make_fixture("uniform", 4096, 1);
+  EXPECT_EQ(triangulator.triangulate(most.data(), 4096).triangles,
+            testing::triangulator().triangulate(most.data(), 4096).triangles);
+  const testing::Coordinates more = testing::make_fixture("uniform", 4097, 1);
+  try {
+    triangulator.triangulate(more.data(), 4097);
+    ADD_FAILURE() << "too many points for such loops";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::device);
+    for (const char* const part : {"4097 points are too many", "4096 would fit", "its loops end early"}) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
 }
 
 /// A device that computes otherwise, by a text that stands for it in the kernels; and what the self test
