@@ -16,9 +16,6 @@ std::size_t sort_table_bytes(const Sizes& sizes) {
   return (sizes.sort_group << sizes.sort_bits) * sizeof(cl_uint);
 }
 
-// The local memory that kernels have which work on tiles: what OpenCL guarantees.
-constexpr std::size_t kTileBytes = std::size_t{32} << 10;
-
 }  // namespace
 
 std::size_t Sizes::chunk(std::size_t n) const {
@@ -27,7 +24,7 @@ std::size_t Sizes::chunk(std::size_t n) const {
 }
 
 std::string Sizes::build_options() const {
-  return fmt::format("-DSORT_BITS={} -DSORT_GROUP={}", sort_bits, sort_group);
+  return fmt::format("-DSORT_BITS={} -DSORT_GROUP={} -DLOCAL_BYTES={}", sort_bits, sort_group, local_bytes);
 }
 
 DeviceLimits limits_of(const boost::compute::device& device) {
@@ -46,7 +43,11 @@ void fit(Sizes& sizes, const DeviceLimits& limits) {
     *group = std::min(*group, most);
   }
   sizes.tile_group = std::min<std::size_t>(sizes.tile_group, kernel::LARGEST_TILE_GROUP);
-  if (limits.local_memory < kTileBytes) sizes.tile_group = 0;
+  sizes.local_bytes = kernel::DEFAULT_LOCAL_BYTES;
+  while (sizes.local_bytes > limits.local_memory && sizes.local_bytes > kernel::LEAST_LOCAL_BYTES) {
+    sizes.local_bytes /= 2;
+  }
+  if (limits.local_memory < sizes.local_bytes) sizes.tile_group = 0;
   for (std::size_t* size : {&sizes.scan_items, &sizes.scan_tiles_alone, &sizes.scan_groups}) {
     *size = std::max<std::size_t>(1, *size);
   }

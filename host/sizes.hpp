@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "shared/limits.h"
+
 namespace flaunay::host {
 
 /// Sizes for one device. A user of Runtime derives a struct with the sizes that its own kernels need, and
@@ -28,6 +30,9 @@ struct Sizes {
   /// Work-group size of kernels where each work-group takes a tile of elements; 0: a work-item per chunk does
   /// the work instead. At most kernel::LARGEST_TILE_GROUP.
   std::size_t tile_group = 0;
+  /// The local memory that kernels which take tiles are built for: a power of two, from
+  /// kernel::LEAST_LOCAL_BYTES to kernel::DEFAULT_LOCAL_BYTES.
+  std::size_t local_bytes = kernel::DEFAULT_LOCAL_BYTES;
   /// A scan by work-groups: elements per work-item of a tile, how many tiles a single group may scan alone,
   /// and the largest number of groups. All are at least 1.
   std::size_t scan_items = 1;
@@ -58,8 +63,8 @@ struct DeviceLimits {
 };
 DeviceLimits limits_of(const boost::compute::device& device);
 
-/// Reduces group sizes, and the sort's bits per pass, to what the limits allow. A single kernel may support
-/// only smaller groups; Runtime reduces those when it launches the kernel.
+/// Reduces group sizes, the sort's bits per pass, and what tiles take, to what the limits allow. A single
+/// kernel may support only smaller groups; Runtime reduces those when it launches the kernel.
 void fit(Sizes& sizes, const DeviceLimits& limits);
 
 }  // namespace flaunay::host

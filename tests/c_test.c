@@ -1,4 +1,4 @@
-// The C interface: what it returns, and what it says of bad use. c_test no-fp64: with support/no_fp64.c
+// The C interface: what it returns, and what it says of bad use. c_test no-fp64: with support/poor_device.c
 // preloaded.
 #include <CL/cl.h>
 #include <math.h>

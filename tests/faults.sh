@@ -56,9 +56,10 @@ limited() { # limited OPTION KILOBYTES COMMAND...
   )
 }
 
-# PoCL is what lacks memory, or a folder for its kernels; what flaunay itself keeps is out of the way.
+# PoCL is what lacks memory, or a folder for its kernels; what flaunay itself keeps is out of the way. Other drivers are,
+# too: if there are several, the loader opens their devices before it says that there are any.
 on_pocl() {
-  export FLAUNAY_DEVICE='#0' FLAUNAY_CACHE_DIR=''
+  export FLAUNAY_DEVICE='#0' FLAUNAY_CACHE_DIR='' OCL_ICD_VENDORS=/etc/OpenCL/vendors/pocl.icd
 }
 
 case "$1" in

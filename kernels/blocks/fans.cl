@@ -146,7 +146,7 @@ kernel void build_fans(int n, global const uint* restrict account, global const 
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES] > 0) fetch_edges(k, n, edges);
   if (k < n && account[RINGS_TIES] > 0 && found[k] != NOT_HERE) {
-    const filter_bounds no_bounds = {0, 0, 0};
+    const filter_bounds no_bounds = {0, 0, 0, 0};
     rings g = rings_on(edges, 0, 0, no_bounds);
     const int seen_from = 2 * k + (found[k] & 1);
     int e = found[k] < AT_APEX ? edges[seen_from].previous : edges[seen_from].next ^ 1;

@@ -146,7 +146,7 @@ kernel void sew_seams(int height, int places, global const int* restrict offsets
   for (int pair = own_first; pair < own_end; ++pair) s.removed_up[pair] = s.removed_down[pair] = 0;
   barrier(CLK_GLOBAL_MEM_FENCE);
   if (me == 0 && is_merge) {
-    const filter_bounds none = {0, 0, 0};
+    const filter_bounds none = {0, 0, 0, 0};
     rings g = rings_on(edges, points, vertex_edge, none);
     const solved_block low = parts[halves.low_at], high = parts[halves.high_at];
     if (!is_sewn) {

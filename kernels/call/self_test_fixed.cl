@@ -34,7 +34,7 @@ kernel void self_test_fixed(global const long* restrict operands, global const f
       bits |= 4;
     // Differences as floats.
     for (int k = 0; k < 3; ++k) {
-      if (!is_near(fabs(real_of(operands[k])), floats[k], 2)) bits |= 8;
+      if (!is_near(fabs(real_of(operands[k])), floats[k], 1)) bits |= 8;
     }
     if (real_of(b) > 0 || real_of(operands[3]) != 0) bits |= 8;
     // Sums, differences and products of floats, alone and in vectors.
@@ -47,6 +47,9 @@ kernel void self_test_fixed(global const long* restrict operands, global const f
     if (!is_near(sums.x, floats[3], 1) || !is_near(products.y, floats[5], 1)) bits |= 16;
     // Quotients, to which OpenCL grants 2.5 units.
     if (!is_near(third / large, floats[6], 3)) bits |= 32;
+    // The smallest float that counts is not flushed to zero.
+    const float small = reals[2];  // 2^-55
+    if (small * small != UNDERFLOW_ERROR || small * small + UNDERFLOW_ERROR != 2 * UNDERFLOW_ERROR) bits |= 64;
     failed[0] = bits;
   }
 }

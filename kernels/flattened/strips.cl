@@ -15,7 +15,7 @@
 
 // Borders are not canonical, and a merge of two canonical triangulations of one circle's points would change every
 // edge.
-#define RINGS_TIE(a, b, c, d, bound) 0
+#define RINGS_TIE(a, b, c, d, bounds) 0
 #include "shared/codes.h"
 #include "shared/rings.h"
 #include "shared/search.h"

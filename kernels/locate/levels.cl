@@ -1,7 +1,8 @@
 // Makes what the search for nearest vertices through levels needs: shared/nearest_search.h has the search.
 //
 // 1. draw_entries, with one work-item per entry of all levels' samples, draws a vertex of each group of the level
-//    below. The host triangulates the samples of all levels at once, each as a set, and makes a locator of them.
+//    below. In fixed point give_coordinates (fixed_point.cl) makes doubles of them. The host triangulates the samples
+//    of all levels at once, each as a set, and makes a locator of them.
 // 2. number_entries and find_below connect each entry with its vertex on the level below.
 // 3. begin_stars gives each vertex the triangle from which all others about it are reached counter-clockwise.
 // 4. link_fans finds, per triangle, whether the next one counter-clockwise about its first vertex belongs to the same
@@ -22,8 +23,8 @@ static inline int pick(int i, int level, int ratio) {
 // n entries: those of set s of level l begin at offsets[l * sets + s]. Set s has the vertices from first_vertices[s]
 // on. below: the entry's vertex if that is on level 0, otherwise its entry on the level below.
 kernel void draw_entries(int n, int levels, int sets, int ratio, global const int* restrict offsets,
-                         global const int* restrict first_vertices, global const double2* restrict points,
-                         global double2* restrict coordinates, global int* restrict below) {
+                         global const int* restrict first_vertices, global const coordinate2* restrict points,
+                         global coordinate2* restrict coordinates, global int* restrict below) {
   const int i = get_global_id(0);
   if (i < n) {
     const int segment = segment_of(i, levels * sets, offsets);
@@ -66,12 +67,12 @@ kernel void begin_stars(int n, global const face* restrict faces, global int* re
   }
 }
 
-kernel void link_fans(int n, global const face* restrict faces, global const double2* restrict points,
+kernel void link_fans(int n, global const face* restrict faces, global const coordinate2* restrict points,
                       global fan_part* restrict fans) {
   const int t = get_global_id(0);
   if (t < n) {
     const face f = faces[t];
-    double2 p[3];
+    coordinate2 p[3];
     for (int k = 0; k < 3; ++k) p[k] = points[f.corner[k]];
     int k = comes_before(p[1], p[0]) ? 1 : 0;
     if (k == 0 ? comes_before(p[2], p[0]) : comes_before(p[2], p[1])) k = 2;
@@ -81,7 +82,7 @@ kernel void link_fans(int n, global const face* restrict faces, global const dou
     part.last = t;
     if (next >= 0) {
       const face g = faces[next];
-      const double2 apex = points[g.corner[corner_before(corner_at(g, f.corner[k]))]];
+      const coordinate2 apex = points[g.corner[corner_before(corner_at(g, f.corner[k]))]];
       if (comes_before(points[f.corner[k]], apex) && circle_sign(p[0], p[1], p[2], apex, CIRCLE_BOUND) == 0) {
         part.vertex = f.corner[k];
         part.last = next;
@@ -106,15 +107,15 @@ kernel void reach_along_fans(int n, global const fan_part* restrict before, glob
 }
 
 // n boxes around `vertices` vertices.
-kernel void box_vertices(int n, int vertices, global const double2* restrict points,
+kernel void box_vertices(int n, int vertices, global const coordinate2* restrict points,
                          global vertex_box* restrict boxes) {
   const int i = get_global_id(0);
   if (i < n) {
     vertex_box box;
     box.low = box.high = points[BOX_FAN * i];
     for (int v = BOX_FAN * i + 1; v < min(vertices, BOX_FAN * (i + 1)); ++v) {
-      box.low = VECTOR(double2, min(box.low.x, points[v].x), min(box.low.y, points[v].y));
-      box.high = VECTOR(double2, max(box.high.x, points[v].x), max(box.high.y, points[v].y));
+      box.low = VECTOR(coordinate2, min(box.low.x, points[v].x), min(box.low.y, points[v].y));
+      box.high = VECTOR(coordinate2, max(box.high.x, points[v].x), max(box.high.y, points[v].y));
     }
     boxes[i] = box;
   }
@@ -126,8 +127,8 @@ kernel void box_boxes(int n, int first, int first_below, global vertex_box* boxe
   if (i < n) {
     vertex_box box = boxes[first_below + BOX_FAN * i];
     for (int b = first_below + BOX_FAN * i + 1; b < min(first, first_below + BOX_FAN * (i + 1)); ++b) {
-      box.low = VECTOR(double2, min(box.low.x, boxes[b].low.x), min(box.low.y, boxes[b].low.y));
-      box.high = VECTOR(double2, max(box.high.x, boxes[b].high.x), max(box.high.y, boxes[b].high.y));
+      box.low = VECTOR(coordinate2, min(box.low.x, boxes[b].low.x), min(box.low.y, boxes[b].low.y));
+      box.high = VECTOR(coordinate2, max(box.high.x, boxes[b].high.x), max(box.high.y, boxes[b].high.y));
     }
     boxes[first + i] = box;
   }

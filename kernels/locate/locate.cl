@@ -102,9 +102,9 @@ kernel void count_vertices(int n, global const face* restrict faces, global cons
 
 // Of each vertex: its number, and by number where it is, its index among the points, and its first triangle.
 kernel void number_vertices(int n, global const face* restrict faces, global const int* restrict incident,
-                            global const uint* restrict firsts, global const double* restrict input, scaling scale,
-                            global int* restrict numbers, global double2* restrict points, global int* restrict source,
-                            global int* restrict first_triangle) {
+                            global const uint* restrict firsts, global const coordinate* restrict input, scaling scale,
+                            global int* restrict numbers, global coordinate2* restrict points,
+                            global int* restrict source, global int* restrict first_triangle) {
   const int t = get_global_id(0);
   if (t < n) {
 #if FETCH_AHEAD
@@ -140,32 +140,26 @@ kernel void renumber_faces(int n, global const int* restrict numbers, global fac
   }
 }
 
-// A vertex' clearance: the square of the distance to its nearest neighbour, by the upper half of the double, which is
-// in the order of the numbers, and rounds downwards.
-static inline void lower(global volatile int* clearance, double squared) {
-  atomic_min(clearance, (int)(as_ulong(squared) >> 32));
-}
-
-// clearances: INT_MAX throughout. Each edge leaves its origin in one triangle; the reverse of a hull edge is in none.
-kernel void measure_clearances(int n, global const face* restrict faces, global const double2* restrict points,
+// clearances: INT_MAX throughout; get the clearance of each vertex. Each edge leaves its origin in one triangle; the
+// reverse of a hull edge is in none.
+kernel void measure_clearances(int n, global const face* restrict faces, global const coordinate2* restrict points,
                                global volatile int* restrict clearances) {
   const int t = get_global_id(0);
   if (t < n) {
     const face f = faces[t];
     for (int k = 0; k < 3; ++k) {
       const int from = f.corner[k], to = f.corner[next_corner(k)];
-      const double2 edge = points[to] - points[from];
-      const double squared = edge.x * edge.x + edge.y * edge.y;
-      lower(&clearances[from], squared);
-      if (f.neighbor[corner_before(k)] < 0) lower(&clearances[to], squared);
+      const int clearance = clearance_bits(squared_distance(points[to], points[from]));
+      atomic_min(&clearances[from], clearance);
+      if (f.neighbor[corner_before(k)] < 0) atomic_min(&clearances[to], clearance);
     }
   }
 }
 
 // bad[1]: the first index that is not of its set.
 kernel void place_hull(int n, int sets, global const int* restrict offsets, global const int* restrict point_offsets,
-                       global const int* restrict hull, global const double* restrict input, scaling scale,
-                       global double2* restrict points, global int* restrict source,
+                       global const int* restrict hull, global const coordinate* restrict input, scaling scale,
+                       global coordinate2* restrict points, global int* restrict source,
                        global volatile int* restrict bad) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -209,18 +203,18 @@ kernel void start_triangles(int n, int points, int last, global const int* restr
 // beyond one of its edges, on the hull. GIVEN_UP after `most` steps. start: a triangle. points are scaled by unit more,
 // as q is.
 #define GIVEN_UP INT_MIN
-static inline int walk(double2 q, int start, int most, filter_bound bound, double unit, global const double2* points,
-                       global const face* faces, global const int* first_triangle) {
+static inline int walk(coordinate2 q, int start, int most, filter_bound bound, coordinate unit,
+                       global const coordinate2* points, global const face* faces, global const int* first_triangle) {
   // Triangle t, the corner k that was reached last, and the edge from a to b opposite to it, which has q on its left,
   // or on it if it is the first one.
   int t = start, k = 2;
   face f = faces[t];
-  double2 a = unit * points[f.corner[0]], b = unit * points[f.corner[1]];
+  coordinate2 a = in_frame(points[f.corner[0]], unit), b = in_frame(points[f.corner[1]], unit);
   int ab = orient_sign(a, b, q, bound);
   if (ab < 0) {
     if (f.neighbor[2] < 0) return ~t;
     const int u = f.neighbor[2];
-    const double2 swapped = a;
+    const coordinate2 swapped = a;
     a = b;
     b = swapped;
     f = faces[u];
@@ -229,7 +223,7 @@ static inline int walk(double2 q, int start, int most, filter_bound bound, doubl
     ab = 1;
   }
   for (int step = 0; step < most; ++step) {
-    const double2 c = unit * points[f.corner[k]];
+    const coordinate2 c = in_frame(points[f.corner[k]], unit);
     const int bc = orient_sign(b, c, q, bound);
     const int ca = bc < 0 ? 1 : orient_sign(c, a, q, bound);
     const int at_a = next_corner(k), at_b = corner_before(k);
@@ -257,15 +251,16 @@ static inline int walk(double2 q, int start, int most, filter_bound bound, doubl
 
 // Where a walk from triangle t goes that has q strictly beyond an edge, as far as the filter can decide; t if it does
 // not. Without branches, since they could not be predicted.
-static inline int step_towards(double2 q, int t, filter_bound bound, double unit, global const double2* points,
-                               global const face* faces) {
+static inline int step_towards(coordinate2 q, int t, filter_bound bound, coordinate unit,
+                               global const coordinate2* points, global const face* faces) {
   global const face* f = &faces[t];
-  const double2 a = unit * points[f->corner[0]] - q, b = unit * points[f->corner[1]] - q,
-                c = unit * points[f->corner[2]] - q;
-  const double ab = a.x * b.y, ba = a.y * b.x, bc = b.x * c.y, cb = b.y * c.x, ca = c.x * a.y, ac = c.y * a.x;
-  const int beyond_bc = bc - cb < -bound * (fabs(bc) + fabs(cb));
-  const int beyond_ca = ca - ac < -bound * (fabs(ca) + fabs(ac));
-  const int beyond_ab = ab - ba < -bound * (fabs(ab) + fabs(ba));
+  const real2 a = difference2(in_frame(points[f->corner[0]], unit), q);
+  const real2 b = difference2(in_frame(points[f->corner[1]], unit), q);
+  const real2 c = difference2(in_frame(points[f->corner[2]], unit), q);
+  const real ab = a.x * b.y, ba = a.y * b.x, bc = b.x * c.y, cb = b.y * c.x, ca = c.x * a.y, ac = c.y * a.x;
+  const int beyond_bc = bc - cb < -error_within(bound, fabs(bc) + fabs(cb));
+  const int beyond_ca = ca - ac < -error_within(bound, fabs(ca) + fabs(ac));
+  const int beyond_ab = ab - ba < -error_within(bound, fabs(ab) + fabs(ba));
   const int u = f->neighbor[beyond_ca + 2 * (beyond_ab & !beyond_ca)];
   const int moves = -((beyond_bc | beyond_ca | beyond_ab) & (u >= 0));
   return t ^ ((t ^ u) & moves);
@@ -274,8 +269,8 @@ static inline int step_towards(double2 q, int t, filter_bound bound, double unit
 // Brings walks of queries [first, last), DESCENTS at most, nearer to their ends at the same time, as each step waits
 // for the one before: until few of them move, and by no more than so many steps.
 #define MOST_APPROACH 32
-static inline void approach(int first, int last, filter_bound bound, double unit, global const double2* placed,
-                            global const double2* points, global const face* faces, int* at) {
+static inline void approach(int first, int last, filter_bound bound, coordinate unit, global const coordinate2* placed,
+                            global const coordinate2* points, global const face* faces, int* at) {
   int moved = last - first;
   for (int step = 0; step < MOST_APPROACH && 2 * moved >= last - first; ++step) {
     moved = 0;
@@ -288,13 +283,25 @@ static inline void approach(int first, int last, filter_bound bound, double unit
   }
 }
 
+// The leaves of queries [first, last), DESCENTS at most.
+static inline void leaves_of_queries(int first, int last, global const coordinate* queries, query_frame frame,
+                                     global const cut_node* tree, int depth, int* leaves) {
+  ulong x[DESCENTS], y[DESCENTS];
+  for (int k = 0; k < DESCENTS; ++k) {
+    const coordinate2 q = query_in_tree(min(first + k, last - 1), queries, frame);
+    x[k] = orderable(q.x);
+    y[k] = orderable(q.y);
+  }
+  descend(x, y, tree, depth, leaves);
+}
+
 // n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set. keys: each
 // query's leaf, counted over all sets, where a set has one leaf more than its tree, or one alone: so in the order of
 // keys each set's queries take the places that they had. order: 0, 1, 2...
 kernel void find_query_leaves(int n, int chunk, int sets, global const int* restrict query_offsets,
-                              global const mesh_set* restrict records, global const cut_node* restrict nodes,
-                              global const double* restrict queries, global ulong* restrict keys,
-                              global int* restrict order) {
+                              global const mesh_set* restrict records, global const query_frame* restrict frames,
+                              global const cut_node* restrict nodes, global const coordinate* restrict queries,
+                              global ulong* restrict keys, global int* restrict order) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -305,7 +312,7 @@ kernel void find_query_leaves(int n, int chunk, int sets, global const int* rest
       const int end = min(begin + DESCENTS, sets > 1 ? min(last, query_offsets[s + 1]) : last);
       const mesh_set set = records[s];
       int leaf[DESCENTS];
-      find_leaves(begin, end, queries, nodes + set.nodes, set.depth, leaf);
+      leaves_of_queries(begin, end, queries, frames[s], nodes + set.nodes, set.depth, leaf);
       for (int i = begin; i < end; ++i) {
         keys[i] = (ulong)set.nodes + s + leaf[i - begin];
         order[i] = i;
@@ -323,9 +330,9 @@ static inline int set_of(int place, int sets, global const int* query_offsets) {
 // order: the query at a place. frames: by set.
 kernel void place_queries(int n, int sets, global const int* restrict query_offsets,
                           global const query_frame* restrict frames, global const int* restrict order,
-                          global const double* restrict queries, global double2* restrict placed) {
+                          global const coordinate* restrict queries, global coordinate2* restrict placed) {
   const int i = get_global_id(0);
-  if (i < n) placed[i] = scaled_point(order[i], queries, frames[set_of(i, sets, query_offsets)].scale);
+  if (i < n) placed[i] = placed_query(order[i], queries, frames[set_of(i, sets, query_offsets)]);
 }
 
 // are_placed: whether there are keys, in their order, and placed queries; else queries go down the trees here, and
@@ -336,11 +343,11 @@ kernel void place_queries(int n, int sets, global const int* restrict query_offs
 kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer, int long_from, int most_steps,
                            global const int* restrict query_offsets, global const mesh_set* restrict records,
                            global const cut_node* restrict nodes, global const int* restrict starts,
-                           global const query_frame* restrict frames, global const double* restrict queries,
+                           global const query_frame* restrict frames, global const coordinate* restrict queries,
                            global const ulong* restrict keys, global int* restrict order,
-                           global double2* restrict placed, filter_bound bound, global const double2* restrict points,
-                           global const face* restrict faces, global const int* restrict first_triangle,
-                           global int* restrict found) {
+                           global coordinate2* restrict placed, filter_bound bound,
+                           global const coordinate2* restrict points, global const face* restrict faces,
+                           global const int* restrict first_triangle, global int* restrict found) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -355,10 +362,10 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
       if (are_placed) {
         for (int i = begin; i < end; ++i) start[i - begin] = (int)keys[i] - set.nodes - s;
       } else {
-        find_leaves(begin, end, queries, nodes + set.nodes, set.depth, start);
+        leaves_of_queries(begin, end, queries, frame, nodes + set.nodes, set.depth, start);
         for (int i = begin; i < end; ++i) {
           order[i] = i;
-          placed[i] = scaled_point(i, queries, frame.scale);
+          placed[i] = placed_query(i, queries, frame);
         }
       }
       for (int j = 0; j < end - begin; ++j) {
@@ -389,8 +396,8 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
 
 // The best of a vertex and its neighbours: counter-clockwise around it, and on the hull then the other way. left: how
 // many neighbours may be looked at, which is lowered; less than 0 if these are not all.
-static inline nearby best_around(nearby vertex, double2 q, filter_bound bound, double unit,
-                                 global const double2* points, global const face* faces, int* left) {
+static inline nearby best_around(nearby vertex, coordinate2 q, filter_bound bound, coordinate unit,
+                                 global const coordinate2* points, global const face* faces, int* left) {
   nearby best = vertex;
   const face first = faces[vertex.triangle];
   const int k = corner_at(first, vertex.vertex);
@@ -419,12 +426,13 @@ static inline nearby best_around(nearby vertex, double2 q, filter_bound bound, d
 // Greedy descent, from a corner of triangle t, over at most so many neighbours; GIVEN_UP if these do not suffice. In a
 // Delaunay triangulation a vertex that is not nearest has a neighbour that is nearer; those that are nearest with
 // others lie on one empty circle, whose first vertex is joined to all.
-static inline int nearest_vertex(double2 q, int t, int most, filter_bound bound, double unit,
-                                 global const double2* points, global const face* faces, global const int* clearances) {
+static inline int nearest_vertex(coordinate2 q, int t, int most, filter_bound bound, coordinate unit,
+                                 global const coordinate2* points, global const face* faces,
+                                 global const int* clearances) {
   nearby best, before;
   best.vertex = faces[t].corner[0];
   best.triangle = t;
-  best.at = unit * points[best.vertex];
+  best.at = in_frame(points[best.vertex], unit);
   for (int k = 1; k < 3; ++k) consider(&best, faces[t].corner[k], t, q, bound, unit, points);
   int left = most;
   do {
@@ -437,30 +445,29 @@ static inline int nearest_vertex(double2 q, int t, int most, filter_bound bound,
 
 // found: of find_triangles, by place; the answer is by query. In sets of long_from triangles or more, most_neighbors
 // are looked at before the search goes through levels. If there are no levels, `levels` is 0, unanswered[0] is set to
-// 1, and the query has no answer. long_sets: of a set with levels, which of those it is. sample_...: the locator of
-// samples.
-kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, int levels, int sets_with_levels,
-                           global const int* restrict query_offsets, global const mesh_set* restrict records,
-                           global const query_frame* restrict frames, global const int* restrict order,
-                           global const double2* restrict placed, filter_bound bound,
-                           global const double2* restrict points, global const int* restrict source,
-                           global const int* restrict clearances, global const face* restrict faces,
-                           global const double2* restrict hull_points, global const int* restrict hull,
-                           global const int* restrict starts, global const fan_part* restrict fans,
-                           global const int* restrict first_vertices, global const vertex_box* restrict boxes,
-                           global const int* restrict long_sets, global const mesh_set* restrict sample_records,
-                           global const double2* restrict sample_points, global const int* restrict sample_source,
-                           global const int* restrict sample_clearances, global const face* restrict sample_faces,
-                           global const double2* restrict sample_hull_points, global const int* restrict sample_hull,
-                           global const int* restrict sample_starts, global const fan_part* restrict sample_fans,
-                           global const int* restrict below, global const int* restrict found,
-                           global int* restrict nearest, global volatile int* restrict unanswered) {
+// 1, and the query has no answer. are_vertices: whether answers are numbers of vertices, for nearest_off_grid.
+// long_sets: of a set with levels, which of those it is. sample_...: the locator of samples.
+kernel void nearest_points(
+    int n, int sets, int long_from, int most_neighbors, int are_vertices, int levels, int sets_with_levels,
+    global const int* restrict query_offsets, global const mesh_set* restrict records,
+    global const query_frame* restrict frames, global const int* restrict order,
+    global const coordinate2* restrict placed, filter_bound bound, global const coordinate2* restrict points,
+    global const int* restrict source, global const int* restrict clearances, global const face* restrict faces,
+    global const coordinate2* restrict hull_points, global const int* restrict hull, global const int* restrict starts,
+    global const fan_part* restrict fans, global const int* restrict first_vertices,
+    global const vertex_box* restrict boxes, global const int* restrict long_sets,
+    global const mesh_set* restrict sample_records, global const coordinate2* restrict sample_points,
+    global const int* restrict sample_source, global const int* restrict sample_clearances,
+    global const face* restrict sample_faces, global const coordinate2* restrict sample_hull_points,
+    global const int* restrict sample_hull, global const int* restrict sample_starts,
+    global const fan_part* restrict sample_fans, global const int* restrict below, global const int* restrict found,
+    global int* restrict nearest, global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
-    const double2 q = placed[i];
+    const coordinate2 q = placed[i];
     const int s = set_of(i, sets, query_offsets);
     const mesh_set set = records[s];
-    const double unit = frames[s].unit;
+    const coordinate unit = frames[s].unit;
     int answer;
     if (set.triangles == 0) {
       const int at = nearest_on_line(q, set.hull, set.hull_end, bound, unit, hull_points);
@@ -485,7 +492,7 @@ kernel void nearest_points(int n, int sets, int long_from, int most_neighbors, i
         vertex = nearest_by_levels(q, long_sets[s], first_vertices[s], first_vertices[s + 1], first_vertices[sets],
                                    bound, unit, mesh, boxes, on, &looked);
       }
-      answer = vertex == GIVEN_UP ? -1 : source[vertex];
+      answer = vertex == GIVEN_UP ? -1 : are_vertices ? vertex : source[vertex];
     }
     nearest[order[i]] = answer;
   }

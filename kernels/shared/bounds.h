@@ -24,11 +24,12 @@ BEGIN_SHARED
 // centre_side_filtered.
 #define ORIENT_BOUND_FOR(roundoff) (3.00001f * (roundoff))
 #define CIRCLE_BOUND_FOR(roundoff) (10.0001f * (roundoff))
+#define NEARNESS_BOUND_FOR(roundoff) (6 * (roundoff))
 #define ORIENT_BOUND ORIENT_BOUND_FOR(ROUNDOFF)
 #define CIRCLE_BOUND CIRCLE_BOUND_FOR(ROUNDOFF)
 #define HULL_DEPTH_BOUND (10 * ROUNDOFF)
 #define ANGLE_BOUND (11 * ROUNDOFF)
-#define NEARNESS_BOUND (6 * ROUNDOFF)
+#define NEARNESS_BOUND NEARNESS_BOUND_FOR(ROUNDOFF)
 #define CENTRE_SIDE_BOUND (12 * ROUNDOFF)
 
 // Triangulated points: coordinates below 2^250 that are multiples of 2^-255. No product of four overflows, and none
@@ -41,6 +42,8 @@ INTEGER_CONSTANT(MOST_BITS, LARGEST_EXPONENT - LOWEST_EXPONENT + 1);
 INTEGER_CONSTANT(COARSE_HULL_BITS, 16);
 INTEGER_CONSTANT(COARSE_ORIENT_BITS, 25);
 INTEGER_CONSTANT(COARSE_CIRCLE_BITS, 11);
+// In fixed point, differences of so many bits and one more have dot and cross products below 2^63.
+INTEGER_CONSTANT(COARSE_FIXED_BITS, 29);
 
 // Queries and the points that they are held against: coordinates below 2^509 that are multiples of 2^-511. No product
 // of two differences overflows or underflows.

@@ -62,7 +62,7 @@ static inline real gap_to(real x, coordinate origin, coordinate low, coordinate 
   const real to_low = difference(low, origin), to_high = difference(high, origin);
   const real below = to_low - x, above = x - to_high;
   const real gap = below > above ? below : above;
-  const real sure = gap - error - 4 * ROUNDOFF * (fabs(x) + fabs(below > above ? to_low : to_high));
+  const real sure = gap - error - 6 * ROUNDOFF * (fabs(x) + fabs(below > above ? to_low : to_high));
   return sure > 0 ? sure : 0;
 }
 
@@ -89,7 +89,7 @@ static inline int is_circle_inside(const block_frame* frame, coordinate2 a, coor
 static inline int is_not_right(coordinate2 a, coordinate2 b, coordinate2 p) {
   const real2 pa = difference2(a, p), pb = difference2(b, p);
   const real left = pa.x * pb.y, right = pa.y * pb.x;
-  return left - right >= error_within(ORIENT_BOUND, fabs(left) + fabs(right));
+  return left - right >= ORIENT_BOUND * (fabs(left) + fabs(right));
 }
 
 // Whether no point of another block is right of the line from a to b or on the segment.

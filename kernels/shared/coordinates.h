@@ -18,6 +18,15 @@ static inline coordinate from_orderable(ulong key) { return as_long(key ^ 0x8000
 // A coordinate of the caller's, by the bits of the double, times 2^shift.
 static inline coordinate scaled_bits(ulong bits, int shift) { return fixed_point(bits, shift); }
 
+// The bits of the double that is this integer, which must have at most 53 bits from the first to the last that is set.
+static inline ulong double_bits_of(coordinate x) {
+  if (x == 0) return 0;
+  const ulong magnitude = as_ulong(x < 0 ? -x : x);
+  const int leading = (int)clz(magnitude), exponent = 63 - leading;
+  const ulong mantissa = leading >= 11 ? magnitude << (leading - 11) : magnitude >> (11 - leading);
+  return (x < 0 ? 1UL << 63 : 0) | (ulong)(1023 + exponent) << 52 | (mantissa & MANTISSA_BITS);
+}
+
 // Scaled already.
 static inline coordinate scaled(coordinate x, scaling scale) { return x; }
 static inline coordinate2 scaled_point(int i, GLOBAL const coordinate* input, scaling scale) {
@@ -32,6 +41,8 @@ static inline ulong orderable(coordinate x) {
   return bits >> 63 ? ~bits : bits | 0x8000000000000000UL;
 }
 static inline coordinate from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
+
+static inline ulong double_bits_of(coordinate x) { return as_ulong(x); }
 
 INTEGER_CONSTANT(DOUBLE_BITS, 53);  // of a normal number
 

@@ -34,21 +34,26 @@ static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int i
 // Points that go down a tree at the same time: each step waits for the one before.
 #define DESCENTS 16
 
-// The leaves of points [first, last) of the input, DESCENTS at most, counted from 0.
-static inline void find_leaves(int first, int last, GLOBAL const coordinate* input, GLOBAL const cut_node* tree,
-                               int depth, int* leaves) {
-  ulong x[DESCENTS], y[DESCENTS];
+// The leaves of DESCENTS points by their coordinates as orderable numbers, counted from 0.
+static inline void descend(const ulong* x, const ulong* y, GLOBAL const cut_node* tree, int depth, int* leaves) {
   int node[DESCENTS];
-  for (int k = 0; k < DESCENTS; ++k) {
-    const coordinate2 p = vload2(min(first + k, last - 1), input);
-    x[k] = orderable(p.x);
-    y[k] = orderable(p.y);
-    node[k] = 1;
-  }
+  for (int k = 0; k < DESCENTS; ++k) node[k] = 1;
   for (int d = 0; d < depth; ++d) {
     for (int k = 0; k < DESCENTS; ++k) node[k] = 2 * node[k] + goes_high(x[k], y[k], tree[node[k]]);
   }
   for (int k = 0; k < DESCENTS; ++k) leaves[k] = node[k] - (1 << depth);
+}
+
+// The leaves of points [first, last) of the input, DESCENTS at most.
+static inline void find_leaves(int first, int last, GLOBAL const coordinate* input, GLOBAL const cut_node* tree,
+                               int depth, int* leaves) {
+  ulong x[DESCENTS], y[DESCENTS];
+  for (int k = 0; k < DESCENTS; ++k) {
+    const coordinate2 p = vload2(min(first + k, last - 1), input);
+    x[k] = orderable(p.x);
+    y[k] = orderable(p.y);
+  }
+  descend(x, y, tree, depth, leaves);
 }
 
 // The leaf of a point, counted from 0.

@@ -157,6 +157,9 @@ static inline int are_integers(const circle_differences* from, double factor, lo
   return integers;
 }
 
+// Of coarse points (COARSE_CIRCLE_BITS), of which the filter has found this.
+#define circle_coarse(a, b, c, d) 0
+
 // Of any four points.
 OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
   const circle_differences from = differences_from(d, a, b, c);

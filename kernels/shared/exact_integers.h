@@ -56,6 +56,13 @@ static inline int circle_if_short(const circle_differences* from) {
   return circle_short(from->x[0], from->y[0], from->x[1], from->y[1], from->x[2], from->y[2]);
 }
 
+// The in-circle test of coarse points (COARSE_FIXED_BITS), which have so many zeros in front of their lowest bit.
+INTEGER_CONSTANT(COARSE_ZEROS, COORDINATE_BITS - COARSE_FIXED_BITS);
+static inline int circle_coarse(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
+  return circle_short((a.x - d.x) >> COARSE_ZEROS, (a.y - d.y) >> COARSE_ZEROS, (b.x - d.x) >> COARSE_ZEROS,
+                      (b.y - d.y) >> COARSE_ZEROS, (c.x - d.x) >> COARSE_ZEROS, (c.y - d.y) >> COARSE_ZEROS);
+}
+
 // 1 if d lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
 OUT_OF_LINE static inline int circle_exact(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
   const circle_differences from = differences_from(d, a, b, c);
@@ -63,7 +70,7 @@ OUT_OF_LINE static inline int circle_exact(coordinate2 a, coordinate2 b, coordin
   return sign != NOT_SHORT ? sign : circle_wide(&from);
 }
 
-// The largest differences of circle_middle where a filter could not decide: then the determinant is below 2^125, see
+// The largest differences of circle_middle where a filter could not decide: then the determinant is below 2^127, see
 // docs/exactness.md.
 #define MIDDLE_BITS 35
 

@@ -24,9 +24,18 @@ INTEGER_CONSTANT(LARGEST_GROUP, 1024);
 
 // The largest work-group that takes a tile of elements, what local memory has room for.
 INTEGER_CONSTANT(LARGEST_TILE_GROUP, 256);
-// A tile of points has at most so many, and a tile of samples.
-INTEGER_CONSTANT(LARGEST_POINT_TILE, 2048);
-INTEGER_CONSTANT(LARGEST_SAMPLE_TILE, 1024);
+// Kernels with tiles need local memory in proportion to the largest tile, at most LOCAL_BYTES, a power of two, which a
+// program's build chooses. By default as much as OpenCL 1.2 guarantees; with less than the least, they cannot be built.
+INTEGER_CONSTANT(DEFAULT_LOCAL_BYTES, 1 << 15);
+INTEGER_CONSTANT(LEAST_LOCAL_BYTES, 1 << 14);
+#ifndef LOCAL_BYTES
+#define LOCAL_BYTES DEFAULT_LOCAL_BYTES
+#endif
+// So many bytes for each point of a tile of points, and for each sample of a tile of samples.
+INTEGER_CONSTANT(LOCAL_BYTES_PER_POINT, 16);
+INTEGER_CONSTANT(LOCAL_BYTES_PER_SAMPLE, 32);
+INTEGER_CONSTANT(LARGEST_POINT_TILE, LOCAL_BYTES / LOCAL_BYTES_PER_POINT);
+INTEGER_CONSTANT(LARGEST_SAMPLE_TILE, LOCAL_BYTES / LOCAL_BYTES_PER_SAMPLE);
 // A tile of points is sorted by at most so many bits of their blocks' numbers.
 INTEGER_CONSTANT(MOST_BLOCK_BITS, 10);
 // Sorted runs of samples are merged by so many.

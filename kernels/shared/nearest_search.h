@@ -16,6 +16,7 @@
 #include "shared/halfedges.h"
 #include "shared/language.h"
 #include "shared/nearness.h"
+#include "shared/query_frames.h"
 #include "shared/records.h"
 
 BEGIN_SHARED
@@ -34,7 +35,7 @@ static inline int corner_at(face f, int vertex) { return f.corner[0] == vertex ?
 // A triangulation, as locators have it; points are scaled by `unit` more, as queries are. Where there are levels:
 // a triangle of each vertex, on the hull the first one counter-clockwise; the parts of fans.
 typedef struct {
-  GLOBAL const double2* points;
+  GLOBAL const coordinate2* points;
   GLOBAL const face* faces;
   GLOBAL const int* clearances;
   GLOBAL const int* starts;
@@ -44,15 +45,13 @@ typedef struct {
 // The nearest vertex known so far, a triangle that has it as a corner, and where it is.
 typedef struct {
   int vertex, triangle;
-  double2 at;
+  coordinate2 at;
 } nearby;
 
-static inline double2 point_times(double unit, double2 p) { return VECTOR(double2, unit * p.x, unit * p.y); }
-
 // Of two vertices that are as near, the first in the order of x and y is taken.
-static inline void consider(nearby* best, int vertex, int triangle, double2 q, filter_bound bound, double unit,
-                            GLOBAL const double2* points) {
-  const double2 p = point_times(unit, points[vertex]);
+static inline void consider(nearby* best, int vertex, int triangle, coordinate2 q, filter_bound bound, coordinate unit,
+                            GLOBAL const coordinate2* points) {
+  const coordinate2 p = in_frame(points[vertex], unit);
   const int sign = nearness_sign(best->at, p, q, bound);
   if (sign > 0 || (sign == 0 && comes_before(p, best->at))) {
     best->vertex = vertex;
@@ -61,24 +60,40 @@ static inline void consider(nearby* best, int vertex, int triangle, double2 q, f
   }
 }
 
-// Whether q is nearer to the vertex than half its clearance: nothing is as near then. So the neighbours of a vertex
-// that has very many mostly need not be looked at. Rounding is far below the margin, as long as there is no underflow.
-#define CLEARANCE_MARGIN (1.0 + 0x1p-20)
+// A vertex' clearance is the square of the distance to its nearest neighbour, as the bits of a float or the upper half
+// of a double's, which are in the order of the numbers. In the frame of queries it is rounded downwards, or to nearest.
+#ifdef FIXED_POINT
+static inline int clearance_bits(real squared) { return as_int(squared); }
+// Vertices are at least 1 apart in either frame: nothing underflows.
+static inline real clearance_in_frame(int bits, coordinate unit) {
+  return as_float(bits) * as_float((127 + 2 * (int)unit) << 23);
+}
+#define LEAST_CLEARANCE 0
+#else
+static inline int clearance_bits(real squared) { return (int)(as_ulong(squared) >> 32); }
+static inline real clearance_in_frame(int bits, coordinate unit) {
+  return as_double((ulong)(uint)bits << 32) * unit * unit;
+}
 #define LEAST_CLEARANCE 0x1p-1000
-static inline int is_clear(nearby vertex, double2 q, double unit, GLOBAL const int* clearances) {
-  const double2 away = q - vertex.at;
-  const double clearance = as_double((ulong)(uint)clearances[vertex.vertex] << 32) * unit * unit;
-  return clearance > LEAST_CLEARANCE && 4.0 * CLEARANCE_MARGIN * (away.x * away.x + away.y * away.y) < clearance;
+#endif
+
+// Whether q is nearer to the vertex than half its clearance: nothing is as near then. So the neighbours of a vertex
+// that has very many mostly need not be looked at. Rounding is below the margin, as long as there is no underflow: in
+// single precision both sides are right but for 5 roundings.
+#define CLEARANCE_MARGIN (1 + REAL(0x1p-19))
+static inline int is_clear(nearby vertex, coordinate2 q, coordinate unit, GLOBAL const int* clearances) {
+  const real clearance = clearance_in_frame(clearances[vertex.vertex], unit);
+  return clearance > LEAST_CLEARANCE && 4 * CLEARANCE_MARGIN * squared_length(difference2(q, vertex.at)) < clearance;
 }
 
 // Of points on one line, in their order: distances fall and then rise, with two equal ones at most. -1 of none.
-static inline int nearest_on_line(double2 q, int first, int end, filter_bound bound, double unit,
-                                  GLOBAL const double2* hull_points) {
+static inline int nearest_on_line(coordinate2 q, int first, int end, filter_bound bound, coordinate unit,
+                                  GLOBAL const coordinate2* hull_points) {
   if (first == end) return -1;
   int low = first, high = end - 1;
   while (low < high) {
     const int middle = low + (high - low) / 2;
-    const double2 a = point_times(unit, hull_points[middle]), b = point_times(unit, hull_points[middle + 1]);
+    const coordinate2 a = in_frame(hull_points[middle], unit), b = in_frame(hull_points[middle + 1], unit);
     if (nearness_sign(a, b, q, bound) > 0) {
       low = middle + 1;
     } else {
@@ -101,8 +116,8 @@ static inline int last_of_fan(int t, int vertex, GLOBAL const fan_part* fans) {
 // such a neighbour lies inside of a cocircular polygon, so the two cells touch in no more than a point: if it is nearer
 // to q than the vertex, or as near and comes before it, so is another neighbour. Stops when `most` were looked at, and
 // returns whether these were all. looked: gets their number added.
-static inline int look_around(nearby vertex, double2 q, filter_bound bound, double unit, star_mesh mesh, uint most,
-                              nearby* best, uint* looked) {
+static inline int look_around(nearby vertex, coordinate2 q, filter_bound bound, coordinate unit, star_mesh mesh,
+                              uint most, nearby* best, uint* looked) {
   *best = vertex;
   const int start = mesh.starts[vertex.vertex];
   const face beside = mesh.faces[start];
@@ -127,7 +142,7 @@ static inline int look_around(nearby vertex, double2 q, filter_bound bound, doub
 // Goes to the best neighbour until none is better. In a Delaunay triangulation a vertex that is not nearest has a
 // neighbour that is nearer; those that are nearest with others lie on one empty circle, whose first vertex is joined to
 // all. Stops at a vertex with very many neighbours if the first of them are not better, and returns 0.
-static inline int go_to_nearest(nearby* best, double2 q, filter_bound bound, double unit, star_mesh mesh,
+static inline int go_to_nearest(nearby* best, coordinate2 q, filter_bound bound, coordinate unit, star_mesh mesh,
                                 uint* looked) {
   for (;;) {
     if (is_clear(*best, q, unit, mesh.clearances)) return 1;
@@ -156,33 +171,33 @@ static inline int box_levels(int vertices, int* counts, int* begins) {
 
 // Whether all points of the box are farther from q than a point with that square of the distance, both rounded; each is
 // right but for less than 4 roundings, and nothing underflows.
-#define DISTANCE_MARGIN (1.0 + 0x1p-48)
-static inline int is_beyond(vertex_box box, double squared, double2 q, double unit) {
-  const double x = q.x < unit * box.low.x    ? unit * box.low.x - q.x
-                   : q.x > unit * box.high.x ? q.x - unit * box.high.x
-                                             : 0.0;
-  const double y = q.y < unit * box.low.y    ? unit * box.low.y - q.y
-                   : q.y > unit * box.high.y ? q.y - unit * box.high.y
-                                             : 0.0;
+#ifdef FIXED_POINT
+#define DISTANCE_MARGIN (1 + 0x1p-19f)
+#else
+#define DISTANCE_MARGIN (1 + 0x1p-48)
+#endif
+static inline real distance_beyond(coordinate low, coordinate high, coordinate q) {
+  return q < low ? difference(low, q) : q > high ? difference(q, high) : 0;
+}
+static inline int is_beyond(vertex_box box, real squared, coordinate2 q, coordinate unit) {
+  const coordinate2 low = in_frame(box.low, unit), high = in_frame(box.high, unit);
+  const real x = distance_beyond(low.x, high.x, q.x), y = distance_beyond(low.y, high.y, q.y);
   return x * x + y * y > squared * DISTANCE_MARGIN;
 }
 
-static inline double squared_distance(double2 a, double2 b) {
-  const double2 away = a - b;
-  return away.x * away.x + away.y * away.y;
-}
+static inline real squared_distance(coordinate2 a, coordinate2 b) { return squared_length(difference2(a, b)); }
 
 // The best of vertices [first, end) and one that is given. Goes through the tree, of boxes around all `vertices`, in
 // the order of the vertices, and leaves out boxes that are farther than the best so far. Returns 0 if it gives up.
-static inline int search_boxes(nearby* best, double2 q, int first, int end, int vertices, filter_bound bound,
-                               double unit, star_mesh mesh, GLOBAL const vertex_box* boxes, uint* looked) {
+static inline int search_boxes(nearby* best, coordinate2 q, int first, int end, int vertices, filter_bound bound,
+                               coordinate unit, star_mesh mesh, GLOBAL const vertex_box* boxes, uint* looked) {
   int counts[BOX_LEVELS], begins[BOX_LEVELS];
   int level = box_levels(vertices, counts, begins) - 1;
   const int top = level;
   int i = 0;
   long width = BOX_FAN;  // vertices of a box
   for (int l = 0; l < level; ++l) width *= BOX_FAN;
-  double squared = squared_distance(best->at, q);
+  real squared = squared_distance(best->at, q);
   for (int seen = 0; seen < MOST_BOXES; ++seen) {
     const int is_needed =
         i * width < end && (i + 1) * width > first && !is_beyond(boxes[begins[level] + i], squared, q, unit);
@@ -225,15 +240,15 @@ typedef struct {
   GLOBAL const mesh_set* records;
   GLOBAL const int* source;
   GLOBAL const int* below;
-  GLOBAL const double2* hull_points;
+  GLOBAL const coordinate2* hull_points;
   GLOBAL const int* hull;
   star_mesh samples;
 } level_meshes;
 
 // The nearest vertex of set `set`, which has triangles and levels, and vertices [first, end). looked: gets the number
 // of vertices and boxes that were looked at.
-OUT_OF_LINE static inline int nearest_by_levels(double2 q, int set, int first, int end, int vertices,
-                                                filter_bound bound, double unit, star_mesh mesh,
+OUT_OF_LINE static inline int nearest_by_levels(coordinate2 q, int set, int first, int end, int vertices,
+                                                filter_bound bound, coordinate unit, star_mesh mesh,
                                                 GLOBAL const vertex_box* boxes, level_meshes on, uint* looked) {
   nearby best;
   int vertex = -1;
@@ -243,7 +258,7 @@ OUT_OF_LINE static inline int nearest_by_levels(double2 q, int set, int first, i
     if (record.triangles > 0) {
       best.vertex = vertex >= 0 ? vertex : on.samples.faces[record.starts].corner[0];
       best.triangle = -1;
-      best.at = point_times(unit, on.samples.points[best.vertex]);
+      best.at = in_frame(on.samples.points[best.vertex], unit);
       go_to_nearest(&best, q, bound, unit, on.samples, looked);
       entry = on.source[best.vertex];
     } else {
@@ -254,7 +269,7 @@ OUT_OF_LINE static inline int nearest_by_levels(double2 q, int set, int first, i
   }
   best.vertex = vertex >= 0 ? vertex : first;
   best.triangle = -1;
-  best.at = point_times(unit, mesh.points[best.vertex]);
+  best.at = in_frame(mesh.points[best.vertex], unit);
   while (!go_to_nearest(&best, q, bound, unit, mesh, looked)) {
     if (search_boxes(&best, q, first, end, vertices, bound, unit, mesh, boxes, looked)) return best.vertex;
     nearby next;

@@ -8,18 +8,32 @@
 BEGIN_SHARED
 
 // |a - q|^2 - |b - q|^2 is the dot product of a - b and (a - q) + (b - q). Its rounded value is wrong by less than
-// 5.1 e of the magnitude below, which is rounded too, with e = 2^-53 (docs/exactness.md): NEARNESS_BOUND.
+// 5.1 e of the magnitude below, which is rounded too, with e = ROUNDOFF (docs/exactness.md): NEARNESS_BOUND. In fixed
+// point nothing underflows: differences are multiples of UNIT as real numbers, and their products of its square.
 
 // 1 if b is nearer to q than a is, -1 if a is, 0 if neither, UNDECIDED.
-static inline int nearness_filtered(double2 a, double2 b, double2 q, filter_bound bound) {
-  const double2 ab = a - b;
-  const double2 qa = a - q;
-  const double2 qb = b - q;
-  const double difference = ab.x * (qa.x + qb.x) + ab.y * (qa.y + qb.y);
-  const double magnitude = fabs(ab.x) * (fabs(qa.x) + fabs(qb.x)) + fabs(ab.y) * (fabs(qa.y) + fabs(qb.y));
-  const double error = bound * magnitude;
-  return difference > error ? 1 : difference < -error ? -1 : bound == 0.0 ? 0 : UNDECIDED;
+static inline int nearness_filtered(coordinate2 a, coordinate2 b, coordinate2 q, filter_bound bound) {
+  const real2 ab = difference2(a, b);
+  const real2 qa = difference2(a, q);
+  const real2 qb = difference2(b, q);
+  const real dot = ab.x * (qa.x + qb.x) + ab.y * (qa.y + qb.y);
+  const real magnitude = fabs(ab.x) * (fabs(qa.x) + fabs(qb.x)) + fabs(ab.y) * (fabs(qa.y) + fabs(qb.y));
+  const real error = error_within(bound, magnitude);
+  return dot > error ? 1 : dot < -error ? -1 : bound == 0 ? 0 : UNDECIDED;
 }
+
+#ifdef FIXED_POINT
+
+// Below 2^127, as its terms are.
+static inline integer128 squared_integer(coordinate2 a, coordinate2 q) {
+  return sum_128(product_128(a.x - q.x, a.x - q.x), product_128(a.y - q.y, a.y - q.y));
+}
+
+OUT_OF_LINE static inline int nearness_exact(coordinate2 a, coordinate2 b, coordinate2 q) {
+  return sign_of_128(difference_128(squared_integer(a, q), squared_integer(b, q)));
+}
+
+#else
 
 // e += f * g, differences as two_sum gives them.
 static inline void expansion_add_product(expansion* e, double2 f, double2 g) {
@@ -57,7 +71,9 @@ OUT_OF_LINE static inline int nearness_exact(double2 a, double2 b, double2 q) {
   return expansion_sign(&sum);
 }
 
-static inline int nearness_sign(double2 a, double2 b, double2 q, filter_bound bound) {
+#endif
+
+static inline int nearness_sign(coordinate2 a, coordinate2 b, coordinate2 q, filter_bound bound) {
   const int sign = nearness_filtered(a, b, q, bound);
   return sign != UNDECIDED ? sign : nearness_exact(a, b, q);
 }

@@ -30,6 +30,9 @@ typedef ulong double_bits;
 typedef uint float_bits;
 #endif
 
+// The bits of coordinates in fixed point, without the sign.
+INTEGER_CONSTANT(COORDINATE_BITS, 62);
+
 #ifdef FIXED_POINT
 
 typedef long coordinate;
@@ -50,7 +53,6 @@ typedef float2 real_pair;
 #define REAL(number) number##f
 
 // Differences are below 2^(COORDINATE_BITS + 1), and below 2^30 as multiples of UNIT.
-INTEGER_CONSTANT(COORDINATE_BITS, 62);
 #define UNIT REAL(0x1p-33)
 // What underflow can add to the error of a sum of products of four differences, and more.
 #define UNDERFLOW_ERROR REAL(0x1p-110)
@@ -75,7 +77,8 @@ static inline real2 difference2(coordinate2 a, coordinate2 b) {
   return VECTOR(real2, real_of(a.x - b.x), real_of(a.y - b.y));
 }
 
-// The difference as a double would round it, to 53 bits, ties to even: on all devices the same.
+// The difference as a double would round it, to 53 bits, ties to even: on all devices the same. For coordinates that
+// are doubles, of at most 53 bits: their differences do not reach 2^63 when rounded.
 static inline coordinate rounded_difference(coordinate a, coordinate b) {
   const long exact = a - b;
   const ulong magnitude = as_ulong(exact < 0 ? -exact : exact);
@@ -158,7 +161,7 @@ static inline real_pair high_negated(real_pair p) { return (real_pair)(p.x, -p.y
 static inline real_pair magnitudes(real_pair p) { return fabs(p); }
 #endif
 
-// The error of a sum of products whose magnitudes have this sum.
+// The error of a sum of products of four differences, whose magnitudes have this sum. Products of two do not underflow.
 static inline real error_within(filter_bound bound, real magnitude) {
 #ifdef FIXED_POINT
   return bound * magnitude + UNDERFLOW_ERROR;

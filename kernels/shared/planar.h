@@ -24,7 +24,7 @@ static inline int filtered_sign(real det, real magnitude, filter_bound bound) {
 static inline int orient_filtered(coordinate2 a, coordinate2 b, coordinate2 c, filter_bound bound) {
   const real2 ca = difference2(a, c), cb = difference2(b, c);
   const real left = ca.x * cb.y, right = ca.y * cb.x;
-  const real det = left - right, error = error_within(bound, fabs(left) + fabs(right));
+  const real det = left - right, error = bound * (fabs(left) + fabs(right));
   // As a chain of comparisons, for walks, which branch by the sign.
   return det > error ? 1 : det < -error ? -1 : bound == 0 ? 0 : UNDECIDED;
 }

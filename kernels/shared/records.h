@@ -8,11 +8,13 @@
 BEGIN_SHARED
 
 // Bounds of the predicates' filters: HULL_DEPTH_BOUND, ORIENT_BOUND and CIRCLE_BOUND of shared/bounds.h, or 0 where the
-// input is so coarse that floating point is exact.
+// input is so coarse that floating point is exact. In fixed point, `coarse` says instead that products of differences
+// fit into 64 bits (COARSE_FIXED_BITS).
 typedef struct {
   filter_bound hull, orient, circle;
+  int coarse;
 } filter_bounds;
-ASSERT_SIZE(filter_bounds, 12);
+ASSERT_SIZE(filter_bounds, 16);
 
 // Coordinates are scaled by the product of three powers of two, which may be no double itself. Those in fixed point
 // are scaled already.
@@ -106,12 +108,14 @@ typedef struct {
 } face;
 ASSERT_SIZE(face, 24);
 
-// How a set's queries are scaled, and how much more its points are, which are scaled already.
+// How a set's queries are scaled, and how much more its points are, which are scaled already: by factors, and in fixed
+// point by the powers of two `shift` and `unit`.
 typedef struct {
   scaling scale;
   coordinate unit;
+  int shift, unused;
 } query_frame;
-ASSERT_SIZE(query_frame, 32);
+ASSERT_SIZE(query_frame, 40);
 
 // A set of a locator: where its tree's nodes begin, the tree's depth, where its leaves' starts begin, its number of
 // triangles, and where its hull begins and ends.

@@ -23,8 +23,15 @@ INTEGER_CONSTANT(MERGE_IS_NEW, -3);
 // are so coarse that ties cost nothing, polygons are small, and merges make them canonical. Otherwise they are left to
 // blocks/fans.cl, since merges that make fans of large polygons would make most of their edges again and again.
 #ifndef RINGS_TIE
-#define RINGS_TIE(a, b, c, d, bound) ((bound) == 0 && canonical_tie(a, b, c, d, 0) > 0)
+#define RINGS_TIE(a, b, c, d, bounds) (has_coarse_points(bounds) && canonical_tie(a, b, c, d, (bounds).circle) > 0)
 #endif
+static inline int has_coarse_points(filter_bounds bounds) {
+#ifdef FIXED_POINT
+  return bounds.coarse;
+#else
+  return bounds.circle == 0;
+#endif
+}
 
 // What one work-item works on: its own edges, all free at first.
 typedef struct {
@@ -81,21 +88,28 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
 #define EXACT_OR_STOPPED(sign) (sign)
 #endif
 
-// What filters could not decide; out of line, so that merges have more registers.
+// What filters could not decide; out of line, so that merges have more registers. In fixed point, exact orientations
+// are a few products, for which no merge needs to stop.
 OUT_OF_LINE static inline int side_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
+#if defined(FIXED_POINT) && defined(RINGS_STOP)
+  return orient_exact(a, b, c);
+#else
   ++g->undecided;
   return EXACT_OR_STOPPED(orient_exact(a, b, c));
+#endif
 }
 
 OUT_OF_LINE static inline int in_circle_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
                                                   filter_bound bound) {
   int sign = 0;
-  if (bound != 0) {
+  if (has_coarse_points(g->bounds)) {
+    sign = circle_coarse(a, b, c, d);
+  } else {
     ++g->undecided;
     sign = EXACT_OR_STOPPED(circle_undecided(a, b, c, d, bound));
     g->ties += sign == 0;
   }
-  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, bound);
+  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, g->bounds);
 }
 
 static inline int side_of(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {

@@ -54,6 +54,7 @@ class ChunkedTriangulation:
         The numbers of ``points``, ``duplicates``, ``triangles`` and ``hull_vertices``; the ``rounds``,
         each with its ``points``, ``chunks``, final ``triangles`` and points ``handed_on``; the
         ``devices``, each with the ``points`` of its chunks; ``phases``, ``seconds`` and others.
+        ``host_points`` and ``note`` say what devices without double precision have left to the host.
     """
 
     triangles: Optional[Indices]

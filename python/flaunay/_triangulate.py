@@ -146,7 +146,7 @@ def triangulate(
     device : str, optional
         A part of a device's or platform's name, ``"#k"``, the k-th of `devices`, or ``"host"`` for the
         host's cores without OpenCL. Without it, the one that the environment variable FLAUNAY_DEVICE
-        names, else the first GPU with fp64, else the host. The results are the same.
+        names, else the first GPU with fp64, else the first GPU, else the host. The results are the same.
     neighbors, halfedges : bool
         Which of these to compute.
     mode : str

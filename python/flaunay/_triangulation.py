@@ -41,7 +41,8 @@ class Triangulation:
         Set s has the triangles ``triangle_offsets[s]`` to ``triangle_offsets[s + 1]``, and likewise
         hull vertices.
     statistics : dict
-        How it came about: ``device``, ``seconds``, ``device_bytes_peak`` and others.
+        How it came about: ``device``, ``seconds``, ``device_bytes_peak`` and others. ``note`` says what a
+        device without double precision has left to the host, and is empty otherwise.
     """
 
     triangles: npt.NDArray[np.int32]

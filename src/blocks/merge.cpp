@@ -17,7 +17,9 @@ std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
 }
 
 // Without undecided predicates, no merge stops.
-bool may_stop(const Workspace& work) { return work.bounds.orient != 0 || work.bounds.circle != 0; }
+bool may_stop(const Workspace& work) {
+  return work.bounds.coarse == 0 && (work.bounds.orient != 0 || work.bounds.circle != 0);
+}
 
 // Parts of this height have at least so many vertices.
 std::size_t least_vertices(int height) { return std::size_t{2} << height; }

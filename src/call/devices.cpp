@@ -23,7 +23,8 @@ constexpr const char* kChecksInFixedPoint[] = {"products of integers are whole",
                                                "integers are converted to floats",
                                                "floats are exact to one unit",
                                                "quotients of floats are exact to "
-                                               "three units"};
+                                               "three units",
+                                               "floats of 2^-110 are kept"};
 
 constexpr const char* kChecks[] = {"contraction is off",
                                    "fma rounds once",
@@ -64,7 +65,7 @@ cl_uint failed_checks_in_fixed_point(host::Runtime& runtime) {
   // Operands as in kernels/call/self_test_fixed.cl, and their results, which were computed with rational
   // arithmetic.
   const cl_long operands[] = {0x3fffffffffffffff, -0x2aaaaaaaaaaaaaab, 0x123456789abcdef1, 0};
-  const cl_float reals[] = {0x1.555556p-2f, 0x1.00008p+20f};
+  const cl_float reals[] = {0x1.555556p-2f, 0x1.00008p+20f, 0x1p-55f};
   const cl_ulong expected[] = {0x6aaaaaaaaaaaaaab, 0xf555555555555555, 0xca4ab582281edee1, 0x014b66dc33f6acdc,
                                0xffaaaaaaaaaaaaaa, 0x01aaaaaaaaaaaaaa, 0x5a6bf6646095ae57, 0xc598153d0f8cb488,
                                0xac71c71c71c71c71, 0x00205d0b811316e1};

@@ -15,7 +15,7 @@
 
 // Among edges of cocircular points, the merge keeps those that it meets first. geometry::finish makes the
 // canonical result.
-#define RINGS_TIE(a, b, c, d, bound) 0
+#define RINGS_TIE(a, b, c, d, bounds) 0
 #include "shared/rings.h"
 
 namespace flaunay::dwyer {

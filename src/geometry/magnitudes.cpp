@@ -153,8 +153,9 @@ int fixed_point_shift(const Magnitudes& magnitudes) {
   return bits_of(magnitudes) == 0 ? 0 : kFixedPointBits - 1 - magnitudes.largest;
 }
 
-Bounds fixed_point_bounds() {
-  return {0, ORIENT_BOUND_FOR(SINGLE_ROUNDOFF), CIRCLE_BOUND_FOR(SINGLE_ROUNDOFF)};
+Bounds fixed_point_bounds(int bits) {
+  return {0, ORIENT_BOUND_FOR(SINGLE_ROUNDOFF), CIRCLE_BOUND_FOR(SINGLE_ROUNDOFF),
+          bits <= kernel::COARSE_FIXED_BITS};
 }
 
 SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,

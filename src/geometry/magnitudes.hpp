@@ -97,8 +97,8 @@ bool fits_fixed_point(const Magnitudes& magnitudes);
 /// The power of two by which coordinates in fixed point are multiplied, so that they have as many bits as can
 /// be. Throws TooWideForFixedPoint if they do not fit. O(1).
 int fixed_point_shift(const Magnitudes& magnitudes);
-/// The bounds of filters in fixed point.
-Bounds fixed_point_bounds();
+/// The bounds of filters in fixed point, for points of so many bits (bits_of).
+Bounds fixed_point_bounds(int bits);
 
 /// The scaling of several sets of points: the same for all, or if their magnitudes differ too much, one for
 /// each.

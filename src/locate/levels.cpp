@@ -5,6 +5,7 @@
 #include "blocks/run.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/vector_operations.hpp"
+#include "launchers/locate/fixed_point.cl.hpp"
 #include "launchers/locate/levels.cl.hpp"
 #include "locate/locator.hpp"
 #include "shared/nearest_search.h"
@@ -35,12 +36,12 @@ class SampleExchange : public blocks::Exchange {
     return mesh_;
   }
 
+  /// Without coordinates.
   DeviceMesh result(const std::vector<std::size_t>& offsets, const blocks::MeshSizes& sizes) const {
     DeviceMesh mesh;
     mesh.point_offsets = offsets;
     mesh.triangle_offsets = sizes.triangle_offsets;
     mesh.hull_offsets = sizes.hull_offsets;
-    mesh.coordinates = coordinates_;
     mesh.triangles = mesh_.triangles;
     mesh.neighbors = mesh_.neighbors;
     mesh.hull = mesh_.hull;
@@ -152,12 +153,19 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
                                              .points = locator.points,
                                              .coordinates = coordinates.as<cl_double2>(),
                                              .below = levels.below});
-  SampleExchange exchange(results, coordinates);
+  auto given = coordinates;
+  if (tuning.fixed_point != 0) {
+    given = results.allocate<cl_double>(2 * samples);
+    runtime.map(2 * samples,
+                kernels::give_coordinates{.coordinates = coordinates, .given = given.as<cl_ulong>()});
+  }
+  SampleExchange exchange(results, given);
   const Options options;
   statistics::Phases phases(options);
   const blocks::Outcome outcome = blocks::run(runtime, persistent, sizes.offsets, exchange, phases);
-  const auto samples_locator = std::make_shared<Locator>(
-      make_walk_locator(runtime, own, exchange.result(sizes.offsets, outcome.sizes)));
+  DeviceMesh mesh = exchange.result(sizes.offsets, outcome.sizes);
+  mesh.coordinates = coordinates;
+  const auto samples_locator = std::make_shared<Locator>(make_walk_locator(runtime, own, mesh));
   measure_clearances(runtime, *samples_locator);
   const Locator& sampled = *samples_locator;
   const auto numbers = scratch.allocate<cl_int>(samples);

@@ -8,6 +8,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "host/vector_operations.hpp"
+#include "launchers/locate/fixed_point.cl.hpp"
 #include "launchers/locate/locate.cl.hpp"
 #include "points/inspect.hpp"
 #include "tuning/tuning.hpp"
@@ -65,14 +66,15 @@ std::vector<kernel::mesh_set> make_records(const DeviceMesh& mesh, std::size_t v
 }
 
 // Makes the trees, and finds per leaf a triangle at its sample.
-void make_trees(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
+// input: the points as queries go down the trees.
+void make_trees(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh, const Buffer<cl_double>& input,
                 const std::vector<points::SetToCut>& cut, const Buffer<cl_int>& incident, Locator& locator) {
   Arena::Scope scope(runtime.arena());
   const points::CutTrees trees(runtime, cut, kSamplesPerLeaf);
   locator.nodes = own.allocate<kernel::cut_node>(trees.nodes());
   locator.starts = own.allocate<cl_int>(trees.samples());
   if (cut.empty()) return;
-  const points::CutTrees::Samples samples = trees.draw(mesh.coordinates);
+  const points::CutTrees::Samples samples = trees.draw(input);
   const auto by_leaf = trees.cut(samples.points, locator.nodes);
   runtime.map(trees.samples(), kernels::start_triangles{.points = mesh.points(),
                                                         .last = mesh.triangle_count() - 1,
@@ -162,6 +164,8 @@ struct Pass {
   cl_int sets;
   Buffer<kernel::query_frame> frames;
   Buffer<cl_int> query_offsets;  // not read if there is one set
+  bool is_off_grid;              // whether some queries are not on the grid: see QueryScaling
+  Magnitudes both;               // of points and of queries, if some are off the grid
   bool are_placed;               // whether `placed` is filled; otherwise the first kernel does it
   Buffer<cl_ulong> keys;         // the leaves of placed queries
   Buffer<cl_int> order;          // per place, the number of its query
@@ -183,6 +187,7 @@ void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<c
                  kernels::find_query_leaves{.sets = pass.sets,
                                             .query_offsets = pass.query_offsets,
                                             .records = locator.records,
+                                            .frames = pass.frames,
                                             .nodes = locator.nodes,
                                             .queries = queries,
                                             .keys = pass.keys,
@@ -210,6 +215,8 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
   QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets, limits);
   pass.orient_bound = scaling.orient_bound;
   pass.nearness_bound = scaling.nearness_bound;
+  pass.is_off_grid = scaling.is_off_grid;
+  pass.both = scaling.both;
   pass.frames = runtime.upload(runtime.arena(), std::move(scaling.frames));
   pass.sets = static_cast<cl_int>(locator.sets);
   pass.query_offsets = runtime.arena().allocate<cl_int>(locator.sets + 1);
@@ -254,20 +261,58 @@ void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& 
                                          .found = found});
 }
 
-// vertices_per_leaf: of the trees.
-Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
+// Goes on from triangles, by place, to those of queries off the grid. answers: by query.
+void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
+                     const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
+                     const Buffer<cl_int>& answers) {
+  runtime.map(m, kernels::locate_off_grid{.sets = pass.sets,
+                                          .query_offsets = pass.query_offsets,
+                                          .records = locator.records,
+                                          .frames = pass.frames,
+                                          .order = pass.order,
+                                          .placed = pass.placed,
+                                          .queries = queries,
+                                          .points = locator.points,
+                                          .faces = locator.faces,
+                                          .first_triangle = locator.first_triangle,
+                                          .found = found,
+                                          .answers = answers});
+}
+
+// Goes on from vertices to those nearest to queries off the grid, and makes points of all. Waits once. Throws
+// TooWideForFixedPoint if one is far to go to.
+void nearest_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
+                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& points) {
+  const auto unanswered = runtime.arena().allocate<cl_int>(1);
+  runtime.fill(unanswered, 1, cl_int{0});
+  runtime.map(m, kernels::nearest_off_grid{.sets = pass.sets,
+                                           .most = tuning_of(runtime).off_grid_most,
+                                           .query_offsets = pass.query_offsets,
+                                           .records = locator.records,
+                                           .frames = pass.frames,
+                                           .order = pass.order,
+                                           .placed = pass.placed,
+                                           .queries = queries,
+                                           .points = locator.points,
+                                           .source = locator.source,
+                                           .clearances = locator.clearances,
+                                           .faces = locator.faces,
+                                           .first_triangle = locator.first_triangle,
+                                           .hull_points = locator.hull_points,
+                                           .hull = locator.hull,
+                                           .nearest = points,
+                                           .unanswered = unanswered});
+  if (m > 0 && runtime.read_one(unanswered, 0) != 0) throw TooWideForFixedPoint(pass.both);
+}
+
+// input: the points of the mesh. vertices_per_leaf: of the trees.
+Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh, const UniformPoints& input,
                      std::size_t vertices_per_leaf) {
   Arena& scratch = runtime.arena();
-  Arena::Scope scope(scratch);
   const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
   check_sizes(mesh);
   Locator locator;
   locator.sets = mesh.sets();
-  const UniformPoints input = make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
-  locator.range = {input.by_set, input.shifts};
-  if (input.by_set.empty()) {
-    locator.range.by_set = inspect_sets(runtime, mesh.coordinates, mesh.point_offsets);
-  }
   locator.points = own.allocate<cl_double2>(n);
   locator.source = own.allocate<cl_int>(n);
   locator.first_triangle = own.allocate<cl_int>(n);
@@ -297,7 +342,8 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
                                                 .bad = device_faults});
   std::vector<points::SetToCut> cut;
   locator.records = runtime.upload(own, make_records(mesh, vertices_per_leaf, cut));
-  make_trees(runtime, own, mesh, cut, incident, locator);
+  const bool is_fixed = tuning_of(runtime).fixed_point != 0;
+  make_trees(runtime, own, mesh, is_fixed ? input.coordinates : mesh.coordinates, cut, incident, locator);
   runtime.read(device_faults, 0, 3, &faults.triangle);
   throw_faults(faults);
   return locator;
@@ -314,6 +360,7 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
   runtime.map(m, kernels::nearest_points{.sets = pass.sets,
                                          .long_from = limits.long_from,
                                          .most_neighbors = limits.most,
+                                         .are_vertices = pass.is_off_grid,
                                          .levels = levels.count,
                                          .sets_with_levels = levels.sets,
                                          .query_offsets = pass.query_offsets,
@@ -351,11 +398,20 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
 }  // namespace
 
 Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
-  return make_locator(runtime, own, mesh, tuning_of(runtime).vertices_per_leaf);
+  Arena::Scope scope(runtime.arena());
+  const UniformPoints input = make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
+  Locator locator = make_locator(runtime, own, mesh, input, tuning_of(runtime).vertices_per_leaf);
+  locator.range = {input.by_set, input.shifts};
+  if (input.by_set.empty()) {
+    locator.range.by_set = inspect_sets(runtime, mesh.coordinates, mesh.point_offsets);
+  }
+  return locator;
 }
 
 Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
-  return make_locator(runtime, own, mesh, std::numeric_limits<std::size_t>::max());
+  Arena::Scope scope(runtime.arena());
+  const UniformPoints input{mesh.coordinates, {}, {}, {}};
+  return make_locator(runtime, own, mesh, input, std::numeric_limits<std::size_t>::max());
 }
 
 void measure_clearances(host::Runtime& runtime, Locator& locator) {
@@ -370,7 +426,12 @@ void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_doub
             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
   Arena::Scope scope(runtime.arena());
   const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
-  find_triangles(runtime, locator, pass, true, kNoLimits, queries, m, triangles);
+  if (!pass.is_off_grid) {
+    return find_triangles(runtime, locator, pass, true, kNoLimits, queries, m, triangles);
+  }
+  const auto found = runtime.arena().allocate<cl_int>(m);
+  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
+  locate_off_grid(runtime, locator, pass, queries, m, found, triangles);
 }
 
 void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
@@ -388,10 +449,12 @@ void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& 
   find_triangles(runtime, locator, pass, false, limits, queries, m, found);
   runtime.fill(unanswered, 1, cl_int{0});
   nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
-  if (m == 0 || locator.most_triangles < limits.long_from || locator.levels.count > 0) return;
-  if (runtime.read_one(unanswered, 0) == 0) return;
-  make_levels(runtime, locator);
-  nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
+  if (m > 0 && locator.most_triangles >= limits.long_from && locator.levels.count == 0 &&
+      runtime.read_one(unanswered, 0) != 0) {
+    make_levels(runtime, locator);
+    nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
+  }
+  if (pass.is_off_grid) nearest_off_grid(runtime, locator, pass, queries, m, points);
 }
 
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,

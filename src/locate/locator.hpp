@@ -11,12 +11,14 @@
 
 namespace flaunay::locate {
 
-/// The search structure of a triangulation in device memory, about 80 bytes per point.
+/// The search structure of a triangulation in device memory, about 80 bytes per point. In fixed point,
+/// coordinates are 64-bit integers.
 struct Locator {
   std::size_t sets = 0;
   PointRange range{};
   /// The vertices of triangles, in the order of their first triangles: coordinates, indices of points, first
-  /// triangles, and the squared distances to their nearest neighbours (the upper half of a double).
+  /// triangles, and the squared distances to their nearest neighbours (the upper half of a double, or in
+  /// fixed point a float).
   Buffer<cl_double2> points{};
   Buffer<cl_int> source{}, first_triangle{}, clearances{};
   Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
@@ -38,7 +40,7 @@ struct Locator {
 /// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
 Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
 
-/// The same without trees.
+/// The same without trees, of points that are scaled already. Not for queries of callers.
 Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
 
 /// Computes the clearances, which the search for nearest points needs. Does not wait.

@@ -27,6 +27,10 @@ struct PointRange {
 struct QueryScaling {
   std::vector<kernel::query_frame> frames;  ///< by set
   float orient_bound = 0, nearness_bound = 0;
+  /// In fixed point: whether some queries are finer than the grid of their set's points, or farther away than
+  /// it reaches. Kernels first answer these for the nearest place of the grid (kernels/locate/fixed_point.cl).
+  bool is_off_grid = false;
+  Magnitudes both{};  ///< of points and queries of all sets
 };
 
 /// What predicates on points and queries need: coordinates are multiples of 2^lowest below 2^(largest + 1).
@@ -42,10 +46,14 @@ constexpr QueryLimits kCircleLimits{kernel::LARGEST_EXPONENT, kernel::LOWEST_EXP
 
 /// Inspects queries and chooses their scaling: the same for all sets, or if magnitudes differ too much, one
 /// for each. Waits once, or twice. Throws Error(input), which names a query, if one is not finite, too fine
-/// or too far away.
+/// or too far away. In fixed point throws TooWideForFixedPoint, too.
 QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, const Buffer<cl_double>& queries,
                            const std::vector<std::size_t>& query_offsets,
                            const QueryLimits& limits = kOrientLimits);
+
+/// Chooses the scaling of one set in fixed point. Throws TooWideForFixedPoint for queries that are very much
+/// finer or farther away than points.
+QueryScaling fixed_point_scaling(const Magnitudes& points, const Magnitudes& asked, int point_shift);
 
 /// Chooses the scaling of one set, whose points and queries together have accepted magnitudes.
 QueryScaling query_scaling(const Magnitudes& both, int point_shift,

@@ -14,7 +14,8 @@ using host::Buffer;
 
 CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, std::size_t samples_per_leaf)
     : runtime_(runtime),
-      by_tiles_(runtime.sizes().tile_group != 0 && samples_per_leaf <= kernel::LARGEST_SAMPLE_TILE) {
+      by_tiles_(runtime.sizes().tile_group != 0 &&
+                samples_per_leaf <= runtime.sizes().local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE) {
   std::size_t leaves = 0;
   for (const SetToCut& set : sets) leaves += std::size_t{1} << set.depth;
   const std::size_t most =

@@ -47,15 +47,20 @@ UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& 
 UniformPoints in_fixed_point(host::Runtime& runtime, const host::Buffer<cl_double>& points,
                              const std::vector<std::size_t>& offsets, const Magnitudes& all) {
   UniformPoints uniform;
+  int bits = 0;
   const std::size_t sets = offsets.size() - 1;
   if (sets > 1 && !fits_fixed_point(all)) {
     uniform.by_set = inspect_sets(runtime, points, offsets);
-    for (const Magnitudes& each : uniform.by_set) uniform.shifts.push_back(fixed_point_shift(each));
+    for (const Magnitudes& each : uniform.by_set) {
+      uniform.shifts.push_back(fixed_point_shift(each));
+      bits = std::max(bits, bits_of(each));
+    }
   } else {
+    bits = bits_of(all);
     if (sets == 1) uniform.by_set = {all};
     uniform.shifts = {fixed_point_shift(all)};
   }
-  uniform.scaling.bounds = fixed_point_bounds();
+  uniform.scaling.bounds = fixed_point_bounds(bits);
   uniform.coordinates = scaled_copy(runtime, points, offsets, uniform.shifts);
   return uniform;
 }

@@ -135,7 +135,8 @@ constexpr Row kTable[] = {
      {1024},
      {1024},
      {6},
-     "What 32 KB of local memory hold with both orders; larger nodes cost two launches a level."},
+     "What 32 KB of local memory hold with both orders, half with 16 KB; larger nodes cost two launches a "
+     "level."},
     {"block_bits",
      &Tuning::block_bits,
      {10},
@@ -239,6 +240,12 @@ constexpr Row kTable[] = {
      {128},
      {2},
      "Of uniform points a query needs some 10 triangles and 20 neighbours."},
+    {"off_grid_most",
+     &Tuning::off_grid_most,
+     {16384},
+     {16384},
+     {16384},
+     "Takes one work-item milliseconds; the host would first have to make a locator of its own."},
     {"chain_wrapped_most",
      &Tuning::chain_wrapped_most,
      {24},
@@ -381,6 +388,8 @@ struct NamedDevice {
 constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
+    {"llvmpipe", "fetch_ahead=0,in_host_memory=0",
+     "Mesa's rusticl ends the process when it compiles __builtin_prefetch, and may refuse to unmap what it mapped."},
 };
 
 constexpr std::size_t kPointsOfASmallBlock = 6;
@@ -497,12 +506,11 @@ Tuning tuning_of_target(const Target& target) {
 
 // Reduces sizes to what kernels have local memory for.
 void fit_tiles(Tuning& tuning) {
-  const auto fit = [](std::size_t& size, int most) {
-    size = std::clamp<std::size_t>(size, 1, static_cast<std::size_t>(most));
-  };
-  fit(tuning.point_tile, kernel::LARGEST_POINT_TILE);
-  fit(tuning.sample_tile, kernel::LARGEST_SAMPLE_TILE);
-  fit(tuning.samples_per_gap_block, kernel::LARGEST_SAMPLE_TILE);
+  const auto fit = [](std::size_t& size, std::size_t most) { size = std::clamp<std::size_t>(size, 1, most); };
+  const std::size_t samples = tuning.local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE;
+  fit(tuning.point_tile, tuning.local_bytes / kernel::LOCAL_BYTES_PER_POINT);
+  fit(tuning.sample_tile, samples);
+  fit(tuning.samples_per_gap_block, samples);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
   fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
 }

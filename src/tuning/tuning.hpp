@@ -40,9 +40,8 @@ struct Tuning : host::Sizes {
   /// size.
   std::size_t chain_points = 1;
   std::size_t chain_group_least = 1;
-  /// If work-groups take tiles (tile_group): the points and samples per tile, at most
-  /// kernel::LARGEST_POINT_TILE and kernel::LARGEST_SAMPLE_TILE, and the bits of a block's number per pass
-  /// over the points, at most kernel::MOST_BLOCK_BITS.
+  /// If work-groups take tiles (tile_group): the points and samples per tile, at most what local_bytes holds,
+  /// and the bits of a block's number per pass over the points, at most kernel::MOST_BLOCK_BITS.
   std::size_t point_tile = 1;
   std::size_t sample_tile = 1;
   std::size_t block_bits = 1;
@@ -56,6 +55,8 @@ struct Tuning : host::Sizes {
   std::size_t level_ratio = 2;
   /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels.
   std::size_t walk_most = 1;
+  /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call fails.
+  std::size_t off_grid_most = 1;
 
   /// Chains of at most this many vertices are triangulated by gift-wrapping, and of those with more, a
   /// work-item each inserts the vertices of chains of at most chain_alone_most.
@@ -74,7 +75,7 @@ struct Tuning : host::Sizes {
   /// The largest number of points of a block in rounds after the first, as a rule; 0: blocks are merged
   /// instead of rounds.
   std::size_t round_points = 0;
-  /// Samples per block, for the trees that cut in gaps; at most kernel::LARGEST_SAMPLE_TILE.
+  /// Samples per block, for the trees that cut in gaps; at most a tile of them.
   std::size_t samples_per_gap_block = 1;
   /// If a round leaves more than so many percent of its points, the next one is the last: its blocks are
   /// merged.

@@ -423,8 +423,8 @@ struct Rows {
   explicit Rows(double smallest) {
     FixtureRandom random(4);
     for (std::int32_t k = 0; k < kSide * kSide; ++k) {
-      points.push_back(k % kSide + 0.4 * static_cast<double>(static_cast<float>(random.unit())));
-      points.push_back(k / kSide + 0.4 * static_cast<double>(static_cast<float>(random.unit())));
+      points.push_back(k % kSide + static_cast<double>(static_cast<float>(0.4 * random.unit())));
+      points.push_back(k / kSide + static_cast<double>(static_cast<float>(0.4 * random.unit())));
       if (k % kSide == kSide - 1) segments.insert(segments.end(), {k - kSide + 1, k});
     }
     points[0] = smallest;

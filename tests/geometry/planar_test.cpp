@@ -50,6 +50,25 @@ void expect_circle(const Coordinates& p, int expected) {
   ASSERT_EQ(kernel::circle_undecided(a, b, c, d, CIRCLE_BOUND), expected) << text_of(p);
 }
 
+// Kernels get bounds as floats, which must not be smaller than what docs/exactness.md derives.
+TEST(Bounds, AreFloatsThatAreLargeEnough) {
+  constexpr double e = 0x1p-53, u = 0x1p-23 + 0x1p-43;
+  static_assert(DOUBLE_ROUNDOFF == e && double{SINGLE_ROUNDOFF} == u);
+  const auto expect = [](double bound, double derived) {
+    EXPECT_EQ(double{static_cast<float>(bound)}, bound);
+    EXPECT_GE(bound, derived);
+    EXPECT_LT(bound, 1.00002 * derived);
+  };
+  expect(ORIENT_BOUND, (3 + 16 * e) * e);
+  expect(CIRCLE_BOUND, (10 + 96 * e) * e);
+  expect(ORIENT_BOUND_FOR(SINGLE_ROUNDOFF), 3.0000095 * u);
+  expect(CIRCLE_BOUND_FOR(SINGLE_ROUNDOFF), 10.00002 * u);
+  expect(HULL_DEPTH_BOUND, 10 * e);
+  expect(ANGLE_BOUND, 11 * e);
+  expect(NEARNESS_BOUND, 6 * e);
+  expect(CENTRE_SIDE_BOUND, 12 * e);
+}
+
 TEST(ExactPredicates, TiesAndNearlyTies) {
   FixtureRandom random(10);
   int ties = 0;

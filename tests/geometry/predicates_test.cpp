@@ -194,18 +194,18 @@ constexpr std::size_t kBatch = 1 << 15;
 struct Predicate {
   std::string name;
   std::size_t width;
-  std::function<void(const host::Buffer<cl_double>&, std::size_t, double, const host::Buffer<cl_char>&)>
+  std::function<void(const host::Buffer<cl_double>&, std::size_t, cl_float, const host::Buffer<cl_char>&)>
       filter;
   std::function<void(const host::Buffer<cl_double>&, std::size_t, const host::Buffer<cl_char>&)> exact;
   std::function<int(const double*)> on_host;  // the same text, read as C++
   std::function<int(const double*)> reference;
-  std::function<double(const geometry::Magnitudes&)> bound;
+  std::function<cl_float(const geometry::Magnitudes&)> bound;
 };
 
 /// A class' cases may be coarse themselves; a fine class has them beside others that are not.
-double bound_of(const Predicate& predicate, const Class& of, const std::vector<double>& cases) {
+cl_float bound_of(const Predicate& predicate, const Class& of, const std::vector<double>& cases) {
   const geometry::Magnitudes magnitudes = testing::magnitudes_of(cases);
-  const double bound = predicate.bound(of.is_fine ? testing::beside_fine_ones(magnitudes) : magnitudes);
+  const cl_float bound = predicate.bound(of.is_fine ? testing::beside_fine_ones(magnitudes) : magnitudes);
   EXPECT_EQ(bound != 0, of.is_fine) << predicate.name << ", " << of.name;
   return bound;
 }
@@ -227,7 +227,7 @@ void check(const Predicate& predicate, const Class& of, std::size_t count, Rando
     const auto bare = guarded<cl_char>(runtime, n);
     const auto exact = guarded<cl_char>(runtime, n);
     predicate.filter(device_cases, n, bound_of(predicate, of, cases), filtered);
-    predicate.filter(device_cases, n, 0.0, bare);
+    predicate.filter(device_cases, n, 0, bare);
     predicate.exact(device_cases, n, exact);
     const auto filtered_signs = download(runtime, filtered, n);
     const auto bare_signs = download(runtime, bare, n);
@@ -386,7 +386,7 @@ Predicate hull_predicate(int axis) {
   Predicate predicate;
   predicate.name = std::string("hull depth, ") + kAxisNames[axis];
   predicate.width = 7;
-  predicate.filter = [&runtime, axis](const auto& cases, std::size_t n, double bound, const auto& signs) {
+  predicate.filter = [&runtime, axis](const auto& cases, std::size_t n, cl_float bound, const auto& signs) {
     const Arena::Scope scope(runtime.arena());
     const auto depth = guarded<cl_double>(runtime, n);
     testing::map_unchecked(runtime, "predicates", "hull_filtered", n, cl_int{axis}, bound, cases, depth,
@@ -708,7 +708,7 @@ class Orientation : public ::testing::Test {
     Runtime& runtime = PredicateRuntime::get();
     predicate_.name = "orientation";
     predicate_.width = 6;
-    predicate_.filter = [&runtime](const auto& cases, std::size_t n, double bound, const auto& signs) {
+    predicate_.filter = [&runtime](const auto& cases, std::size_t n, cl_float bound, const auto& signs) {
       testing::map_unchecked(runtime, "predicates", "orient_filtered_cases", n, bound, cases, signs);
     };
     predicate_.exact = [&runtime](const auto& cases, std::size_t n, const auto& signs) {
@@ -881,7 +881,7 @@ class InCircle : public ::testing::TestWithParam<const char*> {
     Runtime& runtime = PredicateRuntime::get();
     predicate_.name = GetParam();
     predicate_.width = 8;
-    predicate_.filter = [&runtime](const auto& cases, std::size_t n, double bound, const auto& signs) {
+    predicate_.filter = [&runtime](const auto& cases, std::size_t n, cl_float bound, const auto& signs) {
       testing::map_unchecked(runtime, "predicates", GetParam(), n, bound, cases, signs);
     };
     predicate_.exact = [&runtime](const auto& cases, std::size_t n, const auto& signs) {
@@ -1083,7 +1083,7 @@ TEST(CircleCanonical, IsTheHostsOnTheDevice) {
   const Arena::Scope scope(runtime.arena());
   const auto device_cases = upload(runtime, cases);
   const auto device_signs = guarded<cl_char>(runtime, kBatch);
-  const double bound = testing::usual_bounds().circle;
+  const cl_float bound = testing::usual_bounds().circle;
   testing::map_unchecked(runtime, "predicates", "circle_canonical_cases", kBatch, bound, device_cases,
                          device_signs);
   const auto signs = download(runtime, device_signs, kBatch);
@@ -1123,7 +1123,7 @@ class Nearness : public ::testing::Test {
     Runtime& runtime = PredicateRuntime::get();
     predicate_.name = "nearness";
     predicate_.width = 6;
-    predicate_.filter = [&runtime](const auto& cases, std::size_t n, double bound, const auto& signs) {
+    predicate_.filter = [&runtime](const auto& cases, std::size_t n, cl_float bound, const auto& signs) {
       testing::map_unchecked(runtime, "predicates", "nearness_filtered_cases", n, bound, cases, signs);
     };
     predicate_.exact = [&runtime](const auto& cases, std::size_t n, const auto& signs) {

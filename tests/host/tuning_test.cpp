@@ -119,8 +119,14 @@ TEST(SmallTuning, FitsTheDevice) {
   EXPECT_EQ(small.chunk_group, 64u);
   EXPECT_EQ(small.sort_group, 64u);
   EXPECT_EQ(small.tile_group, 64u);
-  EXPECT_EQ(fitted(gpu, {1024, 32 * kilobyte}).tile_group, gpu.tile_group);
-  EXPECT_EQ(fitted(gpu, {1024, 32 * kilobyte - 1}).tile_group, 0u) << "too little local memory for tiles";
+  for (const std::size_t local : {64 * kilobyte, 32 * kilobyte, 32 * kilobyte - 1, 16 * kilobyte}) {
+    const Tuning tuning = fitted(gpu, {1024, local});
+    EXPECT_EQ(tuning.tile_group, gpu.tile_group);
+    EXPECT_EQ(tuning.local_bytes, local < 32 * kilobyte ? 16 * kilobyte : 32 * kilobyte);
+    const std::string option = "-DLOCAL_BYTES=" + std::to_string(tuning.local_bytes);
+    EXPECT_TRUE(contains(tuning.build_options(), option)) << tuning.build_options();
+  }
+  EXPECT_EQ(fitted(gpu, {1024, 16 * kilobyte - 1}).tile_group, 0u) << "too little local memory for tiles";
   EXPECT_EQ(fitted(tuning_named("cpu"), {1024, 64 * kilobyte}).tile_group, 0u);
   small = fitted(gpu, {1, 64 * kilobyte});
   EXPECT_EQ(small.map_group, 1u);

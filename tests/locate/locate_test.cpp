@@ -23,12 +23,14 @@
 #include "locate/levels.hpp"
 #include "locate/locator.hpp"
 #include "shared/nearest_search.h"
+#include "shared/off_grid.h"
 #include "tests/locate/support.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::locate {
 namespace {
 
+/// In fixed point without values.
 struct Answers {
   std::vector<cl_int> triangles, nearest;
   std::vector<double> values;
@@ -45,6 +47,7 @@ Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& valu
   const auto results = guarded<cl_double>(runtime, m);
   locate(runtime, locator, queries, m, input.query_offsets, triangles);
   nearest(runtime, locator, queries, m, input.query_offsets, points);
+  if (is_fixed_point(runtime)) return {download(runtime, triangles, m), download(runtime, points, m), {}};
   interpolate::linear(runtime, locator, {upload(runtime, values), 1, std::nan("")}, queries, m,
                       input.query_offsets, results);
   return {download(runtime, triangles, m), download(runtime, points, m), download(runtime, results, m)};
@@ -98,7 +101,47 @@ double value_twin(const Case& input, cl_int triangle, const std::vector<double>&
   return mpq_class(sum / whole).get_d();
 }
 
-void check_answers(const Case& input, const std::vector<std::string>& names = tunings()) {
+/// Whether a set's points do not fit into fixed point, or its queries are very much finer or farther away.
+bool is_too_wide(const Case& input, std::size_t set) {
+  const Magnitudes points =
+      geometry::inspect(input.points.data(), input.offsets[set], input.offsets[set + 1]);
+  const Magnitudes asked =
+      geometry::inspect(input.queries.data(), input.query_offsets[set], input.query_offsets[set + 1]);
+  return bits_of(points) > kernel::COORDINATE_BITS || points.lowest - asked.lowest > kernel::FINER_PLACES ||
+         asked.largest - points.largest > kernel::FINER_PLACES - 2;
+}
+
+/// Answers in fixed point; none where these refuse what is too wide.
+std::unique_ptr<Answers> ask_if_it_fits(Runtime& runtime, const Case& input,
+                                        const std::vector<double>& values) {
+  try {
+    return std::make_unique<Answers>(ask(runtime, input, values));
+  } catch (const TooWideForFixedPoint&) {
+    bool is_any = false;
+    for (std::size_t s = 0; s < input.sets(); ++s) is_any = is_any || is_too_wide(input, s);
+    EXPECT_TRUE(is_fixed_point(runtime) && is_any);
+    return nullptr;
+  }
+}
+
+/// expected: by the twin, for answers that are right otherwise.
+void check_values(const Case& input, const Answers& answers, const std::vector<double>& expected,
+                  const std::vector<double>& values) {
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_EQ(std::isnan(answers.values[i]), std::isnan(expected[i])) << i;
+    if (answers.triangles[i] < 0) continue;
+    ASSERT_NEAR(answers.values[i], expected[i], 0x1p-38) << i;
+    if (distance(input.point(answers.nearest[i]), input.query(i)) == 0) {
+      ASSERT_EQ(answers.values[i],
+                values[static_cast<std::size_t>(
+                    input.mesh.representatives[static_cast<std::size_t>(answers.nearest[i])])]);
+    }
+  }
+}
+
+/// Returns how many of the tunings that compute in fixed point did.
+int check_answers(const Case& input, const std::vector<std::string>& names = tunings_with_fixed_point()) {
+  int in_fixed_point = 0;
   const std::vector<double> values = values_for(input.size());
   std::vector<cl_int> triangles, points;
   std::vector<double> results;
@@ -112,18 +155,15 @@ void check_answers(const Case& input, const std::vector<std::string>& names = tu
   std::unique_ptr<Answers> first;
   for (const std::string& name : names) {
     SCOPED_TRACE("tuning " + name);
-    const Answers answers = ask(Runtimes::get(name), input, values);
+    Runtime& runtime = Runtimes::get(name);
+    const std::unique_ptr<Answers> all = ask_if_it_fits(runtime, input, values);
+    if (!all) continue;
+    const Answers& answers = *all;
     EXPECT_TRUE(same(answers.triangles, triangles));
     EXPECT_TRUE(same(answers.nearest, points));
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      ASSERT_EQ(std::isnan(answers.values[i]), std::isnan(results[i])) << i;
-      if (triangles[i] < 0) continue;
-      ASSERT_NEAR(answers.values[i], results[i], 0x1p-38) << i;
-      if (distance(input.point(points[i]), input.query(i)) == 0) {
-        ASSERT_EQ(answers.values[i], values[static_cast<std::size_t>(
-                                         input.mesh.representatives[static_cast<std::size_t>(points[i])])]);
-      }
-    }
+    in_fixed_point += is_fixed_point(runtime);
+    if (is_fixed_point(runtime)) continue;
+    check_values(input, answers, results, values);
     if (first) {
       // As bytes, since NaN is not equal to itself.
       const auto bytes = [](const std::vector<double>& numbers) {
@@ -134,6 +174,15 @@ void check_answers(const Case& input, const std::vector<std::string>& names = tu
       first = std::make_unique<Answers>(answers);
     }
   }
+  return in_fixed_point;
+}
+
+/// That they are answered in fixed point, too.
+void check_all_answers(const Case& input) {
+  const auto names = tunings_with_fixed_point();
+  const auto fixed = std::count_if(names.begin(), names.end(),
+                                   [](const auto& name) { return is_fixed_point(Runtimes::get(name)); });
+  EXPECT_EQ(check_answers(input), fixed);
 }
 
 TEST(SmallLocate, NestedSets) {
@@ -143,12 +192,12 @@ TEST(SmallLocate, NestedSets) {
 
 TEST(SmallLocate, ASetWithATree) {
   const Case input = make_case(make_fixture("uniform", 300, 6), 3, 7);
-  check_answers(input);
+  check_all_answers(input);
 }
 
 TEST(SmallLocate, Grid) {
   const Case input = make_case(make_fixture("grid", 25, 8), 8, 9);
-  check_answers(input);
+  check_all_answers(input);
 }
 
 TEST(SmallLocate, NothingAtAll) {
@@ -160,11 +209,11 @@ TEST(SmallLocate, NothingAtAll) {
   }
 }
 
-/// Answers with queries sorted and not, which must be the same bytes.
+/// Answers with queries sorted and not, which must be the same bytes. In fixed point, if the points fit.
 void check_orders(const Case& input) {
   const std::vector<double> values = values_for(input.size());
   std::unique_ptr<Answers> first;
-  for (const std::string& name : tunings()) {
+  for (const std::string& name : tunings_with_fixed_point()) {
     Runtime& runtime = Runtimes::get(name);
     const Tuning before = tuning_of(runtime);
     for (const std::size_t least : {std::size_t{0}, input.query_count() + 1}) {
@@ -172,10 +221,13 @@ void check_orders(const Case& input) {
       Tuning tuning = before;
       tuning.sorted_queries_least = least;
       runtime.set_sizes(std::make_shared<Tuning>(tuning));
-      const Answers answers = ask(runtime, input, values);
+      const std::unique_ptr<Answers> all = ask_if_it_fits(runtime, input, values);
+      if (!all) continue;
+      const Answers& answers = *all;
       if (!first) first = std::make_unique<Answers>(answers);
       EXPECT_TRUE(same(answers.triangles, first->triangles));
       EXPECT_TRUE(same(answers.nearest, first->nearest));
+      if (is_fixed_point(runtime)) continue;
       EXPECT_EQ(
           std::memcmp(answers.values.data(), first->values.data(), sizeof(double) * answers.values.size()),
           0);
@@ -188,6 +240,9 @@ TEST(SmallLocate, TheOrderOfQueriesDoesNotShow) {
   const Case input = case_of_trees(270, 2);
   check_orders(input);
   check_answers(input);
+  const Case fits = make_case(make_fixture("uniform", 270, 28), 4, 29);
+  check_orders(fits);
+  check_all_answers(fits);
 }
 
 TEST(Locate, TheOrderOfManyQueriesDoesNotShow) {
@@ -540,7 +595,7 @@ TEST(Locate, EveryQueryOfATriangle) {
   }
   input.add({0, 0, 4, 0, 0, 4}, queries);
   input.triangulate();
-  check_answers(input);
+  check_all_answers(input);
 }
 
 /// Each cell's middle is as near to four points, and each edge's to two.
@@ -555,7 +610,7 @@ TEST(Locate, EveryQueryOfAGrid) {
   }
   input.add(points, queries);
   input.triangulate();
-  check_answers(input);
+  check_all_answers(input);
 }
 
 /// Magnitudes of all kinds, in which queries may be finer and farther than points.
@@ -600,6 +655,55 @@ TEST(Locate, QueriesOfEveryScale) {
   input.add(make_fixture("uniform", 40, 21), {0.5, 0x1p-900, 0.25, 0.75});
   input.triangulate();
   check_answers(input);
+}
+
+/// Points of all the bits that fixed point has, with queries on the grid, between its places and beyond it.
+TEST(SmallLocate, FixedPointIsFull) {
+  const double large = 0x1p61;
+  const Coordinates square = {-large, -large, large, -large, large + 0x1p9, large, -large, large, 0, 0,
+                              1,      0,      0,     1};
+  Case input;
+  input.add(square,
+            {0.25, 0.25, 0.5, 0.5, 0.5, 0x1p-20, 0x1p-64, 0x1p-64, 0.5, 0, 0.5, -0x1p-64, 1, 1, 1, 0x1p-64});
+  input.add(square,
+            {0, 0, 1, 0, large, 0, large + 0x1p9, large, large + 0x1p10, large, 0, -large, 0, 3 * large});
+  input.add(square, {0x1p70, 0.5, 0.5, 0x1p123, -0x1p80, 0x1p80, 0x1p62, 0x1p62, -0x1p61, -0x1p61});
+  // Of one place, whose middle is as near to all corners, and beside it.
+  input.add({0, 0, 1, 0, 0, 1, 1, 1, -large, 0, large, 0},
+            {0.5, 0.5, 0.5, 0.5 - 0x1p-50, 0.5 + 0x1p-50, 0.5, 0.5, 0.25, 0.25, 0.5, 0.5, 1, 1, 0.5});
+  // On one line.
+  input.add({-large, 1, 0, 1, 1, 1, 2, 1, large, 1},
+            {0.5, 0.5, 0.5 + 0x1p-40, 0, 1.5 - 0x1p-40, 7, 0x1p100, 3});
+  input.triangulate();
+  check_all_answers(input);
+  // One place more.
+  input.add({-large, 0, large, 0, 0.5, 0.5}, {0, 0});
+  input.triangulate();
+  EXPECT_EQ(check_answers(input), 0);
+}
+
+/// Queries at equal distances between points in double precision, and normal ones: some of either are finer
+/// than points.
+TEST(Locate, QueriesBetweenPlaces) {
+  for (const char* const name : {"uniform", "grid", "integer-circle", "collinear", "circle", "star"}) {
+    SCOPED_TRACE(name);
+    const Coordinates points = make_fixture(name, 200, 30);
+    const double radius = radius_of(points);
+    FixtureRandom random(31);
+    Coordinates queries;
+    for (int i = 0; i < 600; ++i) queries.push_back(radius * ((i * 7) % 600 + 1) / 599.0 * (i % 3 - 1));
+    for (int i = 0; i < 600; ++i) {
+      queries.push_back(radius * std::sqrt(-2 * std::log(1 - random.unit())) *
+                        std::cos(6.28 * random.unit()));
+    }
+    // Beside points, by less than a place.
+    for (std::size_t i = 0; i < 100; ++i) queries.push_back(points[i] + (i % 2 ? 1e-20 : -1e-20));
+    for (int i = 0; i < 100; ++i) queries.push_back(1e-17 * radius * (random.unit() - 0.5));
+    Case input;
+    input.add(points, queries);
+    input.triangulate();
+    check_all_answers(input);
+  }
 }
 
 std::string message_of(const std::function<void()>& action, ErrorKind kind) {
@@ -748,6 +852,20 @@ TEST(Locate, AMillionQueries) {
   }
 }
 
+/// Those that are launched for queries off the grid, in a mesh that needs levels.
+std::set<std::string> kernels_in_fixed_point() {
+  std::set<std::string> launched;
+  Runtime& runtime = Runtimes::get("fixed_point=1");
+  runtime.set_profiling(true);
+  Case input;
+  input.add(make_fixture("integer-circle", 3000, 1), {0.1, 0x1p-50, 0, 0, 0.5, 1e20});
+  input.triangulate();
+  ask(runtime, input, values_for(input.size()));
+  for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
+  runtime.set_profiling(false);
+  return launched;
+}
+
 TEST(Kernels, AllAreLaunched) {
   std::set<std::string> launched;
   Runtime& runtime = Runtimes::get("own");
@@ -760,8 +878,15 @@ TEST(Kernels, AllAreLaunched) {
   dual(runtime, input);
   for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
   runtime.set_profiling(false);
+  std::vector<const char*> files{"locate/locate", "locate/levels", "voronoi/voronoi"};
+  std::size_t expected = 26;
+  if (!testing::tests_native() && !is_fixed_point(runtime)) {
+    files.push_back("locate/fixed_point");
+    expected += 3;
+    for (const std::string& name : kernels_in_fixed_point()) launched.insert(name);
+  }
   std::size_t kernels = 0;
-  for (const char* const file : {"locate/locate", "locate/levels", "voronoi/voronoi"}) {
+  for (const char* const file : files) {
     const std::string source = host::kernel_source(file);
     const std::regex pattern("\nkernel void (\\w+)\\(");
     for (std::sregex_iterator it(source.begin(), source.end(), pattern), end; it != end; ++it) {
@@ -769,7 +894,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 26u);
+  EXPECT_EQ(kernels, expected);
 }
 
 }  // namespace

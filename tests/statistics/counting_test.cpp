@@ -52,17 +52,28 @@ struct double2 {
 double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
 double2 operator-(double2 a) { return {-a.x, -a.y}; }
 
-using double_pair = double2;
-double_pair operator+(double_pair a, double_pair b) { return {a.x + b.x, a.y + b.y}; }
-double_pair operator*(double_pair a, double_pair b) { return {a.x * b.x, a.y * b.y}; }
-double_pair as_pair(double2 p) { return p; }
-Counted low(double_pair p) { return p.x; }
-Counted high(double_pair p) { return p.y; }
-double_pair swapped(double_pair p) { return {p.y, p.x}; }
-double_pair lows(double_pair p, double_pair q) { return {p.x, q.x}; }
-double_pair highs(double_pair p, double_pair q) { return {p.y, q.y}; }
-double_pair high_negated(double_pair p) { return {p.x, -p.y}; }
-double_pair magnitudes(double_pair p) { return {fabs(p.x), fabs(p.y)}; }
+// The numbers of shared/numbers.h, which is not read again.
+using coordinate = Counted;
+using real = Counted;
+using filter_bound = Counted;
+using coordinate2 = double2;
+using real2 = double2;
+using coordinate_pair = double2;
+using real_pair = double2;
+Counted difference(Counted a, Counted b) { return a - b; }
+double2 difference2(double2 a, double2 b) { return a - b; }
+double2 pair_difference(double2 a, double2 b) { return a - b; }
+Counted error_within(Counted bound, Counted magnitude) { return bound * magnitude; }
+double2 operator+(double2 a, double2 b) { return {a.x + b.x, a.y + b.y}; }
+double2 operator*(double2 a, double2 b) { return {a.x * b.x, a.y * b.y}; }
+double2 as_pair(double2 p) { return p; }
+Counted low(double2 p) { return p.x; }
+Counted high(double2 p) { return p.y; }
+double2 swapped(double2 p) { return {p.y, p.x}; }
+double2 lows(double2 p, double2 q) { return {p.x, q.x}; }
+double2 highs(double2 p, double2 q) { return {p.y, q.y}; }
+double2 high_negated(double2 p) { return {p.x, -p.y}; }
+double2 magnitudes(double2 p) { return {fabs(p.x), fabs(p.y)}; }
 
 // For the exact tests, which are read but not counted.
 using kernel::as_long;
@@ -77,7 +88,9 @@ inline Counted convert_double(long x) { return kernel::convert_double(x); }
 }  // namespace counted
 }  // namespace flaunay::testing
 
+#undef FLAUNAY_CIRCLE_INTEGERS_H
 #undef FLAUNAY_EXACT_ARITHMETIC_H
+#undef FLAUNAY_EXACT_DOUBLES_H
 #undef FLAUNAY_FRAME_H
 #undef FLAUNAY_HULL_HEIGHT_H
 #undef FLAUNAY_INTEGER_ARITHMETIC_H
