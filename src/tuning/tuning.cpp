@@ -394,7 +394,7 @@ struct NamedDevice {
 constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
-    {"llvmpipe", "gpu:8",
+    {"llvmpipe", "gpu,sewing_group=8",
      "Mesa's rusticl ends the process when it compiles __builtin_prefetch, and may refuse to unmap what it "
      "mapped."},
 };
