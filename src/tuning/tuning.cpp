@@ -389,9 +389,9 @@ struct NamedDevice {
 constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
-    {"llvmpipe", "gpu:8",
-     "Mesa's rusticl ends the process when it compiles __builtin_prefetch, and may refuse to unmap what it "
-     "mapped."},
+    {"llvmpipe", "gpu,sewing_group=8",
+     "Its loops end after 65535 turns, so that work-items must have little to do; it cannot compile "
+     "__builtin_prefetch, may refuse to unmap what it mapped, and crashes when larger groups sew."},
 };
 
 constexpr std::size_t kPointsOfASmallBlock = 6;
