@@ -28,7 +28,8 @@ struct QueryScaling {
   std::vector<kernel::query_frame> frames;  ///< by set
   float orient_bound = 0, nearness_bound = 0;
   /// In fixed point: whether some queries are finer than the grid of their set's points, or farther away than
-  /// it reaches. Kernels first answer these for the nearest place of the grid (kernels/locate/fixed_point.cl).
+  /// it reaches. Kernels first answer these for the nearest place of the grid
+  /// (kernels/locate/fixed_point.cl).
   bool is_off_grid = false;
   Magnitudes both{};  ///< of points and queries of all sets
 };

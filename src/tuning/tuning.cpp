@@ -389,7 +389,8 @@ constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
     {"llvmpipe", "fetch_ahead=0,in_host_memory=0",
-     "Mesa's rusticl ends the process when it compiles __builtin_prefetch, and may refuse to unmap what it mapped."},
+     "Mesa's rusticl ends the process when it compiles __builtin_prefetch, and may refuse to unmap what it "
+     "mapped."},
 };
 
 constexpr std::size_t kPointsOfASmallBlock = 6;

@@ -1,11 +1,11 @@
-// Predicates of queries in fixed point (kernels/shared/off_grid.h, nearness.h), for tests that compare them with exact
-// arithmetic. One work-item per case.
+// Predicates of queries in fixed point (kernels/shared/off_grid.h, nearness.h), for tests that compare them
+// with exact arithmetic. One work-item per case.
 #include "shared/nearness.h"
 #include "shared/off_grid.h"
 
-// Cases of 4 coordinates: a, b. queries: as the caller gives them, times 2^shift. placed: the place nearest to each.
-// results: per case, orientation and nearness of the query; whether it is on the grid; and if it is, orientation and
-// nearness as for all queries on the grid, and nearness by the filter.
+// Cases of 4 coordinates: a, b. queries: as the caller gives them, times 2^shift. placed: the place nearest
+// to each. results: per case, orientation and nearness of the query; whether it is on the grid; and if it is,
+// orientation and nearness as for all queries on the grid, and nearness by the filter.
 kernel void off_grid_cases(int n, int shift, global const coordinate* restrict cases,
                            global const coordinate* restrict queries, global coordinate2* restrict placed,
                            global int* restrict results) {
