@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "host/byte_order.hpp"
 #include "host/clock.hpp"
 #include "host/device.hpp"
 #include "host/huge_pages.hpp"

@@ -1,11 +1,18 @@
 #!/usr/bin/env python3
-"""Compares the results of all OpenCL runtimes that can be had for CPUs with those of Debian's PoCL, byte for byte: both
-modes, queries and Voronoi diagrams on all fixtures, with the sizes for the device and with those of GPUs. Those of PyPI
-are installed by pip in an environment of its own, build/device-runtimes. Each process loads one driver; at the end one
-loads two, which share the chunks of a triangulation.
+"""Compares the results of OpenCL devices, byte for byte: triangulations, queries and Voronoi diagrams on all fixtures.
 
-Exit code: 0; 1 if a result differed or a run failed; 77 if no runtime of PyPI could be installed, which takes a
-network. See docs/known-issues.md for the devices that were tried.
+  devices.py            all runtimes that can be had for CPUs, with Debian's PoCL: both modes, with the sizes for the
+                        device and with those of GPUs. Those of PyPI are installed by pip in an environment of its own,
+                        build/device-runtimes. Each process loads one driver; at the end one loads two, which share the
+                        chunks of a triangulation.
+  devices.py rusticl    Mesa's rusticl on the CPU, which has no double precision, with the host: the default mode
+  devices.py poor       devices that lack double precision, 64-bit atomics, local memory, large work-groups and buffers
+                        (PoCL with tests/support/poor_device.c), with the host: the default mode. Clang reads all
+                        programs that were compiled for them, as a device of 32 bits with nothing of that would.
+
+Exit code: 0; 1 if a result differed or a run failed; 77 if what is to be compared is not installed: no runtime of PyPI,
+which takes a network, or no rusticl. With FLAUNAY_TEST_ALL=1 in the environment, rusticl must be installed. See
+docs/known-issues.md for the devices that were tried.
 """
 import argparse
 import json
@@ -30,6 +37,20 @@ CHUNKED_POINTS = 200000
 CHUNK_POINTS = 5000
 # The one whose LLVM is not in conflict with the system's.
 TOGETHER = "Intel's CPU runtime"
+# Without double precision there is the default mode alone: inputs of up to so many points, every so many-th fixture.
+MODE = "blocks"
+RUSTICL_PROGRAM_ARGUMENTS = ["3000", "3", MODE]
+POOR_PROGRAM_ARGUMENTS = ["20000", "5", MODE]
+# What devices lack, as tests/support/poor_device.c has it, with the sizes of launches.
+SMALL_BUFFER, BYTES_PER_POINT, MORE_THAN_FITS = 134217728, 72, 2000000
+LIMITS = f"no-int64-atomics local=16384 group=64 buffer={SMALL_BUFFER} address-bits=32"
+POOR = [(f"no-fp64 {LIMITS}", "gpu"), ("no-fp64", ""), (LIMITS, "gpu")]
+# As a device compiles that has what OpenCL 1.2 requires, and addresses of 32 bits. Warnings tell of literals of type
+# double.
+CLANG = ["clang-14", "-x", "cl", "-target", "spir-unknown-unknown", "-fsyntax-only", "-Werror", "-Xclang",
+         "-finclude-default-header", "-Xclang",
+         "-cl-ext=-all,+cl_khr_global_int32_base_atomics,+cl_khr_global_int32_extended_atomics,"
+         "+cl_khr_local_int32_base_atomics,+cl_khr_local_int32_extended_atomics,+cl_khr_byte_addressable_store"]
 
 
 class Runtime:
@@ -41,6 +62,7 @@ class Runtime:
 
 
 REFERENCE = Runtime("PoCL of the system", "/etc/OpenCL/vendors/pocl.icd")
+RUSTICL = Runtime("Mesa's rusticl", "/etc/OpenCL/vendors/rusticl.icd")
 RUNTIMES = [
     Runtime("PoCL 3.0", "lib/python3*/site-packages/pyopencl/.libs/libpocl*.so", ["pocl-binary-distribution==3.0"],
             # Its LLVM is older than the processor.
@@ -51,9 +73,10 @@ RUNTIMES = [
 
 
 class Comparison:
-    def __init__(self, build, folder):
+    def __init__(self, build, folder, kind):
         self.program, self.folder = build / "tests/device_outputs", folder
-        self.outputs = folder / "outputs"
+        # Comparisons of several kinds may run at the same time.
+        self.outputs = folder / kind
         self.failures = 0
 
     def install(self, runtime):
@@ -80,7 +103,7 @@ class Comparison:
 
     def drivers(self, runtime):
         """A folder that names the runtime's driver alone."""
-        folder = self.folder / "drivers" / self.key(runtime)
+        folder = self.outputs / "drivers" / self.key(runtime)
         folder.mkdir(parents=True, exist_ok=True)
         library = pathlib.Path(runtime.library)
         if library.is_absolute():
@@ -100,7 +123,7 @@ class Comparison:
 
     def run(self, name, tuning, command, environment, known=None):
         """Returns the path of the output, or None."""
-        self.outputs.mkdir(exist_ok=True)
+        self.outputs.mkdir(parents=True, exist_ok=True)
         path = self.outputs / re.sub(r"[^a-z0-9]+", "-", f"{name} {tuning or 'default'}".lower())
         begin = time.time()
         with path.open("wb") as output:
@@ -151,7 +174,7 @@ class Comparison:
     def work_together(self, runtime):
         """Two drivers in one process take chunks from one queue."""
         environment = self.environment(runtime, "")
-        both = self.folder / "drivers" / f"{self.key(REFERENCE)}-and-{self.key(runtime)}"
+        both = self.outputs / "drivers" / f"{self.key(REFERENCE)}-and-{self.key(runtime)}"
         both.mkdir(parents=True, exist_ok=True)
         for number, each in enumerate([REFERENCE, runtime]):
             shutil.copy(self.drivers(each) / "driver.icd", both / f"{number}.icd")
@@ -167,6 +190,64 @@ class Comparison:
         else:
             print(f"  the same bytes; points of each device: {shares}", flush=True)
 
+    def on_host(self, arguments):
+        environment = {**os.environ, "FLAUNAY_DEVICE": "host", "FLAUNAY_TUNING": ""}
+        return self.run(f"the host, {' '.join(arguments)}", "", [self.program, *arguments], environment)
+
+    def on_rusticl(self):
+        """Returns whether there is such a device."""
+        environment = {**self.environment(RUSTICL, ""), "RUSTICL_ENABLE": "llvmpipe"}
+        flaunay = self.program.parent.parent / "flaunay"
+        listed = subprocess.run([flaunay, "devices"], capture_output=True, text=True, env=environment, check=False)
+        if "rusticl" not in listed.stdout:
+            return False
+        expected = self.on_host(RUSTICL_PROGRAM_ARGUMENTS)
+        found = self.run(RUSTICL.name, "", [self.program, *RUSTICL_PROGRAM_ARGUMENTS], environment)
+        self.compare(found, expected)
+        return True
+
+    def on_poor_devices(self):
+        expected = self.on_host(POOR_PROGRAM_ARGUMENTS)
+        for limits, tuning in POOR:
+            texts = self.outputs / "texts"
+            shutil.rmtree(texts, ignore_errors=True)
+            texts.mkdir(parents=True)
+            # Nothing that was compiled before: the text is what matters.
+            environment = {**self.environment(REFERENCE, tuning), "FLAUNAY_CACHE_DIR": "",
+                           "LD_PRELOAD": str(self.program.parent / "libpoor_device.so"),
+                           "POOR_DEVICE": f"{limits} texts={texts}"}
+            found = self.run(limits, tuning, [self.program, *POOR_PROGRAM_ARGUMENTS], environment)
+            self.compare(found, expected)
+            if "no-fp64" in limits:
+                self.read_texts(sorted(texts.iterdir()))
+
+    def in_small_buffers(self):
+        """The command triangulates in chunks what one call has no room for."""
+        points, triangles = self.outputs / "points.npy", self.outputs / "triangles.npy"
+        flaunay = self.program.parent.parent / "flaunay"
+        subprocess.run([flaunay, "generate", "uniform", str(MORE_THAN_FITS), "-o", points], check=True,
+                       capture_output=True)
+        environment = {**self.environment(REFERENCE, ""), "POOR_DEVICE": f"buffer={SMALL_BUFFER}",
+                       "LD_PRELOAD": str(self.program.parent / "libpoor_device.so")}
+        command = [flaunay, "triangulate", points, "--triangles", triangles]
+        path = self.run("small buffers", "", command, environment)
+        note = f"{MORE_THAN_FITS} points are too many at once: {SMALL_BUFFER // BYTES_PER_POINT} would fit"
+        if path is not None and note not in path.read_text():
+            self.failures += 1
+            print(f"  FAILED: no '{note}' in {path.read_text()}", flush=True)
+
+    def read_texts(self, paths):
+        """What Clang says of programs that were handed to a device. Their first lines have the options."""
+        for path in paths:
+            options = path.open().readline().split()[1:]
+            said = subprocess.run([*CLANG, *options, path], capture_output=True, text=True, check=False)
+            if said.returncode != 0:
+                self.failures += 1
+                print(f"  FAILED: {path}\n{said.stderr[:2000]}")
+        if not paths:
+            self.failures += 1
+        print(f"  {len(paths)} programs need no double precision, no more atomics, and no addresses of 64 bits", flush=True)
+
     def simulate(self):
         """Oclgrind comes before the loader; its interpreter lacks intrinsics of optimised kernels."""
         program = [self.program, str(SIMULATED_POINTS), str(SIMULATED_FIXTURES_STEP)]
@@ -178,15 +259,7 @@ class Comparison:
         self.compare(found, small)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=SOURCE / "build/release",
-                        help="the build folder, which has tests/device_outputs")
-    parser.add_argument("--runtimes", type=pathlib.Path, default=SOURCE / "build/device-runtimes",
-                        help="where runtimes are installed")
-    arguments = parser.parse_args()
-    comparison = Comparison(arguments.build.resolve(), arguments.runtimes.resolve())
-
+def compare_installable(comparison):
     installed = []
     for runtime in RUNTIMES:
         reason = comparison.install(runtime)
@@ -196,7 +269,7 @@ def main():
             print(f"{runtime.name}: left out, it cannot be installed ({reason})", flush=True)
     if not installed:
         print("devices: SKIPPED, no runtime can be installed: is there no network?")
-        return SKIPPED
+        return False
 
     expected = comparison.run_on(REFERENCE, "")
     for runtime in installed:
@@ -206,7 +279,39 @@ def main():
             comparison.work_together(runtime)
     if shutil.which("oclgrind"):
         comparison.simulate()
-    return 1 if comparison.failures else 0
+    return True
+
+
+def compare_rusticl(comparison):
+    if comparison.on_rusticl():
+        return True
+    print("devices: SKIPPED, there is no rusticl: apt-get install mesa-opencl-icd")
+    comparison.failures += os.environ.get("FLAUNAY_TEST_ALL") == "1"
+    return False
+
+
+def compare_poor(comparison):
+    comparison.on_poor_devices()
+    comparison.in_small_buffers()
+    return True
+
+
+COMPARISONS = {"installable": compare_installable, "rusticl": compare_rusticl, "poor": compare_poor}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("devices", nargs="?", choices=COMPARISONS, default="installable", help="what is compared")
+    parser.add_argument("--build", type=pathlib.Path, default=SOURCE / "build/release",
+                        help="the build folder, which has tests/device_outputs")
+    parser.add_argument("--runtimes", type=pathlib.Path, default=SOURCE / "build/device-runtimes",
+                        help="where runtimes are installed")
+    arguments = parser.parse_args()
+    comparison = Comparison(arguments.build.resolve(), arguments.runtimes.resolve(), arguments.devices)
+    was_there = COMPARISONS[arguments.devices](comparison)
+    if comparison.failures:
+        return 1
+    return 0 if was_there else SKIPPED
 
 
 if __name__ == "__main__":

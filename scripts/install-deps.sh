@@ -7,6 +7,8 @@ packages=(
   ca-certificates git cmake g++ ninja-build pkg-config
   # OpenCL: the loader, the headers, and PoCL, which makes the CPU a device
   ocl-icd-opencl-dev opencl-headers pocl-opencl-icd
+  # a device without double precision, for tests
+  mesa-opencl-icd
   # libraries
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   # MPI, for what FLAUNAY_MPI builds

@@ -19,6 +19,9 @@ esac
 scripts/install-deps.sh
 scripts/format.sh --check
 
+# What install-deps.sh has installed must not be missing.
+export FLAUNAY_TEST_ALL=1
+
 jobs="$(nproc)"
 build() {
   cmake --preset "$@"

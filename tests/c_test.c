@@ -1,5 +1,5 @@
-// The C interface: what it returns, and what it says of bad use. c_test no-fp64: with support/poor_device.c
-// preloaded.
+// The C interface: what it returns, and what it says of bad use. c_test no-fp64, small-buffers and
+// big-endian: with support/poor_device.c preloaded, which has limits of that name.
 #include <CL/cl.h>
 #include <math.h>
 #include <stdint.h>
@@ -2066,9 +2066,112 @@ static void test_all(void) {
   tear_down();
 }
 
+// The largest buffer, which support/poor_device.c gets as well, and how many points the longest array has
+// room for.
+enum { kLargestBuffer = 4 << 20, kMostInBuffers = kLargestBuffer / 72 };
+
+static double* random_points(size_t n) {
+  double* made = malloc(2 * n * sizeof *made);
+  REQUIRE(made != NULL);
+  uint64_t state = 1;
+  for (size_t k = 0; k < 2 * n; ++k) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    made[k] = (double)(state >> 32);
+  }
+  return made;
+}
+
+static flaunay_triangulation* triangulation_on(const char* name, const double* given, size_t n,
+                                               flaunay_triangulator** used) {
+  REQUIRE(flaunay_triangulator_create(name, used) == FLAUNAY_SUCCESS);
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_triangulate(*used, given, n, NULL, 0, NULL, &mesh) == FLAUNAY_SUCCESS);
+  return mesh;
+}
+
+// As many points as fit work in every call; one more is an error that says how many fit.
+static void test_small_buffers(void) {
+  const size_t n = kMostInBuffers;
+  double* const given = random_points(n + 1);
+  flaunay_triangulator *small = NULL, *on_host = NULL;
+  flaunay_triangulation* mesh = triangulation_on("#0", given, n, &small);
+  flaunay_triangulation* expected = triangulation_on("host", given, n, &on_host);
+  CHECK(flaunay_triangulator_capacity(small) == n);
+  const flaunay_mesh *arrays = flaunay_triangulation_mesh(mesh),
+                     *right = flaunay_triangulation_mesh(expected);
+  REQUIRE(arrays->triangle_count == right->triangle_count);
+  CHECK(same(arrays->triangles, right->triangles, 3 * right->triangle_count));
+  CHECK(same(arrays->neighbors, right->neighbors, 3 * right->triangle_count));
+
+  char fits[64];
+  snprintf(fits, sizeof fits, "%zu points are too many: %zu would fit", n + 1, n);
+  const flaunay_status device_error = FLAUNAY_ERROR_DEVICE;
+  flaunay_triangulation* none = NULL;
+  CHECK(fails(flaunay_triangulate(small, given, n + 1, NULL, 0, NULL, &none), device_error, fits));
+  CHECK(strstr(flaunay_last_error(), "in one piece") != NULL);
+  const int32_t segment[] = {0, arrays->triangles[0]};
+  const flaunay_constraints constraints = {.segments = segment, .segment_count = 1};
+  flaunay_constrained* constrained = NULL;
+  CHECK(flaunay_triangulate_constrained(small, given, n, NULL, 0, &constraints, NULL, &constrained) ==
+        FLAUNAY_SUCCESS);
+  flaunay_constrained_destroy(constrained);
+  CHECK(fails(flaunay_triangulate_constrained(small, given, n + 1, NULL, 0, &constraints, NULL, &constrained),
+              device_error, fits));
+
+  flaunay_voronoi* voronoi = NULL;
+  CHECK(flaunay_voronoi_compute(small, given, n, mesh, &voronoi) == FLAUNAY_SUCCESS);
+  flaunay_voronoi_destroy(voronoi);
+  const double box[] = {0, 0, 0x1p32, 0, 0x1p32, 0x1p32, 0, 0x1p32};
+  flaunay_clipped_voronoi* cells = NULL;
+  CHECK(flaunay_voronoi_clip(small, given, n, mesh, box, 4, &cells) == FLAUNAY_SUCCESS);
+  flaunay_clipped_voronoi_destroy(cells);
+
+  // Queries at the points: that many, and many more than points.
+  flaunay_locator* locator = NULL;
+  REQUIRE(flaunay_locator_create(small, given, n, NULL, 0, mesh, &locator) == FLAUNAY_SUCCESS);
+  int32_t* const found = malloc(n * sizeof *found);
+  double* const values = malloc(n * sizeof *values);
+  REQUIRE(found != NULL && values != NULL);
+  CHECK(flaunay_locator_nearest(locator, given, n, NULL, 0, found) == FLAUNAY_SUCCESS);
+  CHECK(same(found, right->representatives, n));
+  CHECK(flaunay_locator_locate(locator, given, n, NULL, 0, found) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_interpolate(locator, given, given, n, NULL, 0, values) == FLAUNAY_SUCCESS);
+  const size_t many = kLargestBuffer / 16 + 1;
+  double* const queries = random_points(many);
+  int32_t* const of_many = malloc(many * sizeof *of_many);
+  REQUIRE(of_many != NULL);
+  CHECK(
+      fails(flaunay_locator_locate(locator, queries, many, NULL, 0, of_many), device_error, "in one piece"));
+  free(of_many);
+  free(queries);
+  free(values);
+  free(found);
+  flaunay_locator_destroy(locator);
+  flaunay_triangulation_destroy(expected);
+  flaunay_triangulation_destroy(mesh);
+  flaunay_triangulator_destroy(on_host);
+  flaunay_triangulator_destroy(small);
+  free(given);
+}
+
+static void test_big_endian(void) {
+  flaunay_device_list* list = NULL;
+  REQUIRE(flaunay_device_list_create(1, &list) == FLAUNAY_SUCCESS);
+  const flaunay_device_info* info = flaunay_device_list_at(list, 0);
+  CHECK(info->self_test_passed == 0 && strstr(info->self_test_failure, "big-endian") != NULL);
+  flaunay_device_list_destroy(list);
+  flaunay_triangulator* none = NULL;
+  CHECK(fails(flaunay_triangulator_create("#0", &none), FLAUNAY_ERROR_DEVICE, "big-endian"));
+  CHECK(none == NULL);
+}
+
 int main(int argc, char** argv) {
   if (argc == 2 && strcmp(argv[1], "no-fp64") == 0) {
     test_no_fp64();
+  } else if (argc == 2 && strcmp(argv[1], "small-buffers") == 0) {
+    test_small_buffers();
+  } else if (argc == 2 && strcmp(argv[1], "big-endian") == 0) {
+    test_big_endian();
   } else {
     test_all();
   }

@@ -2,6 +2,7 @@
 // check k fails. operands keep the compiler from folding anything.
 
 #include "shared/exact_arithmetic.h"
+#include "shared/turns.h"
 
 // Forms that a compiler may contract: in vectors, and where a product and a sum meet only after inlining.
 static inline double2 products_in_vectors(double2 a, double2 b) { return a * b; }
@@ -52,6 +53,7 @@ kernel void self_test(global const double* restrict operands, global const ulong
     if (as_ulong(sum_of(product_of(a, b), c)) != expected[0]) bits |= 1024;
     if (as_ulong(difference_of(product_of(a, b), product_of(b, a))) != expected[0]) bits |= 1024;
     if (as_ulong(difference_of(-c, product_of(b, a))) != expected[0]) bits |= 1024;
+    if (loops_end_early((uint)expected[8])) bits |= 2048;
     failed[0] = bits;
   }
 }

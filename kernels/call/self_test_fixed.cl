@@ -4,6 +4,7 @@
 
 #include "shared/integer_arithmetic.h"
 #include "shared/numbers.h"
+#include "shared/turns.h"
 
 // Whether two positive floats differ by at most so many units in the last place.
 static inline int is_near(float x, uint expected, int units) {
@@ -50,6 +51,7 @@ kernel void self_test_fixed(global const long* restrict operands, global const f
     // The smallest float that counts is not flushed to zero.
     const float small = reals[2];  // 2^-55
     if (small * small != UNDERFLOW_ERROR || small * small + UNDERFLOW_ERROR != 2 * UNDERFLOW_ERROR) bits |= 64;
+    if (loops_end_early((uint)operands[4])) bits |= 128;
     failed[0] = bits;
   }
 }

@@ -258,9 +258,9 @@ static inline int step_towards(coordinate2 q, int t, filter_bound bound, coordin
   const real2 b = difference2(in_frame(points[f->corner[1]], unit), q);
   const real2 c = difference2(in_frame(points[f->corner[2]], unit), q);
   const real ab = a.x * b.y, ba = a.y * b.x, bc = b.x * c.y, cb = b.y * c.x, ca = c.x * a.y, ac = c.y * a.x;
-  const int beyond_bc = bc - cb < -error_within(bound, fabs(bc) + fabs(cb));
-  const int beyond_ca = ca - ac < -error_within(bound, fabs(ca) + fabs(ac));
-  const int beyond_ab = ab - ba < -error_within(bound, fabs(ab) + fabs(ba));
+  const int beyond_bc = bc - cb < -bound * (fabs(bc) + fabs(cb));
+  const int beyond_ca = ca - ac < -bound * (fabs(ca) + fabs(ac));
+  const int beyond_ab = ab - ba < -bound * (fabs(ab) + fabs(ba));
   const int u = f->neighbor[beyond_ca + 2 * (beyond_ab & !beyond_ca)];
   const int moves = -((beyond_bc | beyond_ca | beyond_ab) & (u >= 0));
   return t ^ ((t ^ u) & moves);

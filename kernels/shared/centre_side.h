@@ -47,7 +47,7 @@ static inline int centre_side_filtered(const centre_terms* of, double2 v, double
   const double side = 2.0 * of->cross * (left - right) + (of->c_square * (bx + by) - of->b_square * (cx + cy));
   const double magnitude = 2.0 * of->cross_magnitude * (fabs(left) + fabs(right)) +
                            (of->c_square * (fabs(bx) + fabs(by)) + of->b_square * (fabs(cx) + fabs(cy)));
-  return filtered_sign(side, bound * magnitude, bound);
+  return filtered_sign(side, magnitude, bound);
 }
 
 static inline integer256 doubled(integer256 a) { return sum_256(a, a); }

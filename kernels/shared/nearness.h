@@ -18,7 +18,7 @@ static inline int nearness_filtered(coordinate2 a, coordinate2 b, coordinate2 q,
   const real2 qb = difference2(b, q);
   const real dot = ab.x * (qa.x + qb.x) + ab.y * (qa.y + qb.y);
   const real magnitude = fabs(ab.x) * (fabs(qa.x) + fabs(qb.x)) + fabs(ab.y) * (fabs(qa.y) + fabs(qb.y));
-  const real error = error_within(bound, magnitude);
+  const real error = bound * magnitude;
   return dot > error ? 1 : dot < -error ? -1 : bound == 0 ? 0 : UNDECIDED;
 }
 

@@ -31,11 +31,18 @@ std::size_t bytes_per_point(const host::Runtime& runtime) {
 // their time that can be measured.
 constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
 
-// The largest number of points that arrays and indices allow, whatever memory is free.
-std::size_t largest_call(const host::MemorySource& memory) {
+// Where loops end early, so many points at once: a tenth of what loops have been seen to need, on any input.
+constexpr std::size_t kMostPointsInShortLoops = 4096;
+
+// The largest number of points that arrays, indices and loops allow, whatever memory is free.
+std::size_t largest_call(const host::Runtime& runtime) {
   // An arena may have several blocks, but each array is in one buffer. The largest array has the rings'
   // edges.
-  return std::min(kMostPoints, memory.largest / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge)));
+  const std::size_t by_arrays =
+      runtime.memory().largest / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge));
+  const std::size_t by_loops =
+      tuning_of(runtime).loops_end_early != 0 ? kMostPointsInShortLoops : kMostPoints;
+  return std::min({kMostPoints, by_arrays, by_loops});
 }
 
 }  // namespace
@@ -90,24 +97,24 @@ void Engine::check_arithmetic() {
 }
 
 std::size_t Engine::capacity() const {
-  return std::min(largest_call(runtime.memory()),
+  return std::min(largest_call(runtime),
                   usable_memory(runtime, held_at_rest).bytes / bytes_per_point(runtime));
 }
 
 void Engine::check_size(std::size_t n) const {
-  const host::MemorySource source = runtime.memory();
-  const std::size_t most = largest_call(source);
+  const std::size_t most = largest_call(runtime);
   if (n <= most && n <= std::max<std::size_t>(kNeverLacking, held_at_rest) / bytes_per_point(runtime)) return;
   const host::MemoryLeft memory = usable_memory(runtime, held_at_rest);
   const std::size_t fitting = std::min(most, memory.bytes / bytes_per_point(runtime));
   if (n <= fitting) return;
   const std::string in_one_piece =
-      runtime.is_native() ? "" : fmt::format(", {} in one piece", host::mebibytes(source.largest));
+      runtime.is_native() ? "" : fmt::format(", {} in one piece", host::mebibytes(runtime.memory().largest));
+  const std::string loops = tuning_of(runtime).loops_end_early != 0 ? ", and its loops end early" : "";
   throw Error(
       n > kMostPoints ? ErrorKind::input : ErrorKind::device,
-      fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point)", n,
+      fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point{})", n,
                   fitting, runtime.name(), host::mebibytes(memory.bytes), memory.limit, in_one_piece,
-                  bytes_per_point(runtime)));
+                  bytes_per_point(runtime), loops));
 }
 
 void Engine::use_own_memory() {

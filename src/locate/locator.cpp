@@ -313,6 +313,7 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
   check_sizes(mesh);
   Locator locator;
   locator.sets = mesh.sets();
+  locator.point_offsets = mesh.point_offsets;
   locator.points = own.allocate<cl_double2>(n);
   locator.source = own.allocate<cl_int>(n);
   locator.first_triangle = own.allocate<cl_int>(n);

@@ -15,6 +15,7 @@ namespace flaunay::locate {
 /// coordinates are 64-bit integers.
 struct Locator {
   std::size_t sets = 0;
+  std::vector<std::size_t> point_offsets{};  ///< of the caller's points
   PointRange range{};
   /// The vertices of triangles, in the order of their first triangles: coordinates, indices of points, first
   /// triangles, and the squared distances to their nearest neighbours (the upper half of a double, or in

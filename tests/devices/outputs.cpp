@@ -1,7 +1,9 @@
 // Prints a line per array of results, with its hash, for all fixtures and data files: what scripts/devices.py
 // compares between devices. The lines do not name the device.
 //
-//   device_outputs [MOST [STEP]]     without inputs of more than MOST points; of the fixtures every STEP-th
+//   device_outputs [MOST [STEP [MODE]]]     without inputs of more than MOST points; of the fixtures every
+//   STEP-th; in
+//                                           this mode alone (blocks or flattened)
 //
 // The device is FLAUNAY_DEVICE's. What was compiled and how long that took goes to the standard error output.
 #include <fmt/format.h>
@@ -37,16 +39,17 @@ std::uint64_t hash_of(const std::vector<T>& values) {
 
 class Outputs {
  public:
-  explicit Outputs(std::size_t most) : most_(most) {}
+  Outputs(std::size_t most, const std::string& mode) : most_(most), mode_(mode) {}
 
   void print(const std::string& name, const Coordinates& points) {
     print(name, points, {0, points.size() / 2});
   }
 
-  // In both modes, with all arrays and with the triangles and hulls alone.
+  // With all arrays and with the triangles and hulls alone.
   void print(const std::string& name, const Coordinates& points, const Offsets& offsets) {
     if (offsets.back() > most_) return;
     for (const Mode mode : {Mode::blocks, Mode::flattened}) {
+      if (!mode_.empty() && mode_ != to_string(mode)) continue;
       for (const bool neighbors : {true, false}) {
         Options options;
         options.mode = mode;
@@ -99,6 +102,7 @@ class Outputs {
   }
 
   std::size_t most_;
+  std::string mode_;  // empty: both
   Triangulator triangulator_;
   double build_seconds_ = 0;
 };
@@ -135,7 +139,7 @@ void print_all(Outputs& outputs, std::size_t step) {
 int main(int count, char** arguments) {
   try {
     const std::size_t most = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : SIZE_MAX;
-    flaunay::testing::Outputs outputs(most);
+    flaunay::testing::Outputs outputs(most, count > 3 ? arguments[3] : "");
     flaunay::testing::print_all(outputs, count > 2 ? std::strtoul(arguments[2], nullptr, 10) : 1);
     const flaunay::DeviceInfo device = outputs.triangulator().device();
     fmt::print(stderr, "{}, {}, {}; compiled for {:.1f} s\n", device.name, device.platform, device.driver,
