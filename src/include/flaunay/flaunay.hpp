@@ -223,8 +223,8 @@ struct ClippedVoronoi {
 ///
 /// A device without fp64 computes triangulations in fixed point. What that cannot represent, coordinates
 /// whose bits span more than 62 binary places, is triangulated on the host, and Statistics::note says so.
-/// Voronoi diagrams, relaxation, segments, polygons and locators are always computed on the host then, for
-/// arrays in device memory too, which are copied there and back; the call waits for that.
+/// Voronoi diagrams, relaxation and locators are always computed on the host then, for arrays in device
+/// memory too, which are copied there and back; the call waits for that.
 class FLAUNAY_API Triangulator {
  public:
   /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
