@@ -522,9 +522,7 @@ void fit_tiles(Tuning& tuning) {
 std::string Tuning::build_options() const {
   return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}{}", Sizes::build_options(),
                      small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "",
-                     fixed_point == 0      ? ""
-                     : convert_halves == 0 ? " -DFIXED_POINT"
-                                           : " -DFIXED_POINT -DCONVERT_HALVES");
+                     fixed_point != 0 ? " -DFIXED_POINT" : "");
 }
 
 Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
