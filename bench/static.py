@@ -30,11 +30,10 @@ KERNELS = os.path.join(SOURCE, "kernels")
 ARCHITECTURES = ["sm_90", "sm_89", "gfx942"]
 # As Runtime compiles for a GPU; src/tuning/tuning.cpp has the values.
 OPTIONS = ["-cl-std=CL1.2", "-DSORT_BITS=4", "-DSORT_GROUP=128", "-DSMALL_REGION=48", "-DFETCH_AHEAD=0"]
-FIXED_POINT = ["-DFIXED_POINT", "-DCONVERT_HALVES"]
 COMMON = ["-x", "cl", "-O3", "-Xclang", "-finclude-default-header", f"-I{KERNELS}", "-Wno-everything",
           "-Dcl_khr_fp64", "-Dcl_khr_int64_base_atomics"]
 # The folders of kernels that have a text in fixed point.
-FIXED_POINT_FOLDERS = ("blocks", "points")
+FIXED_POINT_FOLDERS = ("blocks", "constrained", "points")
 FIXED_POINT_OPTIONS = ["-DFIXED_POINT"]
 NEWEST, OLDEST = 25, 14
 COLUMNS = ["registers", "stack", "spills", "local_memory"]
@@ -218,11 +217,8 @@ def main(command_line):
                         help="below kernels/, such as blocks/divide.cl; by default all")
     parser.add_argument("--arch", metavar="NAME", action="append", default=[],
                         help=f"sm_... or gfx...; by default {', '.join(ARCHITECTURES)}")
-    parser.add_argument("--fixed-point", action="store_true", help="as for devices without double precision")
     parser.add_argument("--json", metavar="FILE", help="write a record here")
     arguments = parser.parse_args(command_line)
-    if arguments.fixed_point:
-        OPTIONS.extend(FIXED_POINT)
     files = arguments.files or sorted(os.path.relpath(path, KERNELS)
                                       for path in glob.glob(os.path.join(KERNELS, "*", "*.cl")))
     rows, failures = table_of(files, arguments.arch or ARCHITECTURES)

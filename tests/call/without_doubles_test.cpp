@@ -485,6 +485,40 @@ TEST(WithoutDoubles, Constraints) {
   }
 }
 
+// Seeds of holes are no multiples of the points' unit, and crossings are rounded.
+TEST(WithoutDoubles, HolesAndCrossings) {
+  for (const double smallest : {0.25, 0x1p-90}) {
+    Rows rows(smallest);
+    constexpr std::int32_t kSide = Rows::kSide;
+    for (const std::int32_t first : {3 * kSide + 2, 9 * kSide + 11, 15 * kSide + 7}) {
+      const std::int32_t corners[] = {first, first + 3, first + 3 * kSide + 3, first + 3 * kSide};
+      for (int k = 0; k < 4; ++k)
+        rows.segments.insert(rows.segments.end(), {corners[k], corners[(k + 1) % 4]});
+    }
+    const std::vector<double> holes = {3.7 + 1e-13, 4.5, 12.3, 10.4 + 1e-14};
+    rows.constraints.segments = rows.segments.data();
+    rows.constraints.segment_count = rows.segments.size() / 2;
+    rows.constraints.holes = holes.data();
+    rows.constraints.hole_count = holes.size() / 2;
+    ConstrainedOptions options;
+    options.labels = true;
+    options.crossings = Crossings::split;
+    const auto result_of = [&](Triangulator& used) {
+      return used.constrained(rows.points.data(), rows.n(), rows.constraints, options);
+    };
+    const ConstrainedTriangulation expected = result_of(on_host()), found = result_of(triangulator());
+    EXPECT_GT(expected.added_points.size(), 0U);
+    expect_same(found, expected);
+    EXPECT_TRUE(same(found.constrained, expected.constrained));
+    EXPECT_TRUE(same(found.added_points, expected.added_points));
+    EXPECT_TRUE(same(found.depths, expected.depths));
+    EXPECT_TRUE(same(found.regions, expected.regions));
+    EXPECT_TRUE(same(found.piece_edges, expected.piece_edges));
+    rows.constraints.hole_count = 0;
+    EXPECT_LT(expected.triangles.size(), result_of(on_host()).triangles.size());
+  }
+}
+
 TEST(WithoutDoubles, Polygons) {
   Polygons polygons;
   const Coordinates ring = {0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 1, 3, 3, 3, 3, 1};
