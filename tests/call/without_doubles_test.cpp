@@ -388,6 +388,22 @@ TEST_P(WithoutDoublesDerived, Queries) {
     expect_array(triangles, of_host.locate(queries.data(), m));
     expect_array(nearest, of_host.nearest(queries.data(), m));
   }
+  // Of single precision, and so fine that they are left to doubles.
+  std::vector<float> narrow(queries.begin(), queries.end());
+  const std::vector<double> rounded(narrow.begin(), narrow.end());
+  const Memory narrow_memory = embedder().upload(narrow);
+  const DevicePoints narrow_queries{narrow_memory.get(), m, Precision::float32};
+  Coordinates fine = queries;
+  fine[1] = 0x1p-400;
+  const Memory fine_memory = embedder().upload(fine);
+  EXPECT_TRUE(same(named.nearest(fine.data(), m), of_host.nearest(fine.data(), m)));
+  for (Locator* locator : {&there, &both}) {
+    DeviceBuffer triangles, nearest;
+    locator->locate(narrow_queries, triangles);
+    expect_array(triangles, of_host.locate(rounded.data(), m));
+    locator->nearest(DevicePoints{fine_memory.get(), m}, nearest);
+    expect_array(nearest, of_host.nearest(fine.data(), m));
+  }
   InterpolationOptions options;
   options.columns = 2;
   const std::vector<double> gradients = of_host.gradients(values.data(), 2);

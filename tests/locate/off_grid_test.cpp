@@ -5,11 +5,12 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <functional>
+#include <cstdint>
 #include <vector>
 
+#include "locate/read_back.hpp"
 #include "tests/locate/support.hpp"
 #include "tests/support/test_kernels.hpp"
 
@@ -198,6 +199,40 @@ TEST(SmallOffGrid, FramesHoldPointsAndQueries) {
   // Filters are exact on coordinates of few bits.
   EXPECT_EQ(fixed_point_scaling(spanning(0, 9), spanning(0, 9), 52).nearness_bound, 0);
   EXPECT_GT(fixed_point_scaling(spanning(0, 9), spanning(-1, 9), 52).nearness_bound, 0);
+}
+
+/// A locator in fixed point has all that it was made of, but for points that are equal to others.
+TEST(SmallOffGrid, MeshesAreReadBack) {
+  if (tests_no_device()) GTEST_SKIP() << "natively there is no fixed point";
+  Runtime& runtime = Runtimes::get("fixed_point=1");
+  Coordinates doubled = make_fixture("grid", 25, 2);
+  doubled.insert(doubled.end(), doubled.begin(), doubled.begin() + 20);
+  for (const double factor : {1.0, 0x1p300}) {
+    Case input;
+    input.add({}, {});
+    input.add(testing::scaled(make_fixture("uniform", 60, 1), factor), {});
+    input.add({2, 3}, {});
+    input.add({1, 1, 1, 1, 1, 1}, {});
+    input.add(testing::scaled(doubled, 1 / factor), {});
+    input.add(make_fixture("collinear", 9, 3), {});
+    input.add({}, {});
+    input.triangulate();
+    Arena own(runtime.memory());
+    Arena::Scope scope(runtime.arena());
+    const ReadMesh mesh = read_back(runtime, make_locator(runtime, own, upload_mesh(runtime, input)));
+    EXPECT_EQ(mesh.point_offsets, input.offsets);
+    EXPECT_EQ(mesh.triangulation.triangle_offsets, input.mesh.triangle_offsets);
+    EXPECT_EQ(mesh.triangulation.hull_offsets, input.mesh.hull_offsets);
+    EXPECT_EQ(mesh.triangulation.triangles, input.mesh.triangles);
+    EXPECT_EQ(mesh.triangulation.neighbors, input.mesh.neighbors);
+    EXPECT_EQ(mesh.triangulation.hull, input.mesh.hull);
+    ASSERT_EQ(mesh.coordinates.size(), input.points.size());
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      if (input.mesh.representatives[i] != static_cast<std::int32_t>(i)) continue;
+      EXPECT_EQ(mesh.coordinates[2 * i], input.points[2 * i]) << i;
+      EXPECT_EQ(mesh.coordinates[2 * i + 1], input.points[2 * i + 1]) << i;
+    }
+  }
 }
 
 }  // namespace
