@@ -19,6 +19,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"
+#include "tests/support/test_kernels.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -578,6 +579,31 @@ TEST(WithoutDoubles, Chunks) {
     EXPECT_EQ(of_host.host_points, 0U);
     EXPECT_EQ(statistics.host_points > 0, places > kMostPlaces && !has_fp64());
     EXPECT_EQ(statistics.note.empty(), statistics.host_points == 0);
+  }
+}
+
+// A device whose doubles fail the self test computes in fixed point, and leaves the rest to the host.
+TEST(WithoutDoubles, DoublesThatAreNotExact) {
+  if (!has_fp64()) GTEST_SKIP() << "there are no doubles";
+  const ScopedEnvironment own_tuning("FLAUNAY_TUNING", nullptr);
+  EXPECT_FALSE(Triangulator(device_under_test()).device().fixed_point);
+  const ChangedKernels inexact("call/self_test.cl", [](const std::string& text) {
+    std::string changed = text;
+    const std::string end = "failed[0] = bits;";
+    changed.replace(changed.find(end), end.size(), "failed[0] = bits | 8;");
+    return changed;
+  });
+  Triangulator inexact_device(device_under_test());
+  EXPECT_TRUE(inexact_device.device().fp64);
+  EXPECT_TRUE(inexact_device.device().fixed_point);
+  EXPECT_TRUE(list_devices(true).front().self_test_passed);
+  for (const int places : {40, 63}) {
+    const Coordinates points = spanning(places);
+    const std::size_t n = points.size() / 2;
+    const Triangulation found = inexact_device.triangulate(points.data(), n, all_options());
+    expect_same(found, on_host().triangulate(points.data(), n, all_options()));
+    EXPECT_EQ(found.statistics.note.empty(), places <= kMostPlaces);
+    EXPECT_EQ(found.statistics.device == "host", places > kMostPlaces);
   }
 }
 
