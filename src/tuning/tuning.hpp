@@ -55,7 +55,8 @@ struct Tuning : host::Sizes {
   std::size_t level_ratio = 2;
   /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels.
   std::size_t walk_most = 1;
-  /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call fails.
+  /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call
+  /// fails.
   std::size_t off_grid_most = 1;
 
   /// Chains of at most this many vertices are triangulated by gift-wrapping, and of those with more, a
