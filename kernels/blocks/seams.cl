@@ -1,13 +1,13 @@
 // Merges of large halves on devices with many lanes, from both ends of their seam at once: see shared/seams.h. A launch
 // of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
-// cross the seam and mark those that go. Walks that stopped are done again by finish_walks of blocks/merge_exact.cl. A
-// launch of sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
+// cross the seam and mark those that go. Walks that stopped are done again by finish_walks of blocks/merge_exact.cl; in
+// fixed point none stops, since exact predicates of integers take few registers and no stack to speak of. A launch of
+// sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
 // in the rings. Each is one pass over what begins in the cells of that height (shared/halves.h).
 //
 // Walks that do not meet would be an error of the program. Such halves stay as they are, which is safe for all later
 // kernels, and the account tells the host.
 
-// In fixed point, exact predicates are a few products of integers, and walks stop at none.
 #ifndef FIXED_POINT
 #define RINGS_STOP
 #endif

@@ -25,6 +25,11 @@ bool walks_may_stop(const Workspace& work) {
   return tuning_of(work.runtime).fixed_point == 0 && may_stop(work);
 }
 
+// In fixed point, walks decide all predicates themselves (blocks/seams.cl).
+bool walks_may_stop(const Workspace& work) {
+  return may_stop(work) && tuning_of(work.runtime).fixed_point == 0;
+}
+
 // Parts of this height have at least so many vertices.
 std::size_t least_vertices(int height) { return std::size_t{2} << height; }
 
