@@ -225,7 +225,8 @@ struct ClippedVoronoi {
 /// whose bits span more than 62 binary places, is triangulated on the host, and Statistics::note says so.
 /// Voronoi diagrams, relaxation and interpolation are always computed on the host then, for arrays in device
 /// memory too, which are copied there and back; the call waits for that. So are the triangles at holes, and
-/// nearest points and triangles of queries that are more than 2^60 times as fine or as far away as the points.
+/// nearest points and triangles of queries that are more than 2^60 times as fine or as far away as the
+/// points.
 class FLAUNAY_API Triangulator {
  public:
   /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
