@@ -10,13 +10,16 @@ It is a model, not a measurement. A launch takes the longest of
     lanes    all steps, times what a step takes on one lane, shared by the lanes that hold work-items at once
     issue    all instructions, at the rate of all cores
     fp64     all operations of double precision, at the rate of all cores
+    convert  all conversions from 64-bit integers to single precision, likewise
+    cache    all bytes that the cache that holds a block must move, at its bandwidth
     memory   all bytes, at the memory's bandwidth
 
-and the cost of a launch. A step on one lane takes its instructions, its mispredicted branches, and its loads that
-wait for each other; where work-items of a warp go different ways, their paths come one after the other. Waits of the
-host and transfers are added, but not what the host computes itself. bench/machines/ has the machines, with a source for
-each value, and bench/kernels.json what a step of each kernel is made of. docs/performance.md shows predictions beside
-measurements.
+and the cost of a launch. A step on one lane takes its instructions, of which those of double precision may take longer,
+its mispredicted branches, and its loads that wait for each other; where work-items of a warp go different ways, their
+paths come one after the other. Waits of the host and transfers are added, but not what the host computes itself.
+bench/machines/ has the machines, with a source for each value, and bench/kernels.json what a step of each kernel is
+made of, in double precision and in fixed point: a record with the tuning fixed_point=1 takes the latter.
+docs/performance.md shows predictions beside measurements.
 """
 import argparse
 import glob
@@ -92,19 +95,32 @@ def with_cores(machine, cores):
     bandwidth = machine["bytes_per_second"]
     if "bytes_per_second_of_a_core" in machine:
         bandwidth = min(bandwidth, cores * machine["bytes_per_second_of_a_core"])
-    return dict(machine, cores=cores, fp64_per_second=share * machine["fp64_per_second"], bytes_per_second=bandwidth)
+    return dict(machine, cores=cores, fp64_per_second=share * machine["fp64_per_second"],
+                conversions_per_second=share * machine["conversions_per_second"], bytes_per_second=bandwidth)
 
 
 def steps_of(launch):
     return launch["steps"] or launch["work_items"] * launch["elements"]
 
 
-class Model:
-    """What launches take on a machine. registers: by kernel."""
+def in_fixed_point(cost):
+    """What a step takes without fp64: as counted, or as many instructions more as there were operations, on 64 bits."""
+    more = {"instructions": cost["instructions"] + cost["fp64"], **cost.get("fixed_point", {})}
+    return {**cost, **more, "fp64": 0}
 
-    def __init__(self, machine, registers=None):
-        self.machine, self.registers = machine, registers or {}
+
+def is_in_fixed_point(record):
+    return "fixed_point=1" in record.get("tuning", "").split(",")
+
+
+class Model:
+    """What launches take on a machine. registers: by kernel. fixed_point: instead of double precision."""
+
+    def __init__(self, machine, registers=None, fixed_point=False):
+        self.machine, self.registers, self.fixed_point = machine, registers or {}, fixed_point
         self.kernels = load(os.path.join(FOLDER, "kernels.json"))["kernels"]
+        if fixed_point:
+            self.kernels = {kernel: in_fixed_point(cost) for kernel, cost in self.kernels.items()}
 
     def cost(self, launch):
         return self.kernels.get(launch["kernel"], self.kernels["any other"])
@@ -124,7 +140,9 @@ class Model:
 
     def step_seconds(self, cost):
         m = self.machine
-        cycles = cost["instructions"] * m["cycles_per_instruction"] + cost["mispredictions"] * m["misprediction_cycles"]
+        cycles = (cost["instructions"] - cost["fp64"]) * m["cycles_per_instruction"] + cost["fp64"] * m["fp64_cycles"]
+        cycles += cost.get("conversions", 0) * (m["conversion_cycles"] - m["cycles_per_instruction"])
+        cycles += cost["mispredictions"] * m["misprediction_cycles"]
         seconds = cycles / m["clock_hz"]
         # Out-of-order cores overlap the loads of one element with those of the next, unless a step needs the last.
         if m["kind"] == "gpu" or cost["serial"]:
@@ -155,11 +173,14 @@ class Model:
             step = self.step_seconds(cost) * paths
             # What a divergent warp does at once are the lanes of one path.
             per_core = m["lanes_per_core"] / (m["cycles_per_instruction"] if m["kind"] == "cpu" else 1)
-            rate = m["cores"] * per_core * m["clock_hz"] * (m["active_share"] if cost["divergent"] else 1)
+            active_share = m["active_share"] if cost["divergent"] else 1
+            rate = m["cores"] * per_core * m["clock_hz"] * active_share
             times = {"chain": chain * step,
                      "lanes": steps * step / min(launch["work_items"], self.resident(launch["kernel"])),
                      "issue": steps * cost["instructions"] / rate,
-                     "fp64": steps * cost["fp64"] / m["fp64_per_second"],
+                     "fp64": steps * cost["fp64"] / (m["fp64_per_second"] * active_share),
+                     "convert": steps * cost.get("conversions", 0) / (m["conversions_per_second"] * active_share),
+                     "cache": steps * cost.get("near_bytes", 0) / m.get("near_bytes_per_second", m["bytes_per_second"]),
                      "memory": steps * cost["scattered_bytes" if scattered else "bytes"] / m["bytes_per_second"]}
         bound = max(times, key=times.get)
         if times[bound] < m["launch_seconds"]:
@@ -188,7 +209,7 @@ def predict_call(model, summary, launches):
     on_device = sum(row["predicted_seconds"] for row in rows) + summary["host_waits"] * machine["wait_seconds"]
     rate = machine["transfer_bytes_per_second"]
     transfers = (summary["bytes_to_device"] + summary["bytes_to_host"]) / rate if rate else 0
-    return rows, {"device_seconds": on_device, "call_seconds": on_device + transfers,
+    return rows, {"fixed_point": model.fixed_point, "device_seconds": on_device, "call_seconds": on_device + transfers,
                   "points_per_second": summary["n"] / on_device,
                   "work_items_of_most_instructions": model.work_items_of_most_instructions(launches)}
 
@@ -198,15 +219,16 @@ def launches_of(record, summary):
             if all(launch[key] == summary[key] for key in ("mode", "distribution", "n"))]
 
 
-def registers_of(path, architecture):
+def registers_of(path, architecture, fixed_point=False):
     if not os.path.exists(path) or not architecture:
         return {}
-    return {row["kernel"]: row["registers"] for row in load(path)["results"] if row["architecture"] == architecture}
+    return {row["kernel"]: row["registers"] for row in load(path)["results"]
+            if row["architecture"] == architecture and row.get("fixed_point", False) == fixed_point}
 
 
 def print_call(machine, summary, rows, totals, measured):
     print(f"\nPREDICTED, not measured: {machine['name']}, mode {summary['mode']}, {summary['n']} points of "
-          f"{summary['distribution']}")
+          f"{summary['distribution']}{', in fixed point' * totals['fixed_point']}")
     heads = ["kernel", "launches", "predicted ms", "bound by"] + ["measured ms"] * measured
     lines = [[row["kernel"], str(row["launches"]), f"{1e3 * row['predicted_seconds']:.3g}", row["bound"]]
              + [f"{1e3 * row['measured_seconds']:.3g}"] * measured for row in rows]
@@ -247,7 +269,8 @@ def predictions(arguments, names):
             machine = with_device_record(machine, load(arguments.device_record))
         if arguments.cores:
             machine = with_cores(machine, arguments.cores)
-        model = Model(machine, registers_of(arguments.static, machine["architecture"]))
+        fixed_point = is_in_fixed_point(record)
+        model = Model(machine, registers_of(arguments.static, machine["architecture"], fixed_point), fixed_point)
         for summary in record["results"]:
             rows, totals = predict_call(model, summary, launches_of(record, summary))
             print_call(machine, summary, rows, totals, arguments.measured)

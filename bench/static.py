@@ -2,7 +2,7 @@
 """Compiles kernels for GPUs that this machine need not have, and prints what each kernel uses of them: registers,
 stack, spills and local memory, by architecture.
 
-    bench/static.py                                    all kernel files, all architectures
+    bench/static.py                                    all kernel files, all architectures; in fixed point, too
     bench/static.py blocks/divide.cl --arch sm_90      some
     bench/static.py --json bench/results/static.json   and a record, which bench/predict.py reads
 
@@ -32,6 +32,9 @@ ARCHITECTURES = ["sm_90", "sm_89", "gfx942"]
 OPTIONS = ["-cl-std=CL1.2", "-DSORT_BITS=4", "-DSORT_GROUP=128", "-DSMALL_REGION=48", "-DFETCH_AHEAD=0"]
 COMMON = ["-x", "cl", "-O3", "-Xclang", "-finclude-default-header", f"-I{KERNELS}", "-Wno-everything",
           "-Dcl_khr_fp64", "-Dcl_khr_int64_base_atomics"]
+# The folders of kernels that have a text in fixed point.
+FIXED_POINT_FOLDERS = ("blocks", "constrained", "points")
+FIXED_POINT_OPTIONS = ["-DFIXED_POINT"]
 NEWEST, OLDEST = 25, 14
 COLUMNS = ["registers", "stack", "spills", "local_memory"]
 
@@ -134,9 +137,9 @@ class Nvidia:
         self.clang, self.builtins = clang_with("nvptx64--nvidiacl")
         self.ptxas = find_ptxas()
 
-    def compile(self, file, folder):
+    def compile(self, file, folder, options):
         ptx = os.path.join(folder, "kernel.ptx")
-        run([self.clang, *COMMON, *OPTIONS, "-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang",
+        run([self.clang, *COMMON, *options, "-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang",
              self.architecture, "-Xclang", "-mlink-builtin-bitcode", "-Xclang", self.builtins, "-S", "-o", ptx, file],
             "clang")
         return rows_of_ptxas(run([self.ptxas, "-v", f"-arch={self.architecture}", "-o", os.devnull, ptx], "ptxas"))
@@ -149,9 +152,9 @@ class Amd:
         self.architecture = architecture
         self.clang, self.builtins = clang_with("amdgcn--amdhsa")
 
-    def compile(self, file, folder):
+    def compile(self, file, folder, options):
         assembly = os.path.join(folder, "kernel.s")
-        run([self.clang, *COMMON, *OPTIONS, "-target", "amdgcn--amdhsa", f"-mcpu={self.architecture}", "-nogpulib",
+        run([self.clang, *COMMON, *options, "-target", "amdgcn--amdhsa", f"-mcpu={self.architecture}", "-nogpulib",
              "-Xclang", "-mlink-builtin-bitcode", "-Xclang", self.builtins, "-S", "-o", assembly, file], "clang")
         with open(assembly, encoding="utf-8") as text:
             return rows_of_metadata(text.read())
@@ -165,29 +168,39 @@ def compilers_for(architectures):
             note(f"{architecture} is skipped: {missing}")
 
 
+def texts_of(file):
+    """Whether each text of the file is in fixed point."""
+    return [False, True] if file.split(os.sep)[0] in FIXED_POINT_FOLDERS else [False]
+
+
+def rows_of_file(compiler, file, fixed_point):
+    begin = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        options = OPTIONS + FIXED_POINT_OPTIONS * fixed_point
+        compiled = compiler.compile(os.path.join(KERNELS, file), folder, options)
+    seconds = round(time.monotonic() - begin, 2)
+    return [{"architecture": compiler.architecture, "file": file, "fixed_point": fixed_point, **row,
+             "file_seconds": seconds} for row in sorted(compiled, key=lambda row: row["kernel"])]
+
+
 def table_of(files, architectures):
     rows, failures = [], 0
     for compiler in compilers_for(architectures):
         for file in files:
-            begin = time.monotonic()
-            try:
-                with tempfile.TemporaryDirectory() as folder:
-                    compiled = compiler.compile(os.path.join(KERNELS, file), folder)
-            except RuntimeError as error:
-                note(f"{file} for {compiler.architecture}: {error}")
-                failures += 1
-                continue
-            seconds = round(time.monotonic() - begin, 2)
-            for row in sorted(compiled, key=lambda row: row["kernel"]):
-                rows.append({"architecture": compiler.architecture, "file": file, **row, "file_seconds": seconds})
+            for fixed_point in texts_of(file):
+                try:
+                    rows += rows_of_file(compiler, file, fixed_point)
+                except RuntimeError as error:
+                    note(f"{file} for {compiler.architecture}: {error}")
+                    failures += 1
     return rows, failures
 
 
 def print_table(rows):
     """A row a kernel; of each architecture: registers, stack + spills, local memory."""
     architectures = list(dict.fromkeys(row["architecture"] for row in rows))
-    kernels = list(dict.fromkeys((row["file"], row["kernel"]) for row in rows))
-    by_key = {(row["file"], row["kernel"], row["architecture"]): row for row in rows}
+    kernels = list(dict.fromkeys((row["file"], row["kernel"], row["fixed_point"]) for row in rows))
+    by_key = {(row["file"], row["kernel"], row["fixed_point"], row["architecture"]): row for row in rows}
     print("| kernel | " + " | ".join(architectures) + " |")
     print("|---|" + "--:|" * len(architectures))
     for key in kernels:
@@ -195,7 +208,7 @@ def print_table(rows):
         for architecture in architectures:
             row = by_key.get((*key, architecture))
             cells.append("-" if row is None else " / ".join(str(row[column]) for column in COLUMNS))
-        print(f"| `{key[1]}` | " + " | ".join(cells) + " |")
+        print(f"| `{key[1]}`{', in fixed point' * key[2]} | " + " | ".join(cells) + " |")
 
 
 def main(command_line):

@@ -72,8 +72,10 @@ std::string error_advice(cl_int code) {
   switch (code) {
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:
     case CL_OUT_OF_RESOURCES:
-    case CL_INVALID_BUFFER_SIZE:
       return "the device is out of memory or resources: use fewer points, or another device (FLAUNAY_DEVICE)";
+    case CL_INVALID_BUFFER_SIZE:
+      return "an array is more than the device allows in one piece (CL_DEVICE_MAX_MEM_ALLOC_SIZE): use fewer "
+             "points or queries, or another device (FLAUNAY_DEVICE)";
     case CL_OUT_OF_HOST_MEMORY:
       return "the host is out of memory: use fewer points";
     case CL_BUILD_PROGRAM_FAILURE:

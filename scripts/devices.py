@@ -42,7 +42,8 @@ MODE = "blocks"
 RUSTICL_PROGRAM_ARGUMENTS = ["3000", "3", MODE]
 POOR_PROGRAM_ARGUMENTS = ["20000", "5", MODE]
 # What devices lack, as tests/support/poor_device.c has it, with the sizes of launches.
-LIMITS = "no-int64-atomics local=16384 group=64 buffer=134217728 address-bits=32"
+SMALL_BUFFER, BYTES_PER_POINT, MORE_THAN_FITS = 134217728, 72, 2000000
+LIMITS = f"no-int64-atomics local=16384 group=64 buffer={SMALL_BUFFER} address-bits=32"
 POOR = [(f"no-fp64 {LIMITS}", "gpu"), ("no-fp64", ""), (LIMITS, "gpu")]
 # As a device compiles that has what OpenCL 1.2 requires, and addresses of 32 bits. Warnings tell of literals of type
 # double.
@@ -220,6 +221,21 @@ class Comparison:
             if "no-fp64" in limits:
                 self.read_texts(sorted(texts.iterdir()))
 
+    def in_small_buffers(self):
+        """The command triangulates in chunks what one call has no room for."""
+        points, triangles = self.outputs / "points.npy", self.outputs / "triangles.npy"
+        flaunay = self.program.parent.parent / "flaunay"
+        subprocess.run([flaunay, "generate", "uniform", str(MORE_THAN_FITS), "-o", points], check=True,
+                       capture_output=True)
+        environment = {**self.environment(REFERENCE, ""), "POOR_DEVICE": f"buffer={SMALL_BUFFER}",
+                       "LD_PRELOAD": str(self.program.parent / "libpoor_device.so")}
+        command = [flaunay, "triangulate", points, "--triangles", triangles]
+        path = self.run("small buffers", "", command, environment)
+        note = f"{MORE_THAN_FITS} points are too many at once: {SMALL_BUFFER // BYTES_PER_POINT} would fit"
+        if path is not None and note not in path.read_text():
+            self.failures += 1
+            print(f"  FAILED: no '{note}' in {path.read_text()}", flush=True)
+
     def read_texts(self, paths):
         """What Clang says of programs that were handed to a device. Their first lines have the options."""
         for path in paths:
@@ -276,6 +292,7 @@ def compare_rusticl(comparison):
 
 def compare_poor(comparison):
     comparison.on_poor_devices()
+    comparison.in_small_buffers()
     return True
 
 

@@ -581,11 +581,38 @@ TEST_F(PredictionTest, FollowTheModel) {
   EXPECT_NEAR(seconds_of(h200, "fill"), 1e-3, 1e-9);
   // 40 instructions at 0.3 cycles and a tenth of a misprediction of 15 cycles, at 4.5 GHz.
   EXPECT_NEAR(seconds_of(cpu, kUnknown), 1e6 * (40 * 0.3 + 0.1 * 15) / 4.5e9, 1e-9);
-  // 40 instructions at 4.5 cycles, a load from L2 and one from memory.
-  EXPECT_NEAR(seconds_of(h200, kUnknown), 1e6 * (40 * 4.5 + 263 + 479) / 1.98e9, 1e-6);
+  // 38 instructions at 3 cycles and 2 of fp64 at 4.5, a load from L2 and one from memory.
+  EXPECT_NEAR(seconds_of(h200, kUnknown), 1e6 * (38 * 3 + 2 * 4.5 + 263 + 479) / 1.98e9, 1e-6);
   const double on_device = h200["device_seconds"];
   EXPECT_NEAR(on_device, seconds_of(h200, "fill") + seconds_of(h200, kUnknown) + 3 * 2e-5, 1e-9);
   EXPECT_NEAR(h200["call_seconds"].get<double>() - on_device, 1e-3, 1e-9);
+}
+
+// A chain of 1,000 steps of walk_seams, whose fp64 takes long on consumers' GPUs, and as many as the whole
+// device takes.
+TEST_F(PredictionTest, FixedPointNeedsNoFp64) {
+  const auto times_of = [&](const char* tuning, std::size_t work_items, std::size_t steps) {
+    nlohmann::json walks = launch_row("walk_seams", work_items, 1, 0);
+    walks["longest_chain"] = steps / work_items;
+    walks["steps"] = steps;
+    write_record({walks}, 0, 0);
+    nlohmann::json record = nlohmann::json::parse(contents(path("launches.json")));
+    record["tuning"] = tuning;
+    std::ofstream(path("launches.json")) << record;
+    const auto of = [&](const char* machine) {
+      const auto result = predicted_for(machine);
+      EXPECT_EQ(result.value("fixed_point", false), std::string(tuning) == "gpu,fixed_point=1");
+      return result["device_seconds"].get<double>();
+    };
+    return std::pair(of("rtx-4090"), of("h200"));
+  };
+  const auto chain = times_of("gpu", 1, 1000), in_fixed_point = times_of("gpu,fixed_point=1", 1, 1000);
+  EXPECT_GT(chain.first, 1.1 * in_fixed_point.first);
+  EXPECT_NEAR(chain.second / in_fixed_point.second, 1, 0.1);
+  const auto many = times_of("gpu", 1000000, 100000000),
+             many_fixed = times_of("gpu,fixed_point=1", 1000000, 100000000);
+  EXPECT_GT(many.first, 2 * many_fixed.first);
+  EXPECT_NEAR(many.second / many_fixed.second, 1, 0.2);
 }
 
 TEST_F(PredictionTest, OfEveryMachine) {
@@ -641,6 +668,13 @@ TEST_F(PredictionTest, StaticTable) {
     EXPECT_EQ(names.count("scan_reduce_uint"), 1u) << architecture;
     EXPECT_EQ(names.count("scan_write_uint8"), 1u) << architecture;
   }
+  // Kernels of points have two texts.
+  run_command("python3 " + script("static.py") + " points/inspect_tiles.cl --arch gfx942 --json " + json);
+  std::multiset<bool> texts;
+  for (const auto& row : nlohmann::json::parse(contents(json), nullptr, false)["results"]) {
+    if (row.value("kernel", "") == "inspect_tiles") texts.insert(row.value("fixed_point", false));
+  }
+  EXPECT_EQ(texts, (std::multiset<bool>{false, true}));
 }
 
 // ---- The paper

@@ -7,9 +7,13 @@
 // Walks that do not meet would be an error of the program. Such halves stay as they are, which is safe for all later
 // kernels, and the account tells the host.
 
+// In fixed point, exact predicates are a few products of integers, and walks stop at none.
+#ifndef FIXED_POINT
 #define RINGS_STOP
+#endif
 #include "shared/codes.h"
 #include "shared/halves.h"
+#include "shared/rings_account.h"
 #include "shared/seams.h"
 #include "shared/work_group.h"
 
@@ -26,6 +30,9 @@ kernel void walk_seams(int n, int spread, int height, int places, global const i
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);
+#ifndef RINGS_STOP
+    add_to_account(&g, account);
+#endif
     COUNT_STEPS(g.counted.steps);
   }
 }

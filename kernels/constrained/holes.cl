@@ -8,6 +8,8 @@
 #include "shared/records.h"
 #include "shared/search.h"
 
+#ifndef FIXED_POINT
+
 // seeds: in each set by ascending x, scaled by frames. found: INT_MAX throughout; gets the first triangle that contains
 // the seed. barred: 0 throughout; gets 1 if the seed is on a constraint.
 kernel void find_holes(int n, int sets, global const int* restrict triangle_offsets,
@@ -48,3 +50,5 @@ kernel void find_holes(int n, int sets, global const int* restrict triangle_offs
     }
   }
 }
+
+#endif

@@ -8,8 +8,8 @@
 BEGIN_SHARED
 
 // The relative error of one operation on real numbers (shared/numbers.h), and of a difference of coordinates: half a
-// unit in the last place of 1 with double precision. In single precision it is twice that and a little more, because a
-// difference may be rounded twice.
+// unit in the last place of 1 with double precision. In single precision it is twice that and a little more, so that
+// it holds of devices that round toward zero, too.
 #define DOUBLE_ROUNDOFF 0x1p-53
 #define SINGLE_ROUNDOFF 0x1.00001p-23f
 #ifdef FIXED_POINT

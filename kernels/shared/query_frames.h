@@ -60,6 +60,7 @@ static inline coordinate2 placed_query(int i, GLOBAL const coordinate* queries, 
 
 // Trees are made of points as the caller gave them.
 static inline coordinate2 query_in_tree(int i, GLOBAL const coordinate* queries, query_frame frame) {
+  (void)frame;
   return vload2(i, queries);
 }
 

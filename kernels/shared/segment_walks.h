@@ -47,7 +47,12 @@ typedef struct {
 } star_search;
 
 static inline int side_of_segment(const walked_mesh* mesh, coordinate2 from, coordinate2 to, int goal, int v) {
+#ifdef FIXED_POINT
+  // A filter would take about as long, and more registers.
+  return v == goal ? 0 : orient_exact(from, to, vload2(v, mesh->points));
+#else
   return v == goal ? 0 : orient_sign(from, to, vload2(v, mesh->points), mesh->bound);
+#endif
 }
 
 static inline star_search star_search_at(const walked_mesh* mesh, int corner, int goal) {

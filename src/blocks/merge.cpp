@@ -20,6 +20,10 @@ std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
 bool may_stop(const Workspace& work) {
   return work.bounds.coarse == 0 && (work.bounds.orient != 0 || work.bounds.circle != 0);
 }
+// Along seams, only predicates of doubles stop.
+bool walks_may_stop(const Workspace& work) {
+  return tuning_of(work.runtime).fixed_point == 0 && may_stop(work);
+}
 
 // Parts of this height have at least so many vertices.
 std::size_t least_vertices(int height) { return std::size_t{2} << height; }
@@ -193,7 +197,7 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   if (first_seams <= heights) halves.seams = seams_of(work, blocks, first_seams);
   for (int height = first_seams; height <= heights; ++height) {
     launch_on_walks<kernels::walk_seams>(halves, height);
-    if (may_stop(work)) launch_on_walks<kernels::finish_walks>(halves, height);
+    if (walks_may_stop(work)) launch_on_walks<kernels::finish_walks>(halves, height);
     sew_seams(halves, height);
   }
 }

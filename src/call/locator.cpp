@@ -20,7 +20,7 @@ namespace flaunay {
 using host::Arena;
 using host::Buffer;
 
-namespace {
+namespace call {
 
 /// An engine of a triangulator, and the locator that it made.
 struct Answerer {
@@ -72,7 +72,7 @@ struct Answerer {
   locate::Locator locator;
 };
 
-}  // namespace
+}  // namespace call
 
 struct Locator::Implementation {
   Implementation(std::shared_ptr<Triangulator::Implementation> used, call::Engine& asked)
@@ -83,7 +83,7 @@ struct Locator::Implementation {
   template <typename Make>
   void make_with(const Make& make) {
     if (!asked_.has_doubles()) {
-      fixed = std::make_unique<Answerer>(asked_, &asked_);
+      fixed = std::make_unique<call::Answerer>(asked_, &asked_);
       try {
         return make(*fixed);
       } catch (const geometry::TooWideForFixedPoint&) {
@@ -95,7 +95,7 @@ struct Locator::Implementation {
   }
 
   /// The locator with doubles; made of the other one when it is first needed.
-  Answerer& doubles() {
+  call::Answerer& doubles() {
     if (!doubles_) {
       call::take_turn(*owner, [&] {
         auto made = new_with_doubles();
@@ -138,7 +138,7 @@ struct Locator::Implementation {
   /// Answers queries in host memory. columns: the length of each result. work(runtime, locator, queries, m,
   /// offsets, results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
-  std::vector<Result> answer(Answerer& by, const double* queries, const std::vector<std::size_t>& offsets,
+  std::vector<Result> answer(call::Answerer& by, const double* queries, const std::vector<std::size_t>& offsets,
                              std::size_t columns, const Work& work) {
     return call::take_turn(*owner, [&] {
       geometry::check_offsets(offsets);
@@ -153,7 +153,7 @@ struct Locator::Implementation {
 
   /// Runs a call on device memory. work(runtime) enqueues it.
   template <typename Work>
-  void on_device(Answerer& by, const Enqueue& enqueue, const Work& work) {
+  void on_device(call::Answerer& by, const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
       call::Engine* const device = by.device;
       call::expect(
@@ -174,7 +174,7 @@ struct Locator::Implementation {
   /// Answers queries in device memory. columns and work: as above. read: further buffers that are read, or
   /// null.
   template <typename Result, typename Work>
-  void answer(Answerer& by, const DevicePoints& queries, const std::vector<cl_mem>& read,
+  void answer(call::Answerer& by, const DevicePoints& queries, const std::vector<cl_mem>& read,
               DeviceBuffer& result, std::size_t columns, const char* what, const Enqueue& enqueue,
               const Work& work) {
     on_device(by, enqueue, [&](host::Runtime& runtime) {
@@ -252,20 +252,20 @@ struct Locator::Implementation {
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
-  std::unique_ptr<Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
+  std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
 
  private:
-  std::unique_ptr<Answerer> new_with_doubles() const {
+  std::unique_ptr<call::Answerer> new_with_doubles() const {
     call::Engine& engine = owner->with_doubles(asked_);
     call::Engine* const device = !engine.runtime.is_native()   ? &engine
                                  : !asked_.runtime.is_native() ? &asked_
                                                                : nullptr;
-    return std::make_unique<Answerer>(engine, device);
+    return std::make_unique<call::Answerer>(engine, device);
   }
 
   call::Engine& asked_;  ///< one of the owner's
-  std::unique_ptr<Answerer> doubles_;
+  std::unique_ptr<call::Answerer> doubles_;
 };
 
 std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator, bool on_device) {
@@ -285,7 +285,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
   call::take_turn(*self.owner, [&] {
-    self.make_with([&](Answerer& by) { by.make_from(coordinates, offsets, triangulation); });
+    self.make_with([&](call::Answerer& by) { by.make_from(coordinates, offsets, triangulation); });
     self.point_count = offsets.back();
   });
 }
@@ -294,7 +294,7 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
                  const DeviceTriangulation& triangulation, const Enqueue& enqueue)
     : implementation_(make(triangulator, true)) {
   Implementation& self = *implementation_;
-  self.make_with([&](Answerer& by) {
+  self.make_with([&](call::Answerer& by) {
     self.on_device(by, enqueue, [&](host::Runtime& runtime) {
       call::check_points(runtime, points, "points");
       points::DeviceMesh mesh = call::mesh_without_points(runtime, points, triangulation);
@@ -319,14 +319,14 @@ std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) 
 }
 
 std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->by_either([&](Answerer& by) {
+  return implementation_->by_either([&](call::Answerer& by) {
     return implementation_->answer<std::int32_t>(by, queries, offsets, 1,
                                                  [](auto&&... all) { locate::locate(all...); });
   });
 }
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
-  implementation_->by_either([&](Answerer& by) {
+  implementation_->by_either([&](call::Answerer& by) {
     implementation_->answer<cl_int>(by, queries, {}, triangles, 1, "located triangles", enqueue,
                                     [](auto&&... all) { locate::locate(all...); });
   });
@@ -337,14 +337,14 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->by_either([&](Answerer& by) {
+  return implementation_->by_either([&](call::Answerer& by) {
     return implementation_->answer<std::int32_t>(by, queries, offsets, 1,
                                                  [](auto&&... all) { locate::nearest(all...); });
   });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
-  implementation_->by_either([&](Answerer& by) {
+  implementation_->by_either([&](call::Answerer& by) {
     implementation_->answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue,
                                     [](auto&&... all) { locate::nearest(all...); });
   });
@@ -388,7 +388,7 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
-  Answerer& by = implementation_->doubles();
+  call::Answerer& by = implementation_->doubles();
   implementation_->answer<cl_double>(
       by, queries, {values, options.device_gradients}, results, options.columns, "interpolated values",
       enqueue, [&](auto& runtime, auto& locator, const auto&... all) {
@@ -405,7 +405,7 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
 
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,
                                        const GradientOptions& options) {
-  Answerer& by = implementation_->doubles();
+  call::Answerer& by = implementation_->doubles();
   return call::take_turn(*implementation_->owner, [&] {
     const std::size_t numbers = implementation_->numbers(columns);
     if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
@@ -419,7 +419,7 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
 void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t columns,
                         const GradientOptions& options, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
-  Answerer& by = self.doubles();
+  call::Answerer& by = self.doubles();
   self.on_device(by, enqueue, [&](host::Runtime& runtime) {
     const std::size_t numbers = self.numbers(columns);
     const auto output = call::result_buffer<cl_double>(runtime, gradients, 2 * numbers, "gradients",

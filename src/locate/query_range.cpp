@@ -78,7 +78,7 @@ QueryScaling query_scaling(const Magnitudes& both, int point_shift, const QueryL
     if (both.lowest + point_shift < limits.lowest) shift = limits.lowest - both.lowest;
   }
   QueryScaling scaling;
-  scaling.frames.push_back({kernel::scale_of(shift), std::ldexp(1.0, shift - point_shift)});
+  scaling.frames.push_back({kernel::scale_of(shift), std::ldexp(1.0, shift - point_shift), 0, 0});
   if (bits_of(both) > kernel::COARSE_QUERY_BITS) {
     scaling.orient_bound = ORIENT_BOUND;
     scaling.nearness_bound = NEARNESS_BOUND;

@@ -96,9 +96,6 @@ struct Tuning : host::Sizes {
   /// point (call/arithmetic.hpp); 0: the rates are not asked for.
   std::size_t fixed_point_from = 0;
 
-  /// Other than 0: in fixed point, differences are converted to floats by halves.
-  std::size_t convert_halves = 0;
-
   /// Other than 0: the device ends loops after some ten thousand turns of a work-item, so that calls are
   /// limited to few points.
   std::size_t loops_end_early = 0;

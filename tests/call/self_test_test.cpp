@@ -242,20 +242,28 @@ TEST(SelfTest, InFixedPointFindsDevicesThatComputeOtherwise) {
   const char* const language = "shared/language.h";
   const char* const kernel = "call/self_test_fixed.cl";
   const WrongDevice devices[] = {
-      // Upper halves of products as those of unsigned numbers, without a carry, and of 32 bits.
+      // Upper halves of products as those of unsigned numbers, without their last bit, and of upper halves.
       {language, "#undef high_product\n#define high_product(x, y) as_long(mul_hi(as_ulong(x), as_ulong(y)))",
        "", "products of integers"},
       {language, "#undef high_product\n#define high_product(x, y) (mul_hi((x), (y)) & ~1L)", "",
        "products of integers"},
-      {language, "#undef high_product\n#define high_product(x, y) ((((x) >> 32) * ((y) >> 32)))", "",
+      {language, "#undef high_product\n#define high_product(x, y) (((x) >> 32) * ((y) >> 32))", "",
        "products of integers"},
-      {language, "#define clz(x) (clz(x) & 31)", "", "integers are shifted"},
-      {language, "#define clz(x) (clz(x) + 1)", "", "integers are shifted"},
+      {language, "ulong other(ulong x) { return clz(x) & 31; }\n#undef clz\n#define clz other", "",
+       "integers are shifted"},
+      {language, "ulong other(ulong x) { return clz(x) + 1; }\n#undef clz\n#define clz other", "",
+       "integers are shifted"},
       // Conversions that keep 21 bits, that lose the sign, or that see 32 bits.
-      {language, "#define convert_float(x) as_float(as_uint(convert_float(x)) & ~7U)", "",
+      {language,
+       "float other(long x) { return as_float(as_uint((float)x) & ~7U); }\n"
+       "#undef convert_float\n#define convert_float other",
+       "", "converted to floats"},
+      {language,
+       "float other(long x) { return fabs((float)x); }\n#undef convert_float\n#define convert_float other",
+       "", "converted to floats"},
+      {language,
+       "float other(long x) { return (float)(int)x; }\n#undef convert_float\n#define convert_float other", "",
        "converted to floats"},
-      {language, "#define convert_float(x) fabs(convert_float(x))", "", "converted to floats"},
-      {language, "#define convert_float(x) convert_float((int)(x))", "", "converted to floats"},
       // Floats with fewer bits, in vectors alone, and quotients by a rough reciprocal.
       {kernel, "large + third, ", "(large + third) * 1.000001f, ", "exact to one unit"},
       {kernel, "large - third, ", "(large - third) * 0.999999f, ", "exact to one unit"},

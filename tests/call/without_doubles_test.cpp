@@ -19,6 +19,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"
+#include "tests/support/test_kernels.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -485,6 +486,40 @@ TEST(WithoutDoubles, Constraints) {
   }
 }
 
+// Seeds of holes are no multiples of the points' unit, and crossings are rounded.
+TEST(WithoutDoubles, HolesAndCrossings) {
+  for (const double smallest : {0.25, 0x1p-90}) {
+    Rows rows(smallest);
+    constexpr std::int32_t kSide = Rows::kSide;
+    for (const std::int32_t first : {3 * kSide + 2, 9 * kSide + 11, 15 * kSide + 7}) {
+      const std::int32_t corners[] = {first, first + 3, first + 3 * kSide + 3, first + 3 * kSide};
+      for (int k = 0; k < 4; ++k)
+        rows.segments.insert(rows.segments.end(), {corners[k], corners[(k + 1) % 4]});
+    }
+    const std::vector<double> holes = {3.7 + 1e-13, 4.5, 12.3, 10.4 + 1e-14};
+    rows.constraints.segments = rows.segments.data();
+    rows.constraints.segment_count = rows.segments.size() / 2;
+    rows.constraints.holes = holes.data();
+    rows.constraints.hole_count = holes.size() / 2;
+    ConstrainedOptions options;
+    options.labels = true;
+    options.crossings = Crossings::split;
+    const auto result_of = [&](Triangulator& used) {
+      return used.constrained(rows.points.data(), rows.n(), rows.constraints, options);
+    };
+    const ConstrainedTriangulation expected = result_of(on_host()), found = result_of(triangulator());
+    EXPECT_GT(expected.added_points.size(), 0U);
+    expect_same(found, expected);
+    EXPECT_TRUE(same(found.constrained, expected.constrained));
+    EXPECT_TRUE(same(found.added_points, expected.added_points));
+    EXPECT_TRUE(same(found.depths, expected.depths));
+    EXPECT_TRUE(same(found.regions, expected.regions));
+    EXPECT_TRUE(same(found.piece_edges, expected.piece_edges));
+    rows.constraints.hole_count = 0;
+    EXPECT_LT(expected.triangles.size(), result_of(on_host()).triangles.size());
+  }
+}
+
 TEST(WithoutDoubles, Polygons) {
   Polygons polygons;
   const Coordinates ring = {0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 1, 3, 3, 3, 3, 1};
@@ -544,6 +579,31 @@ TEST(WithoutDoubles, Chunks) {
     EXPECT_EQ(of_host.host_points, 0U);
     EXPECT_EQ(statistics.host_points > 0, places > kMostPlaces && !has_fp64());
     EXPECT_EQ(statistics.note.empty(), statistics.host_points == 0);
+  }
+}
+
+// A device whose doubles fail the self test computes in fixed point, and leaves the rest to the host.
+TEST(WithoutDoubles, DoublesThatAreNotExact) {
+  if (!has_fp64()) GTEST_SKIP() << "there are no doubles";
+  const ScopedEnvironment own_tuning("FLAUNAY_TUNING", nullptr);
+  EXPECT_FALSE(Triangulator(device_under_test()).device().fixed_point);
+  const ChangedKernels inexact("call/self_test.cl", [](const std::string& text) {
+    std::string changed = text;
+    const std::string end = "failed[0] = bits;";
+    changed.replace(changed.find(end), end.size(), "failed[0] = bits | 8;");
+    return changed;
+  });
+  Triangulator inexact_device(device_under_test());
+  EXPECT_TRUE(inexact_device.device().fp64);
+  EXPECT_TRUE(inexact_device.device().fixed_point);
+  EXPECT_TRUE(list_devices(true).front().self_test_passed);
+  for (const int places : {40, 63}) {
+    const Coordinates points = spanning(places);
+    const std::size_t n = points.size() / 2;
+    const Triangulation found = inexact_device.triangulate(points.data(), n, all_options());
+    expect_same(found, on_host().triangulate(points.data(), n, all_options()));
+    EXPECT_EQ(found.statistics.note.empty(), places <= kMostPlaces);
+    EXPECT_EQ(found.statistics.device == "host", places > kMostPlaces);
   }
 }
 

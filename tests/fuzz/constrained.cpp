@@ -226,6 +226,7 @@ class Devices {
     add("host", "");
     add("host", "small");
     add("#0", "gpu:32,chain_wrapped_most=5");  // takes some milliseconds per case
+    add("#0", "gpu:32,chain_wrapped_most=5,fixed_point=1");
     // Kernels are compiled now, since that takes longer than a case may.
     const testing::SegmentInput any = testing::nasty_detail::spirals(200, 1);
     const Flat flat_any{any.points, {0, any.points.size() / 2}, any.segments, {}};

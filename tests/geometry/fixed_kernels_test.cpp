@@ -32,37 +32,27 @@ using TestRuntimes = SharedRuntimes<make_runtime>;
 [[maybe_unused]] ::testing::Environment* const kRuntimes =
     ::testing::AddGlobalTestEnvironment(new TestRuntimes);
 
-struct Conversion {
-  const char* program;
-  const FixedPredicates& (*on_host)();
-};
-constexpr Conversion kConversions[] = {{"fixed_predicates", fixed_predicates},
-                                       {"fixed_predicates_by_halves", fixed_predicates_by_halves}};
-
 /// Tests of the simulator take as long as all cases together.
 std::size_t cases_to_test(std::size_t n) {
   const char* const device = std::getenv("FLAUNAY_DEVICE");
   return device != nullptr && std::string(device) == "oclgrind" ? n / 50 : n;
 }
 
-class SmallFixedKernels : public ::testing::TestWithParam<Conversion> {
+class SmallFixedKernels : public ::testing::Test {
  protected:
   SmallFixedKernels() : scope_(runtime_.arena()) {}
   template <typename... Arguments>
   void run(const char* kernel, std::size_t n, const Arguments&... arguments) {
-    map_unchecked(runtime_, GetParam().program, kernel, n, arguments...);
+    map_unchecked(runtime_, "fixed_predicates", kernel, n, arguments...);
   }
 
   host::Runtime& runtime_ = TestRuntimes::get("own");
   host::Arena::Scope scope_;
   std::mt19937_64 random_{20};
 };
-INSTANTIATE_TEST_SUITE_P(Conversions, SmallFixedKernels, ::testing::ValuesIn(kConversions),
-                         [](const auto& one) { return std::string(one.param.program); });
-
 constexpr int kUndecided = 2, kNotAsked = 3;
 
-TEST_P(SmallFixedKernels, SignsAreExact) {
+TEST_F(SmallFixedKernels, SignsAreExact) {
   // Points of orientations, and a fourth one.
   std::vector<Class> classes = circle_classes();
   for (const Class& of : orientation_classes()) {
@@ -108,8 +98,8 @@ TEST_P(SmallFixedKernels, SignsAreExact) {
   }
 }
 
-TEST_P(SmallFixedKernels, DifferencesAreThoseOfTheHost) {
-  const FixedPredicates& on_host = GetParam().on_host();
+TEST_F(SmallFixedKernels, DifferencesAreThoseOfTheHost) {
+  const FixedPredicates& on_host = fixed_predicates();
   std::vector<cl_long> cases;
   for (std::size_t i = 0; i < cases_to_test(50000); ++i) {
     // Doubles of at most 53 bits below 2^62.
@@ -137,7 +127,7 @@ TEST_P(SmallFixedKernels, DifferencesAreThoseOfTheHost) {
   }
 }
 
-TEST_P(SmallFixedKernels, NumbersOfTheCallerAreReadExactly) {
+TEST_F(SmallFixedKernels, NumbersOfTheCallerAreReadExactly) {
   const FixedPredicates& on_host = fixed_predicates();
   std::vector<cl_uint> floats;
   std::vector<cl_int> shifts;
@@ -170,7 +160,7 @@ TEST_P(SmallFixedKernels, NumbersOfTheCallerAreReadExactly) {
   }
 }
 
-TEST_P(SmallFixedKernels, CertificatesAreNeverWrong) {
+TEST_F(SmallFixedKernels, CertificatesAreNeverWrong) {
   const std::size_t n = cases_to_test(20000);
   std::vector<cl_long> cases;
   for (std::size_t i = 0; i < n; ++i) {

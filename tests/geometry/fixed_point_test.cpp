@@ -346,7 +346,7 @@ TEST(SmallFixedPoint, DifferencesAsRealNumbers) {
     for (int bits = 0; bits <= 62; ++bits) {
       for (int i = 0; i < 300; ++i) {
         expect(number(random, bits));
-        // Next to powers of two, and to sums of two of them, where halves are rounded twice.
+        // Next to powers of two, and to sums of two of them, which are between floats.
         const Integer power = Integer{1} << bits,
                       lower = Integer{1} << between(random, 0, std::max(0, bits - 1));
         expect(power - 1);

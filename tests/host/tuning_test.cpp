@@ -74,12 +74,17 @@ TEST(SmallTuning, EveryValueCanBeOverridden) {
 }
 
 TEST(SmallTuning, FixedPointIsChosenByTheRateOfFp64OrByHand) {
+  // Of no device, since those without fp64 have no choice.
+  const auto tuning_named = [](const char* name) {
+    const ScopedEnvironment given("FLAUNAY_TUNING", name);
+    return tuning_of_kind("a", CL_DEVICE_TYPE_GPU, 4);
+  };
   EXPECT_EQ(tuning_named("gpu").fixed_point, 0u);
   EXPECT_GT(tuning_named("gpu").fixed_point_from, 0u);
   EXPECT_EQ(tuning_named("gpu,fixed_point=0").fixed_point_from, 0u);
   EXPECT_EQ(tuning_named("gpu,fixed_point=1").fixed_point_from, 0u);
   EXPECT_EQ(tuning_named("cpu").fixed_point_from, 0u);
-  const auto names_it = [](const char* name) {
+  const auto names_it = [&](const char* name) {
     return tuning_named(name).build_options().find("-DFIXED_POINT") != std::string::npos;
   };
   EXPECT_FALSE(names_it("gpu"));

@@ -49,17 +49,14 @@ struct FixedPredicates {
   std::uint64_t (*widened_bits)(std::uint32_t bits);
 };
 
-/// Differences are converted at once.
 const FixedPredicates& fixed_predicates();
-/// They are converted by halves (CONVERT_HALVES).
-const FixedPredicates& fixed_predicates_by_halves();
 /// As a device that contracts products and sums; the same as fixed_predicates where compilers or processors
 /// cannot.
 const FixedPredicates& fixed_predicates_contracted();
 
-/// All three.
+/// Both.
 inline std::vector<const FixedPredicates*> all_fixed_predicates() {
-  return {&fixed_predicates(), &fixed_predicates_by_halves(), &fixed_predicates_contracted()};
+  return {&fixed_predicates(), &fixed_predicates_contracted()};
 }
 
 /// What certify.h says in double precision of coordinates of at most 53 bits.

@@ -221,12 +221,11 @@ struct ClippedVoronoi {
 /// or, if there is none, the host's cores without OpenCL; small sets are triangulated on the calling thread
 /// in any case. OpenCL is loaded when it is first needed. Results do not depend on any of this.
 ///
-/// A device without fp64 computes triangulations in fixed point. What that cannot represent, coordinates
-/// whose bits span more than 62 binary places, is triangulated on the host, and Statistics::note says so.
-/// Voronoi diagrams, relaxation and interpolation are always computed on the host then, for arrays in device
-/// memory too, which are copied there and back; the call waits for that. So are the triangles at holes, and
-/// nearest points and triangles of queries that are more than 2^60 times as fine or as far away as the
-/// points.
+/// A device without fp64 computes in fixed point. What that cannot represent, coordinates whose bits span
+/// more than 62 binary places, is left to the host, and Statistics::note says so. Voronoi diagrams,
+/// relaxation and interpolation are always computed on the host then, for arrays in device memory too, which
+/// are copied there and back; the call waits for that. So are the triangles at holes, and nearest points and
+/// triangles of queries that are more than 2^60 times as fine or as far away as the points.
 class FLAUNAY_API Triangulator {
  public:
   /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
