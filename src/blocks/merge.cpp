@@ -20,14 +20,9 @@ std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
 bool may_stop(const Workspace& work) {
   return work.bounds.coarse == 0 && (work.bounds.orient != 0 || work.bounds.circle != 0);
 }
-// Along seams, only predicates of doubles stop.
-bool walks_may_stop(const Workspace& work) {
-  return tuning_of(work.runtime).fixed_point == 0 && may_stop(work);
-}
-
 // In fixed point, walks decide all predicates themselves (blocks/seams.cl).
 bool walks_may_stop(const Workspace& work) {
-  return may_stop(work) && tuning_of(work.runtime).fixed_point == 0;
+  return tuning_of(work.runtime).fixed_point == 0 && may_stop(work);
 }
 
 // Parts of this height have at least so many vertices.
