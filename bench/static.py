@@ -33,7 +33,8 @@ OPTIONS = ["-cl-std=CL1.2", "-DSORT_BITS=4", "-DSORT_GROUP=128", "-DSMALL_REGION
 COMMON = ["-x", "cl", "-O3", "-Xclang", "-finclude-default-header", f"-I{KERNELS}", "-Wno-everything",
           "-Dcl_khr_fp64", "-Dcl_khr_int64_base_atomics"]
 # The folders of kernels that have a text in fixed point.
-FIXED_POINT_FOLDERS = ("blocks", "constrained", "points")
+FIXED_POINT_FOLDERS = ("blocks", "constrained", "locate", "points")
+ONE_TEXT = {"call/self_test_fixed.cl": True, "locate/fixed_point.cl": True, "constrained/holes.cl": False}
 FIXED_POINT_OPTIONS = ["-DFIXED_POINT"]
 NEWEST, OLDEST = 25, 14
 COLUMNS = ["registers", "stack", "spills", "local_memory"]
@@ -76,12 +77,19 @@ def builtins_for(clang, name):
     return None
 
 
-def clang_with(name):
+def knows(clang, target, architecture):
+    command = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
+               "-S", "-o", os.devnull, os.devnull]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def clang_with(name, target, architecture):
+    """The newest clang that has libclc, and the functions for this target."""
     for clang in find_clang():
         builtins = builtins_for(clang, name)
-        if builtins:
+        if builtins and knows(clang, target, architecture):
             return clang, builtins
-    raise Missing(f"no libclc with {name}.bc; apt-get install libclc-{version_of(find_clang()[0])}")
+    raise Missing(f"no clang that knows it and has libclc with {name}.bc; apt-get install clang-19 libclc-19")
 
 
 def find_ptxas():
@@ -134,7 +142,7 @@ class Nvidia:
 
     def __init__(self, architecture):
         self.architecture = architecture
-        self.clang, self.builtins = clang_with("nvptx64--nvidiacl")
+        self.clang, self.builtins = clang_with("nvptx64--nvidiacl", "nvptx64-nvidia-nvcl", architecture)
         self.ptxas = find_ptxas()
 
     def compile(self, file, folder, options):
@@ -150,7 +158,7 @@ class Amd:
 
     def __init__(self, architecture):
         self.architecture = architecture
-        self.clang, self.builtins = clang_with("amdgcn--amdhsa")
+        self.clang, self.builtins = clang_with("amdgcn--amdhsa", "amdgcn--amdhsa", architecture)
 
     def compile(self, file, folder, options):
         assembly = os.path.join(folder, "kernel.s")
@@ -170,6 +178,8 @@ def compilers_for(architectures):
 
 def texts_of(file):
     """Whether each text of the file is in fixed point."""
+    if file in ONE_TEXT:
+        return [ONE_TEXT[file]]
     return [False, True] if file.split(os.sep)[0] in FIXED_POINT_FOLDERS else [False]
 
 

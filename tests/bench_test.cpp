@@ -650,7 +650,7 @@ TEST_F(PredictionTest, OfEveryMachine) {
 TEST_F(PredictionTest, StaticTable) {
   const std::string json = path("static.json");
   const int code = run_command("python3 " + script("static.py") +
-                               " operations/scan.cl --arch sm_90 --arch gfx942 --json " + json);
+                               " operations/scan.cl --arch sm_70 --arch gfx90a --json " + json);
   const std::string messages = contents(path("err"));
   if (code != 0) {
     EXPECT_NE(messages.find("is skipped"), std::string::npos) << messages;
@@ -669,7 +669,7 @@ TEST_F(PredictionTest, StaticTable) {
     EXPECT_EQ(names.count("scan_write_uint8"), 1u) << architecture;
   }
   // Kernels of points have two texts.
-  run_command("python3 " + script("static.py") + " points/inspect_tiles.cl --arch gfx942 --json " + json);
+  run_command("python3 " + script("static.py") + " points/inspect_tiles.cl --arch gfx90a --json " + json);
   std::multiset<bool> texts;
   for (const auto& row : nlohmann::json::parse(contents(json), nullptr, false)["results"]) {
     if (row.value("kernel", "") == "inspect_tiles") texts.insert(row.value("fixed_point", false));
