@@ -138,8 +138,8 @@ struct Locator::Implementation {
   /// Answers queries in host memory. columns: the length of each result. work(runtime, locator, queries, m,
   /// offsets, results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
-  std::vector<Result> answer(call::Answerer& by, const double* queries, const std::vector<std::size_t>& offsets,
-                             std::size_t columns, const Work& work) {
+  std::vector<Result> answer(call::Answerer& by, const double* queries,
+                             const std::vector<std::size_t>& offsets, std::size_t columns, const Work& work) {
     return call::take_turn(*owner, [&] {
       geometry::check_offsets(offsets);
       const std::size_t m = offsets.back();
