@@ -129,6 +129,9 @@ QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, con
       throw_range(runtime, queries, query_offsets[s], query_offsets[s + 1], points.by_set[s], asked_by_set[s],
                   limits);
     }
+  }
+  for (std::size_t s = 0; s < sets; ++s) {
+    both = joined(points.by_set[s], asked_by_set[s]);
     const QueryScaling of_set = is_fixed
                                     ? fixed_point_scaling(points.by_set[s], asked_by_set[s], points.shift(s))
                                     : query_scaling(both, points.shift(s), limits);
