@@ -48,6 +48,9 @@ void add(CLI::App& app, Action& action);
 namespace threads {
 void add(CLI::App& app, Action& action);
 }
+namespace arithmetic {
+void add(CLI::App& app, Action& action);
+}
 namespace processes {
 void add(CLI::App& app, Action& action);
 }
@@ -84,10 +87,10 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Action action;
   for (const auto add :
-       {targets::add,     peers::add,    modes::add,       sizes::add_scaling, cliffs::add,
-        sizes::add_small, batches::add,  chunks::add,      embedding::add,     interpolation::add,
-        natural::add,     cells::add,    constrained::add, threads::add,       processes::add,
-        ranks::add,       launches::add, device::add,      primitives::add,    paper::add}) {
+       {targets::add,     peers::add,   modes::add,     sizes::add_scaling, cliffs::add,   sizes::add_small,
+        batches::add,     chunks::add,  embedding::add, interpolation::add, natural::add,  cells::add,
+        constrained::add, threads::add, processes::add, ranks::add,         launches::add, device::add,
+        primitives::add,  paper::add,   arithmetic::add}) {
     add(app, action);
   }
   try {

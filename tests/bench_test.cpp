@@ -443,6 +443,16 @@ TEST_F(BenchTest, ConstrainedIsBesideCgal) {
   EXPECT_EQ(record["results"][0]["segments"], 600);
 }
 
+TEST_F(BenchTest, ArithmeticComparesDoublesWithFixedPoint) {
+  // Those of kuzmin fit into fixed point when they are rounded.
+  const auto record = run_well("arithmetic --sizes 500 --distributions uniform,kuzmin");
+  expect_entries(record);
+  EXPECT_EQ(record["results"].size(), 2u * 2);
+  ASSERT_EQ(record["ratios"].size(), 2u);
+  for (const auto& row : record["ratios"]) EXPECT_GT(row.value("fixed_point_over_doubles", 0.0), 0);
+  EXPECT_EQ(run("arithmetic --distributions nothing"), 2);
+}
+
 TEST_F(BenchTest, ThreadsHaveProcessesOfTheirOwn) {
   const auto record = run_well("threads --sizes 500,1000 --counts 1,2,3 --modes flattened,partition");
   expect_entries(record);
