@@ -69,11 +69,22 @@ std::vector<std::int32_t> expected_triangles(const Case& input) {
   return all;
 }
 
-std::vector<std::int32_t> device_triangles(Runtime& runtime, const Case& input) {
-  host::Arena::Scope scope(runtime.arena());
+Coordinates coordinates_of(const Case& input) {
   Coordinates coordinates;
   for (const Point p : input.points) coordinates.insert(coordinates.end(), {p.x, p.y});
-  const testing::ScaledPoints points = testing::upload_points(runtime, coordinates);
+  return coordinates;
+}
+
+/// Whether the runtime's kernels can compute with the points.
+bool takes(Runtime& runtime, const Case& input) {
+  const Coordinates coordinates = coordinates_of(input);
+  return tuning_of(runtime).fixed_point == 0 ||
+         geometry::fits_fixed_point(geometry::inspect(coordinates.data(), 0, input.points.size()));
+}
+
+std::vector<std::int32_t> device_triangles(Runtime& runtime, const Case& input) {
+  host::Arena::Scope scope(runtime.arena());
+  const testing::ScaledPoints points = testing::upload_points(runtime, coordinates_of(input));
   std::vector<cl_int> offsets{0}, all;
   for (const Chain& chain : input.chains) {
     all.insert(all.end(), chain.begin(), chain.end());
@@ -95,6 +106,7 @@ std::vector<std::int32_t> device_triangles(Runtime& runtime, const Case& input) 
 void expect_right(const Case& input, const std::vector<std::string>& tunings) {
   const std::vector<std::int32_t> expected = expected_triangles(input);
   for (const std::string& tuning : tunings) {
+    if (!takes(Runtimes::get(tuning), input)) continue;
     const std::vector<std::int32_t> found = device_triangles(Runtimes::get(tuning), input);
     ASSERT_EQ(found.size(), expected.size());
     const auto differs = std::mismatch(found.begin(), found.end(), expected.begin()).first - found.begin();
@@ -156,13 +168,18 @@ Chain in_order(std::size_t vertices) {
 }
 
 /// Points at random heights above a long base, by x: visible from it along verticals.
+/// Of 30 binary places, so that any chain of them fits into fixed point.
+double short_unit(FixtureRandom& random) {
+  return std::ldexp(std::floor(std::ldexp(random.unit(), 30)), -30);
+}
+
 Coordinates random_heights(std::size_t vertices, std::uint64_t seed) {
   FixtureRandom random(seed);
   Coordinates points{0, 0};
   const auto width = static_cast<double>(vertices);
   for (std::size_t k = 1; k + 1 < vertices; ++k) {
-    points.push_back(static_cast<double>(k) + 0.5 * random.unit());
-    points.push_back(1 + 10 * random.unit());
+    points.push_back(static_cast<double>(k) + 0.5 * short_unit(random));
+    points.push_back(1 + 10 * short_unit(random));
   }
   points.insert(points.end(), {width, 0});
   return points;
