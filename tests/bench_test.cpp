@@ -660,7 +660,7 @@ TEST_F(PredictionTest, OfEveryMachine) {
 TEST_F(PredictionTest, StaticTable) {
   const std::string json = path("static.json");
   const int code = run_command("python3 " + script("static.py") +
-                               " operations/scan.cl --arch sm_70 --arch gfx90a --json " + json);
+                               " operations/scan.cl --arch sm_80 --arch gfx90a --json " + json);
   const std::string messages = contents(path("err"));
   if (code != 0) {
     EXPECT_NE(messages.find("is skipped"), std::string::npos) << messages;
