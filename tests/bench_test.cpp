@@ -681,7 +681,8 @@ TEST_F(PredictionTest, StaticTable) {
   // Kernels of points have two texts.
   run_command("python3 " + script("static.py") + " points/inspect_tiles.cl --arch gfx90a --json " + json);
   std::multiset<bool> texts;
-  for (const auto& row : nlohmann::json::parse(contents(json), nullptr, false)["results"]) {
+  const auto both = nlohmann::json::parse(contents(json), nullptr, false);
+  for (const auto& row : both["results"]) {
     if (row.value("kernel", "") == "inspect_tiles") texts.insert(row.value("fixed_point", false));
   }
   EXPECT_EQ(texts, (std::multiset<bool>{false, true}));
