@@ -17,15 +17,11 @@ namespace call {
 
 namespace {
 
-constexpr const char* kChecksInFixedPoint[] = {"products of integers are whole",
-                                               "integers are shifted as they should be",
-                                               "integers of 256 bits are exact",
-                                               "integers are converted to floats",
-                                               "floats are exact to one unit",
-                                               "quotients of floats are exact to "
-                                               "three units",
-                                               "floats of 2^-110 are kept",
-                                               "loops run to their ends"};
+constexpr const char* kChecksInFixedPoint[] = {
+    "products of integers are whole", "integers are shifted as they should be",
+    "integers of 256 bits are exact", "integers are converted to floats",
+    "floats are exact to one unit",   "quotients of floats are exact to three units",
+    "floats of 2^-110 are kept",      "loops run to their ends"};
 
 constexpr const char* kChecks[] = {"contraction is off",
                                    "fma rounds once",

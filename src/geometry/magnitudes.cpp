@@ -9,6 +9,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "shared/bounds.h"
+#include "shared/numbers.h"
 
 namespace flaunay::geometry {
 namespace {
@@ -18,8 +19,7 @@ constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
 constexpr int kExponentMask = 0x7ff;
 constexpr int kExponentBias = 1023;
 
-// In fixed point, coordinates are below 2^62 in magnitude, as shared/numbers.h has it.
-constexpr int kFixedPointBits = 62;
+// Doubles of larger exponents may have differences that overflow, where integers in fixed point would not.
 constexpr int kLargestOfFiniteDifferences = kExponentBias - 2;
 
 int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
@@ -135,7 +135,7 @@ Scaling scaling_for(const Magnitudes& magnitudes) {
 TooWideForFixedPoint::TooWideForFixedPoint(const Magnitudes& magnitudes)
     : TooWideForFixedPoint(
           fmt::format("coordinates whose bits span {} binary places up to 2^{} (fixed point has {})",
-                      bits_of(magnitudes), magnitudes.largest + 1, kFixedPointBits)) {}
+                      bits_of(magnitudes), magnitudes.largest + 1, kernel::COORDINATE_BITS)) {}
 
 TooWideForFixedPoint::TooWideForFixedPoint(const std::string& reason)
     : Error(ErrorKind::device,
@@ -145,12 +145,12 @@ TooWideForFixedPoint::TooWideForFixedPoint(const std::string& reason)
       reason_(std::make_shared<const std::string>(reason)) {}
 
 bool fits_fixed_point(const Magnitudes& magnitudes) {
-  return bits_of(magnitudes) <= kFixedPointBits && magnitudes.largest <= kLargestOfFiniteDifferences;
+  return bits_of(magnitudes) <= kernel::COORDINATE_BITS && magnitudes.largest <= kLargestOfFiniteDifferences;
 }
 
 int fixed_point_shift(const Magnitudes& magnitudes) {
   if (!fits_fixed_point(magnitudes)) throw TooWideForFixedPoint(magnitudes);
-  return bits_of(magnitudes) == 0 ? 0 : kFixedPointBits - 1 - magnitudes.largest;
+  return bits_of(magnitudes) == 0 ? 0 : kernel::COORDINATE_BITS - 1 - magnitudes.largest;
 }
 
 Bounds fixed_point_bounds(int bits) {
