@@ -107,11 +107,11 @@ namespace {
 ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
                                          const std::vector<std::size_t>& offsets,
                                          const Constraints& constraints, const ConstrainedOptions& options) {
-  // What splitting and triangulating take for each pair of pieces that cross.
+  // What splitting and triangulating take for each place at which segments cross.
   constexpr std::size_t kBytesPerCrossing = 1024;
   const double begin = host::now();
   constrained::SplitLimits limits;
-  limits.crossings = std::min(limits.crossings, host::memory_left().bytes / kBytesPerCrossing);
+  limits.places = std::min(limits.places, host::memory_left().bytes / kBytesPerCrossing);
   constrained::Split split = constrained::split(coordinates, offsets, checked_segments(constraints), limits);
   const constrained::AllPoints all = constrained::join_added(coordinates, offsets, split);
   for (std::int32_t& v : split.pieces) v = all.place[v];

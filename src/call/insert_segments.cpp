@@ -56,6 +56,7 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
 constrained::Result insert_segments(Implementation& self, const double* coordinates,
                                     const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                                     const std::vector<std::int32_t>& segments, const Options& options) {
+  constrained::check_first_segments(coordinates, offsets, delaunay.representatives, segments);
   const bool may_stay = !self.is_named() && !options.profile;
   const std::size_t size = offsets.back() + segments.size() / 2;
   if (may_stay && size <= self.host_tuning().host_points) {

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <tuple>
 #include <utility>
 
 #include "constrained/constraints.hpp"
+#include "constrained/crossing.hpp"
 #include "constrained/crossing_error.hpp"
 #include "constrained/mesh.hpp"
 #include "geometry/magnitudes.hpp"
@@ -18,6 +20,9 @@ namespace flaunay::constrained {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
+
+// The first segments are compared with each other in so many pairs per segment of all.
+constexpr double kPairsPerSegment = 4;
 
 struct ScaledPoints {
   std::vector<Point> points;
@@ -55,6 +60,15 @@ struct Segment {
   std::int32_t edge = -1;  // any of its edges
 };
 
+// From its lexicographically smaller end to the other one.
+Segment oriented(const ScaledPoints& scaled, const Ids& representatives, const Ids& segments,
+                 std::int32_t index) {
+  const auto s = 2 * static_cast<std::size_t>(index);
+  std::int32_t from = representatives[segments[s]], to = representatives[segments[s + 1]];
+  if (kernel::comes_before(scaled.points[to], scaled.points[from])) std::swap(from, to);
+  return {from, to, index};
+}
+
 // Segments without those of length zero, each once. unique_of: per segment of the input, its place here, or
 // -1.
 std::vector<Segment> unique_segments(const ScaledPoints& scaled, const Ids& representatives,
@@ -62,10 +76,8 @@ std::vector<Segment> unique_segments(const ScaledPoints& scaled, const Ids& repr
   std::vector<Segment> all;
   unique_of.assign(segments.size() / 2, -1);
   for (std::size_t s = 0; s < unique_of.size(); ++s) {
-    std::int32_t from = representatives[segments[2 * s]], to = representatives[segments[2 * s + 1]];
-    if (from == to) continue;
-    if (kernel::comes_before(scaled.points[to], scaled.points[from])) std::swap(from, to);
-    all.push_back({from, to, static_cast<std::int32_t>(s)});
+    if (representatives[segments[2 * s]] == representatives[segments[2 * s + 1]]) continue;
+    all.push_back(oriented(scaled, representatives, segments, static_cast<std::int32_t>(s)));
   }
   std::sort(all.begin(), all.end(), [](const Segment& a, const Segment& b) {
     return std::tie(a.from, a.to, a.index) < std::tie(b.from, b.to, b.index);
@@ -276,6 +288,44 @@ void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments
       throw Error(ErrorKind::usage, fmt::format("segment {} joins points {} and {} of different sets", i / 2,
                                                 segments[i - 1], segments[i]));
     }
+  }
+}
+
+void check_first_segments(const double* coordinates, const std::vector<std::size_t>& offsets,
+                          const Ids& representatives, const Ids& segments) {
+  if (offsets.size() != 2 || segments.size() < 4) return;
+  const auto pairs = kPairsPerSegment * static_cast<double>(segments.size() / 2);
+  const auto count = std::min(segments.size() / 2, 1 + static_cast<std::size_t>(std::sqrt(2 * pairs)));
+  int largest = std::numeric_limits<int>::min();
+  for (std::size_t k = 0; k < 2 * count; ++k) {
+    if (segments[k] < 0 || static_cast<std::size_t>(segments[k]) >= offsets.back()) return;
+    const double* p = coordinates + 2 * static_cast<std::size_t>(segments[k]);
+    for (const double c : {p[0], p[1]}) largest = std::max(largest, c == 0 ? largest : std::ilogb(c));
+  }
+  if (largest == std::numeric_limits<int>::min()) return;
+  const int shift = kernel::LARGEST_EXPONENT - largest;
+  const auto scaled = [coordinates, shift](std::int32_t i) -> Point {
+    const double* p = coordinates + 2 * static_cast<std::size_t>(i);
+    return {std::ldexp(p[0], shift) + 0.0, std::ldexp(p[1], shift) + 0.0};
+  };
+  Predicates predicates;
+  predicates.bounds.orient = ORIENT_BOUND;
+  std::vector<Line> lines;
+  for (std::size_t s = 0; s < count; ++s) {
+    Line line{scaled(segments[2 * s]), scaled(segments[2 * s + 1])};
+    if (kernel::comes_before(line.b, line.a)) std::swap(line.a, line.b);
+    for (std::size_t earlier = 0; earlier < lines.size(); ++earlier) {
+      if (!cross(predicates, lines[earlier], line)) continue;
+      const Point place = round_crossing(lines[earlier], line, std::ldexp(1.0, kernel::LOWEST_EXPONENT));
+      // There may be a point.
+      if (predicates.orient(line.a, line.b, place) == 0) return;
+      const ScaledPoints all = scale_points(coordinates, offsets);
+      const auto segment = [&](std::size_t k) {
+        return oriented(all, representatives, segments, static_cast<std::int32_t>(k));
+      };
+      throw_crossing(all, all.scalings.shift(0), segments, segment(s), segment(earlier));
+    }
+    lines.push_back(line);
   }
 }
 

@@ -33,6 +33,13 @@ struct Result {
 /// number of indices is odd.
 void check_segments(const std::vector<std::size_t>& offsets, const std::vector<std::int32_t>& segments);
 
+/// Throws the error of constrain() for segments that cross, if that takes few comparisons: of the first
+/// segments of a single set, O(sqrt(s)) of s segments, each with each. The arguments are those of
+/// constrain(); what that refuses for another reason is left to it. O(s), and O(n) if segments cross.
+void check_first_segments(const double* coordinates, const std::vector<std::size_t>& offsets,
+                          const std::vector<std::int32_t>& representatives,
+                          const std::vector<std::int32_t>& segments);
+
 /// Makes the segments edges of a triangulation, in one or more sets.
 ///
 /// coordinates, offsets: as in Triangulator::triangulate. delaunay: their triangulation, with neighbours.

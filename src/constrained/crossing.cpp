@@ -1,5 +1,6 @@
 #include "constrained/crossing.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/areas.h"
@@ -128,6 +129,17 @@ bool round_certainly(double a, double b, const Double2& ratio, double unit, doub
 }
 
 }  // namespace
+
+bool cross(const Predicates& predicates, const Line& p, const Line& q) {
+  const auto [a, b] = p;
+  const auto [c, d] = q;
+  if (std::max(a.x, c.x) > std::min(b.x, d.x) ||
+      std::max(std::min(a.y, b.y), std::min(c.y, d.y)) > std::min(std::max(a.y, b.y), std::max(c.y, d.y))) {
+    return false;
+  }
+  return predicates.orient(a, b, c) * predicates.orient(a, b, d) < 0 &&
+         predicates.orient(c, d, a) * predicates.orient(c, d, b) < 0;
+}
 
 int compare_crossing(const Line& first, const Line& second, bool vertical, double2 value) {
   return ExactCrossing(first, second).compare(vertical, value);

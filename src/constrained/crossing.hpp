@@ -1,4 +1,4 @@
-// Where two segments cross: compared exactly, and correctly rounded.
+// Whether two segments cross, and where: compared exactly, and correctly rounded.
 #pragma once
 
 #include "geometry/predicates.hpp"
@@ -10,6 +10,10 @@ using namespace geometry;
 struct Line {
   Point a, b;
 };
+
+/// Whether two segments have exactly one common point, which is inside of both. Each begins with its
+/// lexicographically smaller end.
+bool cross(const Predicates& predicates, const Line& p, const Line& q);
 
 /// The sign of x - value at the place where two segments cross, or with `vertical`, of y - value. The value
 /// is the sum of two doubles. The segments must cross: have exactly one common point, which is inside of

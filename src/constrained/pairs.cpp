@@ -12,14 +12,11 @@
 // crossing is on one of the sides, with both of its pieces.
 #include "constrained/pairs.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "constrained/crossing.hpp"
-#include "flaunay/flaunay.hpp"
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
@@ -47,30 +44,11 @@ struct Rank {
   std::size_t below, not_above;
 };
 
-[[noreturn]] void throw_too_many(std::size_t most) {
-  throw Error(
-      ErrorKind::input,
-      fmt::format("segments cross at more than {} places, for which memory or 32-bit indices do not suffice",
-                  most));
-}
-
-// Whether two pieces have exactly one common point, which is inside of both.
-bool cross(const Predicates& predicates, const Line& p, const Line& q) {
-  const auto [a, b] = p;
-  const auto [c, d] = q;
-  if (std::max(a.x, c.x) > std::min(b.x, d.x) ||
-      std::max(std::min(a.y, b.y), std::min(c.y, d.y)) > std::min(std::max(a.y, b.y), std::max(c.y, d.y))) {
-    return false;
-  }
-  return predicates.orient(a, b, c) * predicates.orient(a, b, d) < 0 &&
-         predicates.orient(c, d, a) * predicates.orient(c, d, b) < 0;
-}
-
 class Search {
  public:
   Search(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
-         std::size_t most)
-      : predicates_(predicates), points_(points), pieces_(pieces), most_(most) {}
+         const FoundPair& found)
+      : predicates_(predicates), points_(points), pieces_(pieces), found_(found) {}
 
   void find_crossings() {
     Ids pieces(pieces_.size());
@@ -87,7 +65,6 @@ class Search {
     of_vertices_ = true;
     run(std::move(pieces), vertices);
   }
-  Pairs take() { return std::move(pairs_); }
 
  private:
   struct Slab {
@@ -110,13 +87,11 @@ class Search {
   }
 
   // Numbers what is given by place, so that what is near in the plane is near in memory.
-  void run(Ids pieces, Ids vertices) {
+  void run(Ids pieces, const Ids& unsorted_vertices) {
     if (pieces.empty()) return;
-    sort_by_place(pieces, [this](std::int32_t p) {
-      const Point a = points_[pieces_[p].from], b = points_[pieces_[p].to];
-      return Point{0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y};
-    });
-    sort_by_place(vertices, [this](std::int32_t v) { return points_[v]; });
+    Ids vertices = unsorted_vertices;
+    geometry::sort_by_place(pieces, [this](std::int32_t p) { return centre(points_, pieces_[p]); });
+    geometry::sort_by_place(vertices, [this](std::int32_t v) { return points_[v]; });
     Slab slab{HUGE_VAL, -HUGE_VAL};
     for (const std::int32_t p : pieces) {
       lines_.push_back({points_[pieces_[p].from], points_[pieces_[p].to]});
@@ -128,49 +103,14 @@ class Search {
     std::iota(piece_stack_.begin(), piece_stack_.end(), 0);
     vertex_stack_.resize(vertices.size());
     std::iota(vertex_stack_.begin(), vertex_stack_.end(), 0);
+    pieces_by_place_ = std::move(pieces);
+    vertices_by_place_ = std::move(vertices);
     divide(slab, {0, 0});
-    for (auto& [piece, other] : pairs_) {
-      piece = pieces[piece];
-      other = of_vertices_ ? vertices[other] : pieces[other];
-      if (!of_vertices_ && other < piece) std::swap(piece, other);
-    }
-  }
-
-  // Along a curve that fills the plane (Morton 1966).
-  template <typename Place>
-  static void sort_by_place(Ids& items, const Place& place) {
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (const std::int32_t i : items) {
-      const Point p = place(i);
-      low[0] = std::min(low[0], p.x);
-      low[1] = std::min(low[1], p.y);
-      high[0] = std::max(high[0], p.x);
-      high[1] = std::max(high[1], p.y);
-    }
-    std::vector<Keyed> keyed;
-    keyed.reserve(items.size());
-    for (const std::int32_t i : items) {
-      const Point p = place(i);
-      keyed.push_back({spread(part(p.x, low[0], high[0])) | spread(part(p.y, low[1], high[1])) << 1, i});
-    }
-    sort_by_key(keyed);
-    std::transform(keyed.begin(), keyed.end(), items.begin(), [](const Keyed& k) { return k.index; });
-  }
-  // Where a number is between two others, in 16 bits.
-  static std::uint64_t part(double x, double low, double high) {
-    return high > low ? static_cast<std::uint64_t>((x - low) / (high - low) * 0xffff) : 0;
-  }
-  // Leaves a 0 before each of 16 bits.
-  static std::uint64_t spread(std::uint64_t bits) {
-    bits = (bits | bits << 8) & 0x00ff00ff;
-    bits = (bits | bits << 4) & 0x0f0f0f0f;
-    bits = (bits | bits << 2) & 0x33333333;
-    return (bits | bits << 1) & 0x55555555;
   }
 
   // Finds all pairs of items at the top of the stacks that meet in a slab, and removes them.
   void divide(Slab slab, Items items) {
-    if (!compare_few(items)) {
+    if (!stopped_ && !compare_few(items)) {
       Axis axis = Axis::x;
       double middle = 0;
       if (find_separation(slab, items, axis, middle)) {
@@ -345,14 +285,14 @@ class Search {
       const Spanning p = chain_[k];
       const bool goes_on = to(p.piece).x > slab.end;
       std::size_t place = k;
-      while (place > 0 && compare_at_end(slab, chain_[place - 1], p) > 0) {
+      while (place > 0 && !stopped_ && compare_at_end(slab, chain_[place - 1], p) > 0) {
         add_if_crossing(p.piece, chain_[place - 1].piece);
         chain_[place] = chain_[place - 1];
         --place;
       }
       chain_[place] = p;
-      for (std::size_t tied = place; goes_on && tied > 0 && compare_at_end(slab, chain_[tied - 1], p) == 0;
-           --tied) {
+      for (std::size_t tied = place;
+           goes_on && tied > 0 && !stopped_ && compare_at_end(slab, chain_[tied - 1], p) == 0; --tied) {
         add_if_crossing(p.piece, chain_[tied - 1].piece);
       }
     }
@@ -442,27 +382,27 @@ class Search {
   }
 
   void add_if_crossing(std::int32_t p, std::int32_t q) {
-    if (!cross(predicates_, lines_[p], lines_[q])) return;
-    pairs_.emplace_back(p, q);
-    // Few pairs are found twice.
-    if (pairs_.size() / 2 > most_) throw_too_many(most_);
+    if (stopped_ || !cross(predicates_, lines_[p], lines_[q])) return;
+    const auto [first, second] = std::minmax(pieces_by_place_[p], pieces_by_place_[q]);
+    stopped_ = !found_(first, second);
   }
   void add_if_inside(std::int32_t p, std::int32_t v) {
     const Point a = from(p), b = to(p), point = places_[v];
-    if (a.x < point.x && point.x < b.x && predicates_.orient(a, b, point) == 0) pairs_.emplace_back(p, v);
+    if (a.x < point.x && point.x < b.x && predicates_.orient(a, b, point) == 0)
+      found_(pieces_by_place_[p], vertices_by_place_[v]);
   }
 
   Predicates predicates_;
   const Point* points_;
   const std::vector<Piece>& pieces_;
-  std::size_t most_;
-  bool of_vertices_ = false;
+  const FoundPair& found_;
+  bool of_vertices_ = false, stopped_ = false;
+  Ids pieces_by_place_, vertices_by_place_;
   std::vector<Line> lines_;    // of pieces, by place
   std::vector<Point> places_;  // of vertices, by place
   Ids piece_stack_, vertex_stack_;
   std::vector<double> inside_;
   std::vector<Spanning> chain_;
-  Pairs pairs_;
 };
 
 // Vertical pieces have what is between their ends in lexicographic order.
@@ -482,22 +422,19 @@ void add_inner_vertices_of_vertical(const Point* points, const std::vector<Piece
 
 }  // namespace
 
-Pairs crossing_pairs(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
-                     std::size_t most) {
-  Search search(predicates, points, pieces, most);
-  search.find_crossings();
-  Pairs pairs = search.take();
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  if (pairs.size() > most) throw_too_many(most);
-  return pairs;
+void find_crossings(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
+                    const FoundPair& found) {
+  Search(predicates, points, pieces, found).find_crossings();
 }
 
 Pairs inner_vertices(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
                      const Ids& vertices) {
-  Search search(predicates, points, pieces, 0);
-  search.find_vertices(vertices);
-  Pairs pairs = search.take();
+  Pairs pairs;
+  const FoundPair add = [&pairs](std::int32_t piece, std::int32_t vertex) {
+    pairs.emplace_back(piece, vertex);
+    return true;
+  };
+  Search(predicates, points, pieces, add).find_vertices(vertices);
   add_inner_vertices_of_vertical(points, pieces, vertices, pairs);
   std::sort(pairs.begin(), pairs.end(), [points](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -17,13 +18,21 @@ struct Piece {
   std::int32_t from, to;
 };
 
+inline Point centre(const Point* points, Piece piece) {
+  const Point a = points[piece.from], b = points[piece.to];
+  return {0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y};
+}
+
 using Pairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
-/// All pairs of pieces that cross: have exactly one common point, which is inside of both; each pair once,
-/// the smaller number first, in ascending order. No vertex may be inside of a piece. Throws Error(input) if
-/// there are more pairs than `most`. O((n + k) log n) for k pairs, but for what is said in pairs.cpp.
-Pairs crossing_pairs(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
-                     std::size_t most);
+/// Takes a pair. Returns whether to go on.
+using FoundPair = std::function<bool(std::int32_t first, std::int32_t second)>;
+
+/// Calls `found` with all pairs of pieces that cross: have exactly one common point, which is inside of both.
+/// The smaller number is first. Pairs come in any order, and some of them several times. No vertex may be
+/// inside of a piece. O((n + k) log n) for k pairs, but for what is said in pairs.cpp, and O(n) memory.
+void find_crossings(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
+                    const FoundPair& found);
 
 /// All pairs of a piece and a vertex inside of it, in ascending order of the piece, and along it. Different
 /// pieces must not have more than one common point. vertices: in lexicographic order.

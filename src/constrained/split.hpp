@@ -10,8 +10,7 @@ namespace flaunay::constrained {
 
 /// What splitting may take.
 struct SplitLimits {
-  int rounds = 32;                        ///< so often pieces are split
-  std::size_t crossings = 1'000'000'000;  ///< so many pairs of pieces may cross in a round
+  std::size_t places = 1'000'000'000;  ///< segments of a set may cross at so many places
 };
 
 struct Split {
@@ -24,7 +23,9 @@ struct Split {
   std::vector<std::int32_t> pieces;
   /// segments + 1 values: segment s has the pieces [piece_offsets[s], piece_offsets[s + 1]).
   std::vector<std::int32_t> piece_offsets;
-  int rounds = 0;  ///< how often pieces were split, at most
+  /// Whether there is a set whose segments were led through all vertices whose cells they meet, because
+  /// crossings alone would have made others.
+  bool is_snapped = false;
 };
 
 /// Splits segments where they cross. A segment that nothing crosses is one piece.
@@ -33,8 +34,7 @@ struct Split {
 /// segment.
 ///
 /// Throws Error(usage) for wrong segments as constrain() does; Error(input) as Triangulator::triangulate does
-/// for points, if there are more crossings than the limit or than 32-bit indices allow, and if segments still
-/// cross after the last round, which names two of them.
+/// for points, and if segments cross at more places than the limit or than 32-bit indices allow.
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets,
             const std::vector<std::int32_t>& segments, const SplitLimits& limits = {});
 

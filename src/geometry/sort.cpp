@@ -22,7 +22,20 @@ std::size_t digit_of(std::uint64_t key, int digit) {
   return (key >> (digit * kDigitBits)) & (kDigitValues - 1);
 }
 
+// Leaves a 0 before each of 16 bits.
+std::uint64_t spread(std::uint64_t bits) {
+  bits = (bits | bits << 8) & 0x00ff00ff;
+  bits = (bits | bits << 4) & 0x0f0f0f0f;
+  bits = (bits | bits << 2) & 0x33333333;
+  return (bits | bits << 1) & 0x55555555;
+}
+
 }  // namespace
+
+std::uint64_t place_on_curve(double x, double y) {
+  const auto bits = [](double part) { return part > 0 ? static_cast<std::uint64_t>(part * 0xffff) : 0; };
+  return spread(bits(x)) | spread(bits(y)) << 1;
+}
 
 std::uint64_t sort_key(double x) {
   std::uint64_t bits;

@@ -203,6 +203,38 @@ TEST(SmallConstrained, CrossingsNameThePlace) {
   EXPECT_EQ(expect_right(Sets({0, 0, 4, 4, 0, 4, 4, 0, 2, 2}), {0, 1, 2, 3}), 0);
 }
 
+// What is found by comparing the first segments is what inserting all of them finds.
+TEST(SmallConstrained, FirstSegmentsThatCross) {
+  FixtureRandom random(11);
+  int found = 0, left = 0;
+  for (int round = 0; round < 400; ++round) {
+    SCOPED_TRACE(round);
+    const auto n = static_cast<std::size_t>(random.integer(4, 40));
+    Coordinates points =
+        random_integer_points(n, round % 2 == 0 ? 9 : 1000, static_cast<std::uint64_t>(round));
+    for (double& c : points) c = std::ldexp(c, round % 3 == 0 ? -700 : round % 3 == 1 ? 0 : 700);
+    const Sets sets(points);
+    const Segments segments = random_segments(random, n, static_cast<std::size_t>(random.integer(2, 30)));
+    const auto message = [](const auto& call) -> std::string {
+      try {
+        call();
+      } catch (const Error& error) {
+        return error.what();
+      }
+      return {};
+    };
+    const std::string first = message([&] {
+      constrained::check_first_segments(points.data(), sets.offsets, sets.delaunay.representatives, segments);
+    });
+    const std::string any = message([&] { sets.constrain(segments); });
+    if (!first.empty()) EXPECT_EQ(first, any);
+    found += first.empty() ? 0 : 1;
+    left += first.empty() && !any.empty() ? 1 : 0;
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_GT(left, 10);  // with a point where they cross, as it may be one, or among later segments
+}
+
 TEST(SmallConstrained, WrongSegmentsAreErrors) {
   const Sets sets({0, 0, 1, 0, 0, 1, 5, 5, 6, 5, 5, 6}, {0, 3, 6});
   const auto message = [&sets](const Segments& segments) -> std::string {

@@ -90,8 +90,19 @@ std::size_t expect_pairs(const Pieces& given) {
     }
   }
   std::sort(all.begin(), all.end());
-  EXPECT_EQ(constrained::crossing_pairs(predicates, given.points.data(), lines.edges, all.size() * 2 + 1),
-            all);
+  Pairs pairs;
+  constrained::find_crossings(predicates, given.points.data(), lines.edges,
+                              [&pairs](std::int32_t e, std::int32_t f) {
+                                pairs.emplace_back(e, f);
+                                return true;
+                              });
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  EXPECT_EQ(pairs, all);
+  std::size_t calls = 0;
+  constrained::find_crossings(predicates, given.points.data(), lines.edges,
+                              [&calls](std::int32_t, std::int32_t) { return ++calls < 3; });
+  EXPECT_EQ(calls, std::min<std::size_t>(3, all.size()));
   return all.size();
 }
 
