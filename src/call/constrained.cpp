@@ -113,6 +113,19 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   constrained::SplitLimits limits;
   limits.places = std::min(limits.places, host::memory_left().bytes / kBytesPerCrossing);
   constrained::Split split = constrained::split(coordinates, offsets, checked_segments(constraints), limits);
+  ConstrainedOptions without = options;
+  without.crossings = Crossings::error;
+  ConstrainedTriangulation result;
+  const auto end_split = [&](double seconds) {
+    result.statistics.seconds += seconds;
+    result.statistics.phases.insert(result.statistics.phases.begin(), {"split", seconds});
+  };
+  if (split.is_as_it_was()) {
+    const double seconds = host::now() - begin;
+    result = call::constrain(self, coordinates, offsets, constraints, without);
+    end_split(seconds);
+    return result;
+  }
   const constrained::AllPoints all = constrained::join_added(coordinates, offsets, split);
   for (std::int32_t& v : split.pieces) v = all.place[v];
   const double seconds = host::now() - begin;
@@ -120,10 +133,7 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   Constraints pieces = constraints;
   pieces.segments = split.pieces.data();
   pieces.segment_count = split.pieces.size() / 2;
-  ConstrainedOptions without = options;
-  without.crossings = Crossings::error;
-  ConstrainedTriangulation result =
-      call::constrain(self, all.coordinates.data(), all.offsets, pieces, without);
+  result = call::constrain(self, all.coordinates.data(), all.offsets, pieces, without);
   for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
     for (std::int32_t& v : *vertices) v = all.index[v];
   }
@@ -137,8 +147,7 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
       segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
   result.added_points = std::move(split.added_points);
   result.added_offsets = std::move(split.added_offsets);
-  result.statistics.seconds += seconds;
-  result.statistics.phases.insert(result.statistics.phases.begin(), {"split", seconds});
+  end_split(seconds);
   return result;
 }
 

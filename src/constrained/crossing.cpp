@@ -123,10 +123,12 @@ bool round_certainly(double a, double b, const Double2& ratio, double unit, doub
   const double2 sum = pair_sum({a, 0}, way);
   const double error =
       2 * (std::fabs(way.x) * (ratio.error + kPairError) + (std::fabs(a) + std::fabs(way.x)) * kPairError);
-  rounded = sum.x + 0.0;
+  rounded = std::fabs(sum.x) <= error ? 0 : sum.x;
   return std::fabs(sum.x) >= unit * 0x1p53 && sum.x + (sum.y + error) == sum.x &&
          sum.x + (sum.y - error) == sum.x;
 }
+
+bool is_on(const Line& line, Point p) { return kernel::orient_sign(line.a, line.b, p, ORIENT_BOUND) == 0; }
 
 }  // namespace
 
@@ -159,10 +161,9 @@ Point round_crossing(const Line& first, const Line& second, double unit) {
     const Double2 ratio = {pair_quotient(numerator.value, denominator.value),
                            2 * (numerator.error / std::fabs(numerator.value.x) +
                                 denominator.error / std::fabs(denominator.value.x))};
-    if (round_certainly(first.a.x, first.b.x, ratio, unit, rounded.x) &&
-        round_certainly(first.a.y, first.b.y, ratio, unit, rounded.y)) {
-      return rounded;
-    }
+    const bool is_certain = round_certainly(first.a.x, first.b.x, ratio, unit, rounded.x) &
+                            round_certainly(first.a.y, first.b.y, ratio, unit, rounded.y);
+    if (is_certain || (is_on(first, rounded) && is_on(second, rounded))) return rounded;
   }
   const ExactCrossing exact(first, second);
   return {exact.round(false, unit), exact.round(true, unit)};

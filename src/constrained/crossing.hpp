@@ -1,6 +1,9 @@
 // Whether two segments cross, and where: compared exactly, and correctly rounded.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "geometry/predicates.hpp"
 
 namespace flaunay::constrained {
@@ -25,5 +28,27 @@ int compare_crossing(const Line& first, const Line& second, bool vertical, kerne
 /// taken. So the place is a function of both lines alone. Coordinates must be multiples of the unit, which is
 /// at least 2^-255, and below 2^250.
 Point round_crossing(const Line& first, const Line& second, double unit);
+
+/// A rectangle.
+struct Box {
+  Point low, high;
+};
+
+/// Whether a segment may have a point whose distance from one of a box is at most `reach` in both
+/// coordinates. The answer is yes, too, for some that are a little farther away. reach: at least 2^-50 of the
+/// largest magnitude of a coordinate. Then it makes up for the rounding of the cross product, which is less
+/// than 7 times 2^-53 of that magnitude times the extents of the segment.
+inline bool may_be_near(const Box& box, const Line& segment, double reach) {
+  const auto [a, b] = segment;
+  if (std::min(a.x, b.x) > box.high.x + reach || std::max(a.x, b.x) < box.low.x - reach ||
+      std::min(a.y, b.y) > box.high.y + reach || std::max(a.y, b.y) < box.low.y - reach) {
+    return false;
+  }
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  const double x = 0.5 * (box.low.x + box.high.x), y = 0.5 * (box.low.y + box.high.y);
+  return std::fabs(dx * (y - a.y) - dy * (x - a.x)) <=
+         std::fabs(dx) * (0.5 * (box.high.y - box.low.y) + reach) +
+             std::fabs(dy) * (0.5 * (box.high.x - box.low.x) + reach);
+}
 
 }  // namespace flaunay::constrained

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "constrained/crossing.hpp"
 #include "geometry/predicates.hpp"
 
 namespace flaunay::constrained {

@@ -38,12 +38,9 @@ class PointTree {
  private:
   static constexpr std::int32_t kLeaf = 8;
 
-  struct Box {
-    Point low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-  };
   // Its first child follows it.
   struct Node {
-    Box box;
+    Box box{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
     std::int32_t begin, end;  // its points
     std::int32_t second;      // child; 0 if there are none
   };
@@ -52,7 +49,7 @@ class PointTree {
   void build(const std::vector<geometry::Keyed>& order, std::int32_t begin, std::int32_t end) {
     const std::size_t node = nodes_.size();
     nodes_.push_back({{}, begin, end, 0});
-    Box box;
+    Box box{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
     if (end - begin <= kLeaf) {
       for (std::int32_t k = begin; k < end; ++k) box = joined(box, {points_[k], points_[k]});
     } else {
@@ -82,31 +79,15 @@ class PointTree {
   template <typename Visit>
   std::size_t visit_near(std::int32_t n, const Line& segment, double distance, const Visit& visit) const {
     const Node& node = nodes_[n];
-    if (!is_near(node.box, segment, distance)) return 1;
+    if (!may_be_near(node.box, segment, distance + rounding_)) return 1;
     if (node.second != 0) {
       return 1 + visit_near(n + 1, segment, distance, visit) +
              visit_near(node.second, segment, distance, visit);
     }
     for (std::int32_t k = node.begin; k < node.end; ++k) {
-      if (is_near({points_[k], points_[k]}, segment, distance)) visit(ids_[k]);
+      if (may_be_near({points_[k], points_[k]}, segment, distance + rounding_)) visit(ids_[k]);
     }
     return 1 + static_cast<std::size_t>(node.end - node.begin);
-  }
-
-  // The cross product is wrong by less than 7 times 2^-53 of the largest magnitude times the extents of the
-  // segment, which `rounding_` makes up for.
-  bool is_near(const Box& box, const Line& segment, double distance) const {
-    const auto [a, b] = segment;
-    const double reach = distance + rounding_;
-    if (std::min(a.x, b.x) > box.high.x + reach || std::max(a.x, b.x) < box.low.x - reach ||
-        std::min(a.y, b.y) > box.high.y + reach || std::max(a.y, b.y) < box.low.y - reach) {
-      return false;
-    }
-    const double dx = b.x - a.x, dy = b.y - a.y;
-    const double x = 0.5 * (box.low.x + box.high.x), y = 0.5 * (box.low.y + box.high.y);
-    return std::fabs(dx * (y - a.y) - dy * (x - a.x)) <=
-           std::fabs(dx) * (0.5 * (box.high.y - box.low.y) + reach) +
-               std::fabs(dy) * (0.5 * (box.high.x - box.low.x) + reach);
   }
 
   std::vector<std::int32_t> ids_;

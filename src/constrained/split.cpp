@@ -14,6 +14,7 @@
 #include "constrained/crossing.hpp"
 #include "constrained/lines.hpp"
 #include "constrained/point_tree.hpp"
+#include "constrained/segment_grid.hpp"
 #include "constrained/snap.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/magnitudes.hpp"
@@ -100,12 +101,13 @@ struct Vertices {
   double unit = 0;
 };
 
-// Half the distance of the doubles that are as large as the largest coordinates of scaled points: rounding
-// moves no place by more than that, in each coordinate.
-constexpr double kHalfSpacing = 0x1p196;
+// Scaled coordinates are below the first of these. The second is half the distance of the largest ones:
+// rounding moves no place by more than that, in each coordinate.
+constexpr double kLargest = 0x1p250;
+constexpr double kHalfSpacing = 0x1p-54 * kLargest;
 static_assert(kernel::LARGEST_EXPONENT == 249);
 
-// Crossings of edges, merged at once where they are rounded to one place.
+// Crossings of edges, merged where they are rounded to one place.
 class Crossings {
  public:
   Crossings(const Vertices& vertices, const Predicates& predicates, const std::vector<Piece>& edges,
@@ -115,33 +117,26 @@ class Crossings {
   // Adds two edges that cross. Returns whether to go on: not if many pairs cross at places that are hubs.
   bool add(std::int32_t e, std::int32_t f) {
     const Line p = line(e), q = line(f);
-    const std::int32_t k = find_or_add(round_crossing(p, q, vertices_.unit));
-    Place& place = places_[k];
-    place.reach = std::max(place.reach, reach(p, q));
-    ++place.pairs;
-    if (place.pairs == kPairsOfHub && are_exactly_there(p, q, place.at)) {
-      place.is_hub = true;
-      pairs_of_hubs_ += kPairsOfHub;
+    const Point at = round_crossing(p, q, vertices_.unit);
+    all_.push_back({at, reach(p, q), e, f});
+    if (all_.size() >= merge_at_) merge();
+    Recent& recent = recent_[hash(at) % kRecent];
+    if (!(recent.at == at)) recent = {at, 0, false};
+    if (++recent.pairs == kPairsOfHub && are_exactly_there(p, q, at)) {
+      recent.is_hub = true;
+      hubs_.push_back(at);
     }
-    if (place.is_hub && ++pairs_of_hubs_ > kFirstPairs + kPairsPerPlace * (edges_.size() + places_.size())) {
-      return false;
-    }
-    for (const std::int32_t edge : {e, f}) {
-      meetings_.push_back(static_cast<std::uint64_t>(edge) << 32 | static_cast<std::uint32_t>(k));
-    }
-    if (meetings_.size() >= merge_at_) merge();
-    return true;
+    if (recent.is_hub) ++pairs_of_hubs_;
+    return pairs_of_hubs_ <= kFirstPairs + kPairsPerPlace * (edges_.size() + places_);
   }
 
-  bool empty() const { return places_.empty(); }
+  bool empty() const { return all_.empty(); }
 
   // Places at which many edges cross exactly, in lexicographic order.
   std::vector<Point> hubs() const {
-    std::vector<Point> hubs;
-    for (const Place& place : places_) {
-      if (place.is_hub) hubs.push_back(place.at);
-    }
+    std::vector<Point> hubs = hubs_;
     std::sort(hubs.begin(), hubs.end(), [](Point p, Point q) { return kernel::comes_before(p, q) != 0; });
+    hubs.erase(std::unique(hubs.begin(), hubs.end(), [](Point p, Point q) { return p == q; }), hubs.end());
     return hubs;
   }
 
@@ -149,56 +144,78 @@ class Crossings {
   // decrease after rounding, and where it is equal, y is still in its order. are_apart: whether no two
   // vertices that follow each other are so near that something else may be between them.
   Chains chains(Vertices& vertices, bool& are_apart) {
-    merge();
-    const Ids order = sorted_places();
-    std::vector<Point> sorted;
-    sorted.reserve(order.size());
-    for (const std::int32_t k : order) sorted.push_back(places_[k].at);
-    const Ids vertex_of = vertices.find_or_add(sorted);
-    Ids rank(places_.size());
-    for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<std::int32_t>(k);
+    std::vector<std::size_t> ends(edges_.size() + 1, 0);
+    for (const Crossing& crossing : all_) {
+      ++ends[crossing.e + 1];
+      if (crossing.f >= 0) ++ends[crossing.f + 1];
+    }
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    // Places in lexicographic order, so that they come to each edge in that order.
+    Ids ranks(ends.back());
+    std::vector<std::size_t> next(ends.begin(), ends.end() - 1);
+    std::vector<Point> places;
+    std::vector<double> reaches;
+    for (const Keyed& k : sorted()) {
+      const Crossing& crossing = all_[k.index];
+      if (places.empty() || !(places.back() == crossing.at)) {
+        places.push_back(crossing.at);
+        reaches.push_back(0);
+      }
+      reaches.back() = std::max(reaches.back(), crossing.reach);
+      const auto rank = static_cast<std::int32_t>(places.size()) - 1;
+      for (const std::int32_t e : {crossing.e, crossing.f}) {
+        if (e >= 0 && (next[e] == ends[e] || ranks[next[e] - 1] != rank)) ranks[next[e]++] = rank;
+      }
+    }
+    if (places.size() > most_) throw_too_many_places(most_);
+    all_ = {};
+    const Ids vertex_of = vertices.find_or_add(places);
 
     Chains chains;
     chains.offsets.reserve(edges_.size() + 1);
     chains.offsets.push_back(0);
-    chains.vertices.reserve(meetings_.size());
     are_apart = true;
-    Ids ranks;
-    auto next = meetings_.begin();
+    std::size_t kept = 0;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-      ranks.clear();
-      for (; next != meetings_.end() && *next >> 32 == e; ++next) {
-        ranks.push_back(rank[static_cast<std::uint32_t>(*next)]);
-      }
-      std::sort(ranks.begin(), ranks.end());
-      if (vertices.points[edges_[e].to].y < vertices.points[edges_[e].from].y) turn_equal_x(sorted, ranks);
+      const Point from = vertices.points[edges_[e].from], to = vertices.points[edges_[e].to];
+      const auto begin = ranks.begin() + static_cast<std::ptrdiff_t>(ends[e]),
+                 end = ranks.begin() + static_cast<std::ptrdiff_t>(next[e]);
+      if (to.y < from.y) turn_equal_x(places, begin, end);
+      Point last = from;
       double reach = 0;
-      Point last = vertices.points[edges_[e].from];
       const auto measure = [&](Point p, double reach_of_p) {
         are_apart &= std::max(std::fabs(p.x - last.x), std::fabs(p.y - last.y)) > std::max(reach, reach_of_p);
         last = p;
         reach = reach_of_p;
       };
-      for (const std::int32_t r : ranks) {
-        chains.vertices.push_back(vertex_of[r]);
-        measure(sorted[r], places_[order[r]].reach);
+      for (auto r = begin; r != end; ++r) {
+        measure(places[*r], reaches[*r]);
+        ranks[kept++] = vertex_of[*r];
       }
-      if (!ranks.empty()) measure(vertices.points[edges_[e].to], 0);
-      chains.offsets.push_back(chains.vertices.size());
+      if (begin != end) measure(to, 0);
+      chains.offsets.push_back(kept);
     }
+    ranks.resize(kept);
+    chains.vertices = std::move(ranks);
     return chains;
   }
 
  private:
-  // So many pairs of edges make a place a hub, if they cross there exactly.
+  // So many pairs of edges make a place a hub, if they cross there exactly and come soon after each other.
   static constexpr std::uint32_t kPairsOfHub = 64;
+  static constexpr std::size_t kRecent = 256;
   // Edges are cut at hubs, and searched again, if hubs have more pairs than these.
   static constexpr std::size_t kFirstPairs = 10000, kPairsPerPlace = 8;
-  static constexpr std::size_t kFirstMerge = 1 << 20;
+  static constexpr std::size_t kFirstMerge = 1 << 22;
 
-  struct Place {
+  // Edges that meet a place. The second is -1 if an odd number does.
+  struct Crossing {
     Point at;
     double reach;  // see reach()
+    std::int32_t e, f;
+  };
+  struct Recent {
+    Point at;
     std::uint32_t pairs;
     bool is_hub;
   };
@@ -222,63 +239,62 @@ class Crossings {
     return 32 * kHalfSpacing * ((std::fabs(px) + std::fabs(py)) * ((std::fabs(qx) + std::fabs(qy)) / cross));
   }
 
-  std::int32_t find_or_add(Point place) {
-    if (table_.size() < 2 * places_.size() + 2) grow();
-    std::size_t slot = hash(place) & (table_.size() - 1);
-    for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
-      if (places_[table_[slot]].at == place) return table_[slot];
-    }
-    if (places_.size() >= most_) throw_too_many_places(most_);
-    table_[slot] = static_cast<std::int32_t>(places_.size());
-    places_.push_back({place, 0, 0, false});
-    return table_[slot];
-  }
   static std::uint64_t hash(Point p) {
     std::uint64_t x, y;
     std::memcpy(&x, &p.x, sizeof x);
     std::memcpy(&y, &p.y, sizeof y);
-    // Of large odd numbers; the upper bits of a product depend on all bits.
-    const std::uint64_t product = (x ^ (x >> 29)) * 0x9e3779b97f4a7c15 + (y ^ (y >> 31)) * 0xc2b2ae3d27d4eb4f;
-    return product ^ product >> 32;
-  }
-  void grow() {
-    table_.assign(std::max<std::size_t>(64, 2 * table_.size()), -1);
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      std::size_t slot = hash(places_[k].at) & (table_.size() - 1);
-      while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
-      table_[slot] = static_cast<std::int32_t>(k);
-    }
+    // By large odd numbers; the upper bits of a product depend on all bits.
+    return (x * 0x9e3779b97f4a7c15 + y * 0xc2b2ae3d27d4eb4f) >> 32;
   }
 
-  // An edge meets a place only once, however many it crosses there.
-  void merge() {
-    std::sort(meetings_.begin(), meetings_.end());
-    meetings_.erase(std::unique(meetings_.begin(), meetings_.end()), meetings_.end());
-    merge_at_ = std::max(kFirstMerge, 2 * meetings_.size());
-  }
-
-  Ids sorted_places() const {
+  // In lexicographic order of places.
+  std::vector<Keyed> sorted() const {
     std::vector<Keyed> order;
-    order.reserve(places_.size());
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      order.push_back({sort_key(places_[k].at.x), static_cast<std::int32_t>(k)});
+    order.reserve(all_.size());
+    for (std::size_t k = 0; k < all_.size(); ++k) {
+      order.push_back({sort_key(all_[k].at.x), static_cast<std::int32_t>(k)});
     }
     sort_by_key(order);
     for (auto begin = order.begin(), end = begin; begin != order.end(); begin = end) {
       while (end != order.end() && end->key == begin->key) ++end;
-      std::sort(begin, end, [this](const Keyed& p, const Keyed& q) {
-        return places_[p.index].at.y < places_[q.index].at.y;
-      });
+      if (end - begin == 1) continue;
+      std::sort(begin, end,
+                [this](const Keyed& p, const Keyed& q) { return all_[p.index].at.y < all_[q.index].at.y; });
     }
-    Ids result;
-    result.reserve(order.size());
-    for (const Keyed& k : order) result.push_back(k.index);
-    return result;
+    return order;
   }
 
-  static void turn_equal_x(const std::vector<Point>& sorted, Ids& ranks) {
-    for (auto begin = ranks.begin(), end = begin; begin != ranks.end(); begin = end) {
-      while (end != ranks.end() && sorted[*end].x == sorted[*begin].x) ++end;
+  // An edge meets a place only once, however many it crosses there.
+  void merge() {
+    std::vector<Crossing> merged;
+    const std::vector<Keyed> order = sorted();
+    places_ = 0;
+    Ids here;
+    for (auto begin = order.begin(), end = begin; begin != order.end(); begin = end) {
+      const Point at = all_[begin->index].at;
+      double reach = 0;
+      here.clear();
+      for (; end != order.end() && all_[end->index].at == at; ++end) {
+        const Crossing& crossing = all_[end->index];
+        reach = std::max(reach, crossing.reach);
+        here.push_back(crossing.e);
+        if (crossing.f >= 0) here.push_back(crossing.f);
+      }
+      std::sort(here.begin(), here.end());
+      here.erase(std::unique(here.begin(), here.end()), here.end());
+      for (std::size_t k = 0; k < here.size(); k += 2) {
+        merged.push_back({at, reach, here[k], k + 1 < here.size() ? here[k + 1] : -1});
+      }
+      ++places_;
+    }
+    if (places_ > most_) throw_too_many_places(most_);
+    all_.swap(merged);
+    merge_at_ = std::max(kFirstMerge, 2 * all_.size());
+  }
+
+  static void turn_equal_x(const std::vector<Point>& places, Ids::iterator first, Ids::iterator last) {
+    for (auto begin = first, end = first; begin != last; begin = end) {
+      while (end != last && places[*end].x == places[*begin].x) ++end;
       std::reverse(begin, end);
     }
   }
@@ -287,10 +303,11 @@ class Crossings {
   const Predicates& predicates_;
   const std::vector<Piece>& edges_;
   std::size_t most_;
-  std::vector<Place> places_;
-  Ids table_;                            // places by their hash
-  std::vector<std::uint64_t> meetings_;  // edges, and places on them
+  std::vector<Crossing> all_;
   std::size_t merge_at_ = kFirstMerge;
+  std::size_t places_ = 0;  // as of the last merge
+  std::vector<Recent> recent_ = std::vector<Recent>(kRecent);
+  std::vector<Point> hubs_;
   std::size_t pairs_of_hubs_ = 0;
 };
 
@@ -306,11 +323,11 @@ class SetSplitter {
 
   void run(const SplitLimits& limits) {
     while (true) {
-      lines_ = cut_at_vertices(predicates_, points(), pieces_, vertices_.sorted);
-      Crossings crossings(vertices_, predicates_, lines_.edges, limits.places);
+      cut();
+      Crossings crossings(vertices_, predicates_, edges_.edges, limits.places);
       bool is_complete = true;
-      find_crossings(predicates_, points(), lines_.edges,
-                     [&](std::int32_t e, std::int32_t f) { return is_complete = crossings.add(e, f); });
+      find_all_crossings(edges_.edges,
+                         [&](std::int32_t e, std::int32_t f) { return is_complete = crossings.add(e, f); });
       if (is_complete) {
         if (vertices_.points.size() > vertices_.given || !crossings.empty()) lead_through(crossings);
         return;
@@ -329,9 +346,9 @@ class SetSplitter {
       if (from != to) ends.insert(ends.end(), {from, to});
       from = to;
     };
-    for (std::int32_t e = chains_.offsets.empty() ? lines_.ranges[2 * p + 1] : lines_.ranges[2 * p];
-         e < lines_.ranges[2 * p + 1]; ++e) {
-      const Piece edge = lines_.edges[e];
+    for (std::int32_t e = chains_.offsets.empty() ? edges_.ranges[2 * p + 1] : edges_.ranges[2 * p];
+         e < edges_.ranges[2 * p + 1]; ++e) {
+      const Piece edge = edges_.edges[e];
       const auto begin = chains_.offsets[e], end = chains_.offsets[e + 1];
       if (begin == end && !vertices_.is_added(edge.from) && !vertices_.is_added(edge.to)) continue;
       add(edge.from);
@@ -363,45 +380,110 @@ class SetSplitter {
     return place;
   }
 
+  std::vector<Line> lines(const std::vector<Piece>& pieces) const {
+    std::vector<Line> lines;
+    lines.reserve(pieces.size());
+    for (const Piece piece : pieces) lines.push_back(line(piece));
+    return lines;
+  }
+
+  // Makes edges of the pieces, which are cut at the vertices on them.
+  void cut() {
+    edges_.edges = pieces_;
+    edges_.ranges.clear();
+    for (std::int32_t p = 0; p < static_cast<std::int32_t>(pieces_.size()); ++p) {
+      edges_.ranges.insert(edges_.ranges.end(), {p, p + 1});
+    }
+    // Pieces that overlap have an end of one inside of the other.
+    if (find_near()) return;
+    edges_ = cut_at_vertices(predicates_, points(), pieces_, vertices_.sorted);
+    find_near();
+  }
+
+  // Finds the vertices near edges. Returns whether it is certain that none is on one.
+  bool find_near() {
+    constexpr std::size_t kMostNear = 4;
+    constexpr double kDistance = 4 * kHalfSpacing;
+    const std::size_t most = kMostNear * (edges_.edges.size() + vertices_.points.size());
+    near_.clear();
+    bool is_any_on = false;
+    const FoundPair add = [&](std::int32_t e, std::int32_t v) {
+      const Piece edge = edges_.edges[e];
+      if (v == edge.from || v == edge.to) return true;
+      if (is_inside(edge, v)) {
+        is_any_on = true;
+      } else {
+        near_.emplace_back(e, v);
+      }
+      return near_.size() < most;
+    };
+    const std::vector<Line> all = lines(edges_.edges);
+    near_is_complete_ =
+        SegmentGrid(all).find_near(vertices_.points, kDistance, add) || find_near_by_tree(kDistance, add);
+    return near_is_complete_ && !is_any_on;
+  }
+
+  // Whether a vertex is on an edge; not at its ends.
+  bool is_inside(Piece edge, std::int32_t v) const {
+    const auto [a, b] = line(edge);
+    const Point p = points()[v];
+    return kernel::comes_before(a, p) && kernel::comes_before(p, b) && predicates_.orient(a, b, p) == 0;
+  }
+
+  bool find_near_by_tree(double distance, const FoundPair& found) const {
+    // A long edge meets O(sqrt(n)) boxes. Where boxes do not tell points apart, it takes less to look for
+    // what crosses.
+    const double most = 64.0 * (edges_.edges.size() + vertices_.points.size()) +
+                        16.0 * edges_.edges.size() * std::sqrt(vertices_.points.size());
+    Ids all(vertices_.points.size());
+    std::iota(all.begin(), all.end(), 0);
+    const PointTree tree(points(), std::move(all), kLargest);
+    std::size_t boxes = 0;
+    bool is_complete = true;
+    for (std::size_t e = 0; e < edges_.edges.size() && is_complete; ++e) {
+      boxes += tree.visit_near(line(edges_.edges[e]), distance, [&](std::int32_t v) {
+        is_complete &= found(static_cast<std::int32_t>(e), v);
+      });
+      is_complete &= static_cast<double>(boxes) <= most;
+    }
+    return is_complete;
+  }
+
+  void find_all_crossings(const std::vector<Piece>& edges, const FoundPair& found) const {
+    const std::vector<Line> all = lines(edges);
+    if (!SegmentGrid(all).find_crossings(predicates_, found))
+      find_crossings(predicates_, points(), edges, found);
+  }
+
   // Leads edges through the places of their crossings; and if parts of them cross then, through all vertices
   // whose cells they meet.
   void lead_through(Crossings& crossings) {
-    const std::size_t exact = vertices_.points.size();
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
-    if ((are_apart && points_are_apart(exact)) || !parts_cross()) return;
+    if ((are_apart && points_are_apart()) || !parts_cross()) return;
     is_snapped_ = true;
-    chains_ = snap(predicates_, vertices_.points, lines_.edges, vertices_.unit);
+    chains_ = snap(predicates_, vertices_.points, edges_.edges, vertices_.unit);
   }
 
   // Whether no point is so near to an edge, one of them having moved, that it may be on its other side now.
-  // count: so many vertices have their exact places.
-  bool points_are_apart(std::size_t count) const {
-    constexpr double kLargest = 0x1p250;
+  bool points_are_apart() const {
+    if (!near_is_complete_) return false;
+    std::vector<bool> is_end_of_moved(vertices_.points.size(), false);
     const auto has_moved = [this](std::size_t e) { return chains_.offsets[e] != chains_.offsets[e + 1]; };
-    Ids all(count), ends;
-    std::iota(all.begin(), all.end(), 0);
-    for (std::size_t e = 0; e < lines_.edges.size(); ++e) {
-      if (has_moved(e)) ends.insert(ends.end(), {lines_.edges[e].from, lines_.edges[e].to});
+    for (std::size_t e = 0; e < edges_.edges.size(); ++e) {
+      if (has_moved(e)) is_end_of_moved[edges_.edges[e].from] = is_end_of_moved[edges_.edges[e].to] = true;
     }
-    const PointTree all_points(points(), std::move(all), kLargest),
-        moved_ends(points(), std::move(ends), kLargest);
-    bool are_apart = true;
-    for (std::size_t e = 0; e < lines_.edges.size() && are_apart; ++e) {
-      const Piece edge = lines_.edges[e];
-      (has_moved(e) ? all_points : moved_ends).visit_near(line(edge), 4 * kHalfSpacing, [&](std::int32_t v) {
-        are_apart &= v == edge.from || v == edge.to;
-      });
-    }
-    return are_apart;
+    return std::none_of(near_.begin(), near_.end(), [&](const auto& pair) {
+      return has_moved(static_cast<std::size_t>(pair.first)) || is_end_of_moved[pair.second];
+    });
   }
 
   // Whether parts of edges between the vertices on them cross.
   bool parts_cross() const {
     std::vector<Piece> parts;
-    parts.reserve(lines_.edges.size() + chains_.vertices.size());
-    for (std::size_t e = 0; e < lines_.edges.size(); ++e) {
-      std::int32_t from = lines_.edges[e].from;
+    parts.reserve(edges_.edges.size() + chains_.vertices.size());
+    for (std::size_t e = 0; e < edges_.edges.size(); ++e) {
+      std::int32_t from = edges_.edges[e].from;
       const auto add = [&](std::int32_t to) {
         if (from != to) {
           const bool backward = kernel::comes_before(points()[to], points()[from]) != 0;
@@ -410,12 +492,12 @@ class SetSplitter {
         from = to;
       };
       for (auto k = chains_.offsets[e]; k < chains_.offsets[e + 1]; ++k) add(chains_.vertices[k]);
-      add(lines_.edges[e].to);
+      add(edges_.edges[e].to);
     }
     remove_equal(parts);
-    const LineEdges lines = cut_at_vertices(predicates_, points(), parts, vertices_.sorted);
+    const LineEdges cut_parts = cut_at_vertices(predicates_, points(), parts, vertices_.sorted);
     bool found = false;
-    find_crossings(predicates_, points(), lines.edges, [&found](std::int32_t, std::int32_t) {
+    find_all_crossings(cut_parts.edges, [&found](std::int32_t, std::int32_t) {
       found = true;
       return false;
     });
@@ -426,48 +508,91 @@ class SetSplitter {
   Predicates predicates_;
   std::vector<Piece> pieces_;
   Ids piece_of_;  // per segment
-  LineEdges lines_;
+  LineEdges edges_;
+  // Vertices near edges, but not on them: an edge and a vertex each.
+  Pairs near_;
+  bool near_is_complete_ = false;
   Chains chains_;  // of edges; none if nothing crosses
   bool is_snapped_ = false;
 };
 
 // Segments by their sets; those of length zero are left out.
-std::vector<Ids> segments_of_sets(const std::vector<std::size_t>& offsets, const Ids& representatives,
+std::vector<Ids> segments_of_sets(const double* coordinates, const std::vector<std::size_t>& offsets,
                                   const Ids& segments) {
   std::vector<Ids> by_set(offsets.size() - 1);
+  std::size_t set = 0;
   for (std::size_t s = 0; s < segments.size() / 2; ++s) {
-    if (representatives[segments[2 * s]] == representatives[segments[2 * s + 1]]) continue;
-    const auto end =
-        std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(segments[2 * s]));
-    by_set[static_cast<std::size_t>(end - offsets.begin()) - 1].push_back(static_cast<std::int32_t>(s));
+    const auto from = static_cast<std::size_t>(segments[2 * s]),
+               to = static_cast<std::size_t>(segments[2 * s + 1]);
+    if (coordinates[2 * from] == coordinates[2 * to] && coordinates[2 * from + 1] == coordinates[2 * to + 1])
+      continue;
+    if (from < offsets[set] || from >= offsets[set + 1]) {
+      set =
+          static_cast<std::size_t>(std::upper_bound(offsets.begin(), offsets.end(), from) - offsets.begin()) -
+          1;
+    }
+    by_set[set].push_back(static_cast<std::int32_t>(s));
   }
   return by_set;
+}
+
+// Whether some of the segments may cross.
+bool may_cross(const double* coordinates, const Ids& segments, const Ids& of_set, int shift) {
+  std::vector<Line> lines;
+  lines.reserve(of_set.size());
+  const auto point = [coordinates, shift](std::int32_t i) -> Point {
+    const double* p = coordinates + 2 * static_cast<std::size_t>(i);
+    return shift == 0 ? Point{p[0], p[1]} : Point{std::ldexp(p[0], shift), std::ldexp(p[1], shift)};
+  };
+  for (const std::int32_t s : of_set) {
+    const Point a = point(segments[2 * static_cast<std::size_t>(s)]),
+                b = point(segments[2 * static_cast<std::size_t>(s) + 1]);
+    const bool is_forward = kernel::comes_before(a, b) != 0;
+    lines.push_back({is_forward ? a : b, is_forward ? b : a});
+  }
+  Predicates predicates;
+  predicates.bounds.orient = ORIENT_BOUND;
+  bool found = false;
+  const bool is_complete =
+      SegmentGrid(lines).find_crossings(predicates, [&found](std::int32_t, std::int32_t) {
+        found = true;
+        return false;
+      });
+  return found || !is_complete;
 }
 
 }  // namespace
 
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets, const Ids& segments,
             const SplitLimits& limits) {
-  const PointSets sets = ingest(coordinates, offsets);
+  check_offsets(offsets);
+  check_coordinates(coordinates, offsets.back());
+  const SetScalings scalings = set_scalings(
+      coordinates, offsets,
+      [coordinates](std::size_t first, std::size_t last) { return inspect(coordinates, first, last); });
   check_segments(offsets, segments);
-  const std::vector<Ids> by_set = segments_of_sets(offsets, sets.representatives, segments);
-  Ids rank(offsets.back());
-  for (std::size_t i = 0; i < sets.source.size(); ++i) rank[sets.source[i]] = static_cast<std::int32_t>(i);
+  const std::vector<Ids> by_set = segments_of_sets(coordinates, offsets, segments);
 
   Split result;
   result.added_offsets.assign(1, 0);
-  // The pieces of each segment begin here in `ends`, in the order of sets.
+  // The pieces of each segment that is in a set with crossings begin here in `ends`, in the order of sets.
   std::vector<std::size_t> place(segments.size() / 2, 0), counts(segments.size() / 2, 0);
   Ids ends;
   for (std::size_t set = 0; set < by_set.size(); ++set) {
-    if (!by_set[set].empty()) {
-      Vertices vertices(coordinates, sets, set);
-      const auto first = sets.set_offsets[set], size = sets.set_offsets[set + 1] - first;
+    if (may_cross(coordinates, segments, by_set[set], scalings.shift(set))) {
+      const std::size_t first = offsets[set];
+      const PointSets points = ingest(coordinates + 2 * first, {0, offsets[set + 1] - first});
+      Vertices vertices(coordinates + 2 * first, points, 0);
+      Ids rank(offsets[set + 1] - first);
+      for (std::size_t i = 0; i < points.source.size(); ++i)
+        rank[points.source[i]] = static_cast<std::int32_t>(i);
+      const auto id = [&](std::int32_t i) {
+        return rank[points.representatives[static_cast<std::size_t>(i) - first]];
+      };
       std::vector<Piece> pieces;
       for (const std::int32_t s : by_set[set]) {
-        const auto [from, to] = std::minmax(rank[sets.representatives[segments[2 * s]]],
-                                            rank[sets.representatives[segments[2 * s + 1]]]);
-        pieces.push_back({from - first, to - first});
+        const std::int32_t from = id(segments[2 * s]), to = id(segments[2 * s + 1]);
+        pieces.push_back({std::min(from, to), std::max(from, to)});
       }
       SetSplitter splitter(vertices, pieces);
       splitter.run(limits);
@@ -475,7 +600,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
 
       // The index of each vertex; those of added ones are in lexicographic order.
       std::size_t next = offsets.back() + result.added_points.size() / 2;
-      const std::size_t all = next + vertices.points.size() - static_cast<std::size_t>(size);
+      const std::size_t all = next + vertices.points.size() - vertices.given;
       if (all > kMostIndices) throw_too_many("points", all, kMostIndices);
       Ids index(vertices.points.size());
       for (const std::int32_t v : vertices.sorted) {
@@ -483,7 +608,8 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
           const Point point = vertices.unscaled(vertices.points[v]);
           result.added_points.insert(result.added_points.end(), {point.x, point.y});
         }
-        index[v] = vertices.is_added(v) ? static_cast<std::int32_t>(next++) : sets.source[first + v];
+        index[v] = vertices.is_added(v) ? static_cast<std::int32_t>(next++)
+                                        : static_cast<std::int32_t>(first) + points.source[v];
       }
       for (std::size_t k = 0; k < by_set[set].size(); ++k) {
         const auto s = static_cast<std::size_t>(by_set[set][k]);
@@ -497,11 +623,16 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
     result.added_offsets.push_back(result.added_points.size() / 2);
   }
 
+  const auto comes_first = [coordinates](std::int32_t u, std::int32_t v) {
+    const double *p = coordinates + 2 * static_cast<std::size_t>(u),
+                 *q = coordinates + 2 * static_cast<std::size_t>(v);
+    return p[0] != q[0] ? p[0] < q[0] : p[1] < q[1];
+  };
   result.pieces.reserve(ends.size());
   result.piece_offsets.assign(1, 0);
   for (std::size_t s = 0; s < counts.size(); ++s) {
     const std::int32_t from = segments[2 * s], to = segments[2 * s + 1];
-    const bool backward = rank[sets.representatives[to]] < rank[sets.representatives[from]];
+    const bool backward = comes_first(to, from);
     if (counts[s] == 0) result.pieces.insert(result.pieces.end(), {from, to});
     for (std::size_t e = place[s]; e < place[s] + 2 * counts[s]; e += 2) {
       result.pieces.insert(result.pieces.end(), {ends[backward ? e + 1 : e], ends[backward ? e : e + 1]});

@@ -26,6 +26,11 @@ struct Split {
   /// Whether there is a set whose segments were led through all vertices whose cells they meet, because
   /// crossings alone would have made others.
   bool is_snapped = false;
+
+  /// Whether no segment has become several pieces or another one.
+  bool is_as_it_was() const {
+    return added_points.empty() && pieces.size() == 2 * (piece_offsets.size() - 1);
+  }
 };
 
 /// Splits segments where they cross. A segment that nothing crosses is one piece.

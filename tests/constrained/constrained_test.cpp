@@ -227,7 +227,9 @@ TEST(SmallConstrained, FirstSegmentsThatCross) {
       constrained::check_first_segments(points.data(), sets.offsets, sets.delaunay.representatives, segments);
     });
     const std::string any = message([&] { sets.constrain(segments); });
-    if (!first.empty()) EXPECT_EQ(first, any);
+    if (!first.empty()) {
+      EXPECT_EQ(first, any);
+    }
     found += first.empty() ? 0 : 1;
     left += first.empty() && !any.empty() ? 1 : 0;
   }

@@ -8,10 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <set>
 #include <vector>
 
 #include "constrained/lines.hpp"
+#include "constrained/point_tree.hpp"
+#include "constrained/segment_grid.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/fixtures.hpp"
 
@@ -52,8 +55,60 @@ Pieces make_pieces(FixtureRandom& random, const std::vector<std::pair<Point, Poi
   return result;
 }
 
-// Whether what is found is what all pairs give. Returns the number of crossings.
-std::size_t expect_pairs(const Pieces& given) {
+// That a grid and a tree find all points near lines, and none that is twice as far away, on scaled
+// coordinates.
+void expect_near(const std::vector<Point>& points, const std::vector<constrained::Line>& lines,
+                 const constrained::SegmentGrid& grid) {
+  double largest = 0;
+  for (const Point p : points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+  const double distance = 0x1p-46 * largest;
+  std::vector<std::int32_t> ids(points.size());
+  std::iota(ids.begin(), ids.end(), 0);
+  const constrained::PointTree tree(points.data(), ids, largest);
+  std::set<std::pair<std::int32_t, std::int32_t>> by_tree, by_grid;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    tree.visit_near(lines[k], distance,
+                    [&](std::int32_t v) { by_tree.emplace(static_cast<std::int32_t>(k), v); });
+  }
+  const bool is_complete = grid.find_near(points, distance, [&by_grid](std::int32_t e, std::int32_t v) {
+    by_grid.emplace(e, v);
+    return true;
+  });
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    for (const std::int32_t v : ids) {
+      // By distances that are rounded far less than the differences looked for.
+      const auto [a, b] = lines[k];
+      const auto near = [&, p = points[v]](long double reach) {
+        long double low = 0, high = 1;
+        const auto clip = [&](long double from, long double to, long double at) {
+          if (from == to) {
+            if (std::fabs(from - at) > reach) high = -1;
+            return;
+          }
+          const long double first = (at - reach - from) / (to - from),
+                            last = (at + reach - from) / (to - from);
+          low = std::max(low, std::min(first, last));
+          high = std::min(high, std::max(first, last));
+        };
+        clip(a.x, b.x, p.x);
+        clip(a.y, b.y, p.y);
+        return low <= high;
+      };
+      const std::pair<std::int32_t, std::int32_t> pair(static_cast<std::int32_t>(k), v);
+      for (const auto* found : {&by_tree, &by_grid}) {
+        if (found == &by_grid && !is_complete) continue;
+        if (near(0.999L * distance) && found->count(pair) == 0)
+          ADD_FAILURE() << "line " << k << ", point " << v;
+        if (!near(4 * distance) && found->count(pair) != 0)
+          ADD_FAILURE() << "line " << k << ", far point " << v;
+      }
+    }
+  }
+}
+
+// Whether what is found is what all pairs give. grids: how often a grid has found it. Returns the number of
+// crossings.
+std::size_t expect_pairs(const Pieces& given, int& grids) {
   Coordinates coordinates;
   for (const Point p : given.points) coordinates.insert(coordinates.end(), {p.x, p.y});
   Plane plane(coordinates);
@@ -99,6 +154,22 @@ std::size_t expect_pairs(const Pieces& given) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   EXPECT_EQ(pairs, all);
+  // The same by a grid, if it takes few comparisons.
+  std::vector<constrained::Line> grid_lines;
+  for (const Piece& edge : lines.edges)
+    grid_lines.push_back({given.points[edge.from], given.points[edge.to]});
+  const constrained::SegmentGrid grid(grid_lines);
+  Pairs by_grid;
+  if (grid.find_crossings(predicates, [&by_grid](std::int32_t e, std::int32_t f) {
+        by_grid.emplace_back(std::min(e, f), std::max(e, f));
+        return true;
+      })) {
+    std::sort(by_grid.begin(), by_grid.end());
+    by_grid.erase(std::unique(by_grid.begin(), by_grid.end()), by_grid.end());
+    EXPECT_EQ(by_grid, all);
+    ++grids;
+  }
+  expect_near(given.points, grid_lines, grid);
   std::size_t calls = 0;
   constrained::find_crossings(predicates, given.points.data(), lines.edges,
                               [&calls](std::int32_t, std::int32_t) { return ++calls < 3; });
@@ -109,6 +180,7 @@ std::size_t expect_pairs(const Pieces& given) {
 TEST(CrossingPairs, AllKindsOfSegments) {
   FixtureRandom random(1);
   std::size_t crossings = 0;
+  int grids = 0;
   for (int round = 0; round < 240; ++round) {
     SCOPED_TRACE(round);
     const int kind = round % 8;
@@ -151,10 +223,11 @@ TEST(CrossingPairs, AllKindsOfSegments) {
       }
       lines.emplace_back(a, b);
     }
-    crossings += expect_pairs(make_pieces(random, lines));
+    crossings += expect_pairs(make_pieces(random, lines), grids);
     if (HasFailure()) return;
   }
   EXPECT_GT(crossings, 100000u);
+  EXPECT_GT(grids, 100);
 }
 
 }  // namespace

@@ -1,0 +1,166 @@
+#include "constrained/segment_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "constrained/crossing.hpp"
+
+namespace flaunay::constrained {
+namespace {
+
+// So few segments are in one cell.
+constexpr std::size_t kInOneCell = 96;
+// So many pairs per segment are compared in any case.
+constexpr std::size_t kPairsPerEntry = 24;
+// If more pairs are in cells, one in so many must cross, of a sample.
+constexpr std::size_t kPairsPerCrossing = 16;
+constexpr std::size_t kSampledPairs = 512;
+
+// Whether what is between two x and two y has no common point with what is between others.
+bool are_boxes_apart(const Line& p, const Line& q) {
+  return p.a.x > q.b.x || q.a.x > p.b.x || std::min(p.a.y, p.b.y) > std::max(q.a.y, q.b.y) ||
+         std::min(q.a.y, q.b.y) > std::max(p.a.y, p.b.y);
+}
+
+}  // namespace
+
+std::int32_t SegmentGrid::Axis::cell(double x) const {
+  const double k = (x - low) / step;
+  return k > 0 ? std::min(cells - 1, static_cast<std::int32_t>(std::min(k, 0x1p30))) : 0;
+}
+
+SegmentGrid::SegmentGrid(const std::vector<Line>& lines) : lines_(lines) {
+  const auto count = static_cast<double>(lines.size());
+  double low_y = HUGE_VAL, high_y = -HUGE_VAL, low_x = HUGE_VAL, high_x = -HUGE_VAL, length_x = 0,
+         length_y = 0;
+  for (const auto& [a, b] : lines) {
+    low_x = std::min(low_x, a.x);
+    high_x = std::max(high_x, b.x);
+    low_y = std::min({low_y, a.y, b.y});
+    high_y = std::max({high_y, a.y, b.y});
+    length_x += (b.x - a.x) / count;
+    length_y += std::fabs(b.y - a.y) / count;
+  }
+  padding_ = 0x1p-40 * std::max({std::fabs(low_x), std::fabs(high_x), std::fabs(low_y), std::fabs(high_y)});
+  const auto axis = [&](double low, double high, double mean_length) -> Axis {
+    const double step = std::max({(high - low) / std::sqrt(count), mean_length, 8 * padding_});
+    if (lines.size() <= kInOneCell || !(step < high - low)) return {low, HUGE_VAL, 1};
+    return {low, step, 1 + static_cast<std::int32_t>((high - low) / step)};
+  };
+  x_ = axis(low_x, high_x, length_x);
+  y_ = axis(low_y, high_y, length_y);
+  if (cells() == 1) {
+    offsets_ = {0, static_cast<std::uint32_t>(lines.size())};
+    segments_.resize(lines.size());
+    std::iota(segments_.begin(), segments_.end(), 0);
+    return;
+  }
+  offsets_.assign(cells() + 2, 0);
+  for (const Line& line : lines) {
+    visit_cells(line, [this](std::size_t cell) { ++offsets_[cell + 2]; });
+  }
+  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+  segments_.resize(offsets_.back());
+  for (std::size_t s = 0; s < lines.size(); ++s) {
+    visit_cells(lines[s],
+                [&](std::size_t cell) { segments_[offsets_[cell + 1]++] = static_cast<std::int32_t>(s); });
+  }
+  offsets_.pop_back();
+}
+
+// Column by column: what a segment has of one, padded.
+template <typename Visit>
+void SegmentGrid::visit_cells(const Line& line, const Visit& visit) const {
+  const auto [a, b] = line;
+  const std::int32_t first = x_.cell(a.x - padding_), last = x_.cell(b.x + padding_);
+  const double slope = b.x > a.x ? (b.y - a.y) / (b.x - a.x) : 0;
+  for (std::int32_t column = first; column <= last; ++column) {
+    double from = a.y, to = b.y;
+    if (first != last && b.x > a.x) {
+      const double left = x_.low + column * x_.step - padding_, right = left + x_.step + 2 * padding_;
+      if (left > a.x) from = a.y + (std::min(left, b.x) - a.x) * slope;
+      if (right < b.x) to = a.y + (std::max(right, a.x) - a.x) * slope;
+    }
+    const std::int32_t bottom = y_.cell(std::min(from, to) - padding_),
+                       top = y_.cell(std::max(from, to) + padding_);
+    for (std::int32_t row = bottom; row <= top; ++row) {
+      visit(cell_at(column, row));
+    }
+  }
+}
+
+// Whether two segments certainly cross in another cell. Unless they are nearly parallel, the place is wrong
+// by less than the padding, so the other cell has both.
+bool SegmentGrid::is_elsewhere(const Line& p, const Line& q, std::size_t cell) const {
+  const double px = p.b.x - p.a.x, py = p.b.y - p.a.y, qx = q.b.x - q.a.x, qy = q.b.y - q.a.y;
+  const double left = px * qy, right = py * qx, cross = left - right;
+  if (cells() == 1 || 64 * std::fabs(cross) < std::fabs(left) + std::fabs(right)) return false;
+  const double part = ((q.a.x - p.a.x) * qy - (q.a.y - p.a.y) * qx) / cross;
+  return cell_of({p.a.x + part * px, p.a.y + part * py}) != cell;
+}
+
+// Of pairs in cells, taken by the same random numbers always.
+bool SegmentGrid::mostly_cross(const Predicates& predicates) const {
+  std::uint64_t random = 1;
+  const auto next = [&random](std::uint64_t below) {
+    random = random * 6364136223846793005 + 1442695040888963407;
+    return (random >> 33) % below;
+  };
+  std::size_t crossings = 0;
+  for (std::size_t k = 0; k < kSampledPairs; ++k) {
+    const auto place = static_cast<std::uint32_t>(next(segments_.size()));
+    const auto cell = std::upper_bound(offsets_.begin(), offsets_.end(), place) - 1;
+    const std::int32_t s = segments_[place], t = segments_[*cell + next(*(cell + 1) - *cell)];
+    if (s != t && cross(predicates, lines_[s], lines_[t])) ++crossings;
+  }
+  return crossings * kPairsPerCrossing >= kSampledPairs;
+}
+
+bool SegmentGrid::find_crossings(const Predicates& predicates, const FoundPair& found) const {
+  std::size_t pairs = 0;
+  for (std::size_t c = 0; c < cells(); ++c) {
+    const std::size_t count = offsets_[c + 1] - offsets_[c];
+    pairs += count * count / 2;
+  }
+  if (lines_.size() > kInOneCell && pairs > kPairsPerEntry * segments_.size() && !mostly_cross(predicates))
+    return false;
+  std::vector<Line> here;
+  for (std::size_t c = 0; c < cells(); ++c) {
+    const std::uint32_t begin = offsets_[c], end = offsets_[c + 1];
+    here.clear();
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const Line line = lines_[segments_[k]];
+      for (std::uint32_t j = begin; j < k; ++j) {
+        const Line& other = here[j - begin];
+        if (are_boxes_apart(line, other) || !cross(predicates, line, other) || is_elsewhere(line, other, c))
+          continue;
+        if (!found(segments_[j], segments_[k])) return true;
+      }
+      here.push_back(line);
+    }
+  }
+  return true;
+}
+
+bool SegmentGrid::find_near(const std::vector<Point>& points, double distance, const FoundPair& found) const {
+  std::size_t pairs = 0;
+  for (const Point p : points) {
+    const std::size_t c = cell_of(p);
+    pairs += offsets_[c + 1] - offsets_[c];
+  }
+  if (pairs > kPairsPerEntry * (segments_.size() + points.size())) return false;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const std::size_t c = cell_of(points[v]);
+    for (std::uint32_t k = offsets_[c]; k < offsets_[c + 1]; ++k) {
+      // The padding is more than the rounding.
+      if (may_be_near({points[v], points[v]}, lines_[segments_[k]], distance + 0x1p-10 * padding_) &&
+          !found(segments_[k], static_cast<std::int32_t>(v))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace flaunay::constrained
