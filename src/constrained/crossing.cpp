@@ -139,6 +139,7 @@ bool cross(const Predicates& predicates, const Line& p, const Line& q) {
       std::max(std::min(a.y, b.y), std::min(c.y, d.y)) > std::min(std::max(a.y, b.y), std::max(c.y, d.y))) {
     return false;
   }
+  if (a == c || b == d) return false;
   return predicates.orient(a, b, c) * predicates.orient(a, b, d) < 0 &&
          predicates.orient(c, d, a) * predicates.orient(c, d, b) < 0;
 }

@@ -11,11 +11,11 @@ namespace {
 
 // So few segments are in one cell.
 constexpr std::size_t kInOneCell = 96;
-// So many pairs per segment are compared in any case.
+// If there are no more pairs than so many for each segment in a cell, all are compared.
 constexpr std::size_t kPairsPerEntry = 24;
-// If more pairs are in cells, one in so many must cross, of a sample.
+// Otherwise they are compared as long as one in so many crosses, but for so many for each segment in a cell.
 constexpr std::size_t kPairsPerCrossing = 16;
-constexpr std::size_t kSampledPairs = 512;
+constexpr std::size_t kFirstPairsPerEntry = 4;
 
 // Whether what is between two x and two y has no common point with what is between others.
 bool are_boxes_apart(const Line& p, const Line& q) {
@@ -100,41 +100,27 @@ bool SegmentGrid::is_elsewhere(const Line& p, const Line& q, std::size_t cell) c
   return cell_of({p.a.x + part * px, p.a.y + part * py}) != cell;
 }
 
-// Of pairs in cells, taken by the same random numbers always.
-bool SegmentGrid::mostly_cross(const Predicates& predicates) const {
-  std::uint64_t random = 1;
-  const auto next = [&random](std::uint64_t below) {
-    random = random * 6364136223846793005 + 1442695040888963407;
-    return (random >> 33) % below;
-  };
-  std::size_t crossings = 0;
-  for (std::size_t k = 0; k < kSampledPairs; ++k) {
-    const auto place = static_cast<std::uint32_t>(next(segments_.size()));
-    const auto cell = std::upper_bound(offsets_.begin(), offsets_.end(), place) - 1;
-    const std::int32_t s = segments_[place], t = segments_[*cell + next(*(cell + 1) - *cell)];
-    if (s != t && cross(predicates, lines_[s], lines_[t])) ++crossings;
-  }
-  return crossings * kPairsPerCrossing >= kSampledPairs;
-}
-
 bool SegmentGrid::find_crossings(const Predicates& predicates, const FoundPair& found) const {
   std::size_t pairs = 0;
   for (std::size_t c = 0; c < cells(); ++c) {
     const std::size_t count = offsets_[c + 1] - offsets_[c];
     pairs += count * count / 2;
   }
-  if (lines_.size() > kInOneCell && pairs > kPairsPerEntry * segments_.size() && !mostly_cross(predicates))
-    return false;
+  const bool is_bounded = lines_.size() > kInOneCell && pairs > kPairsPerEntry * segments_.size();
+  std::size_t compared = 0, most = kFirstPairsPerEntry * segments_.size();
   std::vector<Line> here;
   for (std::size_t c = 0; c < cells(); ++c) {
     const std::uint32_t begin = offsets_[c], end = offsets_[c + 1];
     here.clear();
     for (std::uint32_t k = begin; k < end; ++k) {
+      if (is_bounded && compared > most) return false;
+      compared += k - begin;
       const Line line = lines_[segments_[k]];
       for (std::uint32_t j = begin; j < k; ++j) {
         const Line& other = here[j - begin];
-        if (are_boxes_apart(line, other) || !cross(predicates, line, other) || is_elsewhere(line, other, c))
-          continue;
+        if (are_boxes_apart(line, other) || !cross(predicates, line, other)) continue;
+        most += kPairsPerCrossing;
+        if (is_elsewhere(line, other, c)) continue;
         if (!found(segments_[j], segments_[k])) return true;
       }
       here.push_back(line);

@@ -18,8 +18,8 @@ class SegmentGrid {
   explicit SegmentGrid(const std::vector<Line>& lines);
 
   /// Calls `found` with all pairs of segments that cross, some of them several times, until it says no, and
-  /// returns true. Returns false without doing so if there are too many pairs in cells, most of which do not
-  /// cross.
+  /// returns true. Returns false before all are found if too many pairs in cells do not cross: it takes O(s +
+  /// k) for k pairs that are found.
   bool find_crossings(const Predicates& predicates, const FoundPair& found) const;
 
   /// Calls `found` with all pairs of a segment and a point whose distance is at most `distance` in both
@@ -45,7 +45,6 @@ class SegmentGrid {
   }
   std::size_t cell_of(Point p) const { return cell_at(x_.cell(p.x), y_.cell(p.y)); }
   bool is_elsewhere(const Line& p, const Line& q, std::size_t cell) const;
-  bool mostly_cross(const Predicates& predicates) const;
 
   const std::vector<Line>& lines_;
   Axis x_{}, y_{};

@@ -110,9 +110,10 @@ static_assert(kernel::LARGEST_EXPONENT == 249);
 // Crossings of edges, merged where they are rounded to one place.
 class Crossings {
  public:
+  // patience: hubs may have so many times as many pairs.
   Crossings(const Vertices& vertices, const Predicates& predicates, const std::vector<Piece>& edges,
-            std::size_t most)
-      : vertices_(vertices), predicates_(predicates), edges_(edges), most_(most) {}
+            std::size_t most, std::size_t patience)
+      : vertices_(vertices), predicates_(predicates), edges_(edges), most_(most), patience_(patience) {}
 
   // Adds two edges that cross. Returns whether to go on: not if many pairs cross at places that are hubs.
   bool add(std::int32_t e, std::int32_t f) {
@@ -127,7 +128,7 @@ class Crossings {
       hubs_.push_back(at);
     }
     if (recent.is_hub) ++pairs_of_hubs_;
-    return pairs_of_hubs_ <= kFirstPairs + kPairsPerPlace * (edges_.size() + places_);
+    return pairs_of_hubs_ <= patience_ * (kFirstPairs + edges_.size() + places_);
   }
 
   bool empty() const { return all_.empty(); }
@@ -205,7 +206,7 @@ class Crossings {
   static constexpr std::uint32_t kPairsOfHub = 64;
   static constexpr std::size_t kRecent = 256;
   // Edges are cut at hubs, and searched again, if hubs have more pairs than these.
-  static constexpr std::size_t kFirstPairs = 10000, kPairsPerPlace = 8;
+  static constexpr std::size_t kFirstPairs = 10000;
   static constexpr std::size_t kFirstMerge = 1 << 22;
 
   // Edges that meet a place. The second is -1 if an odd number does.
@@ -302,7 +303,7 @@ class Crossings {
   const Vertices& vertices_;
   const Predicates& predicates_;
   const std::vector<Piece>& edges_;
-  std::size_t most_;
+  std::size_t most_, patience_;
   std::vector<Crossing> all_;
   std::size_t merge_at_ = kFirstMerge;
   std::size_t places_ = 0;  // as of the last merge
@@ -322,9 +323,9 @@ class SetSplitter {
   }
 
   void run(const SplitLimits& limits) {
-    while (true) {
+    for (std::size_t patience = 1;; patience *= 2) {
       cut();
-      Crossings crossings(vertices_, predicates_, edges_.edges, limits.places);
+      Crossings crossings(vertices_, predicates_, edges_.edges, limits.places, patience);
       bool is_complete = true;
       find_all_crossings(edges_.edges,
                          [&](std::int32_t e, std::int32_t f) { return is_complete = crossings.add(e, f); });

@@ -507,6 +507,48 @@ TEST(SmallSplit, UnevenGrid) {
   EXPECT_GE(tally.turns, 5);
 }
 
+// Segments between points that are rounded onto one line: they overlap but for that.
+TEST(SmallSplit, NearlyOnOneLine) {
+  FixtureRandom random(11);
+  Tally tally;
+  for (int round = 0; round < 60; ++round) {
+    SCOPED_TRACE(round);
+    const auto n = static_cast<std::size_t>(random.integer(6, 12));
+    const double slope = 1 / static_cast<double>(random.integer(3, 9));
+    Coordinates points;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = random.unit();
+      points.insert(points.end(), {x, x * slope});
+    }
+    const Segments segments = random_segments(random, n, 8);
+    expect_split(points, segments, &tally);
+    expect_triangulation(points, {0, n}, segments);
+    if (HasFailure()) return;
+  }
+  EXPECT_GE(tally.snapped, 3);
+}
+
+// Segments (0, i h) to (1, (k - i) h), which all cross within a few units in the last place of each other.
+struct Pencil {
+  explicit Pencil(std::int32_t k) {
+    for (std::int32_t i = 0; i < k; ++i) {
+      points.insert(points.end(), {0, i * 1e-13, 1, (k - i) * 1e-13});
+      segments.insert(segments.end(), {2 * i, 2 * i + 1});
+    }
+  }
+  Coordinates points;
+  Segments segments;
+};
+
+TEST(SmallSplit, Pencils) {
+  for (const std::int32_t k : {5, 12, 20}) {
+    SCOPED_TRACE(k);
+    const Pencil pencil(k);
+    expect_split(pencil.points, pencil.segments);
+    expect_triangulation(pencil.points, {0, pencil.points.size() / 2}, pencil.segments);
+  }
+}
+
 // Segments that all go through nearly one place, or through one, which is a point or is not.
 TEST(SmallSplit, Stars) {
   FixtureRandom random(5);
@@ -737,6 +779,33 @@ TEST(Split, ManySegments) {
     return shifted;
   }());
   EXPECT_EQ(through.added_points, (Coordinates{0, 0}));
+}
+
+TEST(Split, LargePencils) {
+  for (const std::int32_t k : {100, 400}) {
+    SCOPED_TRACE(k);
+    const Pencil pencil(k);
+    expect_triangulation(pencil.points, {0, pencil.points.size() / 2}, pencil.segments);
+  }
+}
+
+// So many segments cross at a few places that their pairs cannot be listed.
+TEST(Split, LargeStars) {
+  const std::int32_t stars = 5, rays = 4000;
+  Coordinates points, centres;
+  Segments segments;
+  for (std::int32_t star = 0; star < stars; ++star) {
+    const double centre = 8.0 * star;
+    centres.insert(centres.end(), {centre, 0});
+    for (std::int32_t ray = 0; ray < rays; ++ray) {
+      const double x = 1 - std::ldexp(ray, -12), y = 1.5;
+      points.insert(points.end(), {centre + x, y, centre - x, -y});
+      segments.insert(segments.end(), {2 * (rays * star + ray), 2 * (rays * star + ray) + 1});
+    }
+  }
+  const Split result = split(points.data(), {0, points.size() / 2}, segments);
+  EXPECT_EQ(result.added_points, centres);
+  EXPECT_EQ(result.pieces.size(), 2 * segments.size());
 }
 
 TEST(Split, LargeGrid) {
