@@ -108,7 +108,7 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
                                          const std::vector<std::size_t>& offsets,
                                          const Constraints& constraints, const ConstrainedOptions& options) {
   // What splitting and triangulating take for each place at which segments cross.
-  constexpr std::size_t kBytesPerCrossing = 1024;
+  constexpr std::size_t kBytesPerCrossing = 640;
   const double begin = host::now();
   constrained::SplitLimits limits;
   limits.places = std::min(limits.places, host::memory_left().bytes / kBytesPerCrossing);

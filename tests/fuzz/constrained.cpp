@@ -1,6 +1,7 @@
 // Makes segments edges of degenerate point sets, and compares the result with the definition: by the
 // verifier, for small sets also by brute force; with that of the same segments in another order; and with
-// those of devices. Stops at the first wrong result, shrinks it and prints it as a test.
+// those of devices. Segments that cross are split, too. Stops at the first wrong result, shrinks it and
+// prints it as a test.
 //
 //   fuzz_constrained [--seconds N] [--seed S] [--first CASE]
 #include "constrained/constrained.hpp"
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "constrained/split.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.hpp"
 #include "tests/constrained/check.hpp"
@@ -214,6 +216,32 @@ std::string compare_with_reversed(const Flat& all, const Triangulation& delaunay
   return arrays(result) == arrays(*other.result) ? "" : "reversed segments have another result";
 }
 
+/// Of segments that are split: whether their order matters, and whether their pieces can be edges.
+std::string problem_of_split(const Flat& all) {
+  const constrained::Split split = constrained::split(all.points.data(), all.offsets, all.segments);
+  const Segments reversed(all.segments.rbegin(), all.segments.rend());
+  if (constrained::split(all.points.data(), all.offsets, reversed).added_points != split.added_points)
+    return "reversed segments are split elsewhere";
+  const constrained::AllPoints joined = constrained::join_added(all.points.data(), all.offsets, split);
+  SegmentBatch batch;
+  for (std::size_t s = 0; s + 1 < all.offsets.size(); ++s) {
+    const auto place = [](std::size_t k) { return static_cast<std::ptrdiff_t>(k); };
+    const std::size_t begin = joined.offsets[s], end = joined.offsets[s + 1];
+    batch.push_back({Coordinates(joined.coordinates.begin() + place(2 * begin),
+                                 joined.coordinates.begin() + place(2 * end)),
+                     {}});
+    for (auto k = 2 * split.piece_offsets[all.segment_offsets[s]];
+         k < 2 * split.piece_offsets[all.segment_offsets[s + 1]]; ++k) {
+      batch.back().segments.push_back(joined.place[split.pieces[k]] - static_cast<std::int32_t>(begin));
+    }
+  }
+  const Flat pieces = flat(batch);
+  const Triangulation delaunay = testing::delaunay_of(pieces.points, pieces.offsets);
+  const Outcome outcome = constrain(pieces, delaunay, pieces.segments);
+  if (!outcome.result) return "pieces cross: " + outcome.error;
+  return verify_sets(batch, pieces, arrays_of(delaunay, *outcome.result), {});
+}
+
 struct Verdict {
   std::string problem;   // empty if nothing is wrong
   bool refused = false;  // out of the range of magnitudes
@@ -347,7 +375,8 @@ std::string problem_of(const SegmentBatch& batch, const Flat& all, const Triangu
   }
   if (!problem.empty()) return problem;
   if (!outcome.result) {
-    return verifier_refuses(batch, {}) ? "" : "the verifier finds no crossing, but: " + outcome.error;
+    return verifier_refuses(batch, {}) ? problem_of_split(all)
+                                       : "the verifier finds no crossing, but: " + outcome.error;
   }
   problem = verify_sets(batch, all, arrays_of(delaunay, *outcome.result), {});
   return problem.empty() ? compare_with_reversed(all, delaunay, *outcome.result) : problem;
