@@ -173,7 +173,8 @@ std::size_t expect_pairs(const Pieces& given, int& grids) {
   std::size_t calls = 0;
   constrained::find_crossings(predicates, given.points.data(), lines.edges,
                               [&calls](std::int32_t, std::int32_t) { return ++calls < 3; });
-  EXPECT_EQ(calls, std::min<std::size_t>(3, all.size()));
+  EXPECT_GE(calls, std::min<std::size_t>(3, all.size()));
+  EXPECT_LE(calls, 3u);
   return all.size();
 }
 
