@@ -117,10 +117,11 @@ void Arena::reserve(std::size_t bytes) {
 }
 
 void Arena::lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std::size_t bytes) {
-  if (is_lent_) blocks_ = std::move(own_blocks_);
-  is_lent_ = memory != nullptr;
-  if (!is_lent_) return;
+  if (is_lent_) blocks_ = std::exchange(own_blocks_, {});
+  is_lent_ = false;
+  if (memory == nullptr) return;
   own_blocks_ = std::exchange(blocks_, std::vector<Block>(1));
+  is_lent_ = true;
   // OpenCL requires sub-buffers to begin at multiples of the alignment.
   const std::size_t begin = (offset + source_.alignment - 1) / source_.alignment * source_.alignment;
   blocks_[0] = {memory, begin, offset + bytes < begin ? 0 : offset + bytes - begin, 0};

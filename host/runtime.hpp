@@ -180,9 +180,10 @@ class Runtime {
   /// Enqueues a copy to the device without waiting, and keeps the values until it is done.
   template <typename T>
   void write_kept(const Buffer<T>& to, std::vector<T> values) {
+    if (is_native()) return write_later(to, 0, values.size(), values.data());
     const auto kept = std::make_shared<std::vector<T>>(std::move(values));
-    write_later(to, 0, kept->size(), kept->data());
     kept_.push_back(kept);
+    write_later(to, 0, kept->size(), kept->data());
   }
   /// Returns a buffer from the arena that holds the values.
   template <typename T>

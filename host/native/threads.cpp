@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -50,16 +51,29 @@ struct Threads::Pool {
     const Work& work;
     std::size_t n, part;
     std::atomic<std::size_t> next{0};
+    std::atomic<bool> has_failed{false};
+    std::exception_ptr failure{};
 
-    void run() {
-      for (std::size_t begin = next.fetch_add(part); begin < n; begin = next.fetch_add(part)) {
-        work(begin, std::min(n, begin + part));
+    // An exception may end neither a thread, nor the job as long as others work on it.
+    void run() noexcept {
+      try {
+        for (std::size_t begin = next.fetch_add(part); begin < n; begin = next.fetch_add(part)) {
+          work(begin, std::min(n, begin + part));
+        }
+      } catch (...) {
+        if (!has_failed.exchange(true)) failure = std::current_exception();
+        next = n;
       }
     }
   };
 
   explicit Pool(std::size_t helpers) : process(getpid()) {
-    for (std::size_t k = 0; k < helpers; ++k) threads.emplace_back([this] { serve(); });
+    threads.reserve(helpers);
+    try {
+      while (threads.size() < helpers) threads.emplace_back([this] { serve(); });
+    } catch (const std::exception&) {
+      // If there is no thread, or no memory for it, the others do its work.
+    }
   }
   ~Pool() {
     {
@@ -98,6 +112,7 @@ struct Threads::Pool {
     std::unique_lock lock(mutex);
     job = nullptr;
     done.wait(lock, [&] { return busy == 0; });
+    if (own.failure) std::rethrow_exception(own.failure);
   }
 
   const pid_t process;

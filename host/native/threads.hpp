@@ -25,8 +25,8 @@ class Threads {
 
   std::size_t count() const { return count_; }
   /// Calls work(begin, end) on all threads, for parts of [0, n) with `part` elements each, or fewer at the
-  /// end. Returns when all is done. work must not throw. Throws std::system_error if threads cannot be
-  /// started.
+  /// end. Returns when all is done. If a call throws, no more calls begin, and the exception is
+  /// thrown here; of several exceptions, one is. If the system refuses threads, the others do their work.
   void share(std::size_t n, std::size_t part, const Work& work);
 
  private:

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -39,10 +38,11 @@ void for_each_index(std::size_t count, int threads, const Task& task) {
     }
   };
   std::vector<std::thread> others;
+  others.reserve(std::min(host_threads(threads), count));
   try {
     while (others.size() + 1 < std::min(host_threads(threads), count)) others.emplace_back(work);
-  } catch (const std::system_error&) {
-    // If the system refuses a thread, the others do its work.
+  } catch (const std::exception&) {
+    // If there is no thread, or no memory for it, the others do its work.
   }
   work();
   for (std::thread& thread : others) thread.join();

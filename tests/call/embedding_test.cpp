@@ -33,6 +33,7 @@ constexpr Parts kAll{true, true, true, true, true};
 constexpr Parts kTriangles{true, false, false, false, false};
 
 using Offsets = std::vector<std::size_t>;
+constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
 /// One context, and a triangulator in it, for all tests.
 struct World {
@@ -1318,7 +1319,7 @@ TEST(SmallEmbeddingMisuse, FailuresOfOpenclAreNamed) {
   const Memory memory = embedder().upload(coordinates);
   Triangulator fresh(embedder().context(), embedder().device());
   DeviceTriangulation result;
-  opencl_calls().buffer_failure = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+  opencl_calls().buffers_that_fit = 0;
   try {
     fresh.triangulate(points_in(memory, 20), result, kAll, on_own());
     ADD_FAILURE() << "no error";
@@ -1332,9 +1333,58 @@ TEST(SmallEmbeddingMisuse, FailuresOfOpenclAreNamed) {
     EXPECT_EQ(first.call(), "clCreateBuffer");
     EXPECT_EQ(second.call(), "clCreateBuffer");
   }
-  opencl_calls().buffer_failure = CL_SUCCESS;
+  opencl_calls().buffers_that_fit = kAnyNumber;
   fresh.triangulate(points_in(memory, 20), result, kAll, on_own());
   expect_same(result, expected_of(coordinates, {0, 20}));
+}
+
+// Without room for the first buffer, the second, and so on: an error each time, after which the objects do
+// what they did before.
+TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
+  const std::size_t n = 300;
+  const Coordinates coordinates = make_fixture("uniform", n, 5);
+  const Memory memory = embedder().upload(coordinates);
+  const std::vector<std::int32_t> segments = {0, 1, 2, 3};
+  const Triangulation expected = expected_of(coordinates, {0, n});
+  Triangulator kept(embedder().context(), embedder().device());
+  const auto attack = [&](const char* what, const std::function<void()>& work) {
+    bool is_over = false;
+    std::size_t errors = 0;
+    for (std::size_t fit = 0; !is_over; fit += 1 + fit / 8) {
+      opencl_calls().buffers_that_fit = fit;
+      try {
+        work();
+        is_over = true;
+      } catch (const Error& error) {
+        ++errors;
+        EXPECT_EQ(error.kind(), ErrorKind::device) << what << ", " << fit << ": " << error.what();
+        EXPECT_EQ(error.code(), CL_MEM_OBJECT_ALLOCATION_FAILURE) << what << ", " << fit;
+      }
+      opencl_calls().buffers_that_fit = kAnyNumber;
+      EXPECT_TRUE(same(kept.triangulate(coordinates.data(), n).triangles, expected.triangles))
+          << what << ", " << fit;
+    }
+    EXPECT_GT(errors, 1u) << what;
+  };
+  attack("points in host memory", [&] { kept.triangulate(coordinates.data(), n); });
+  attack("points in device memory", [&] {
+    DeviceTriangulation result;
+    kept.triangulate(points_in(memory, n), result, kAll, on_own());
+    expect_same(result, expected);
+  });
+  attack("segments", [&] {
+    Constraints constraints;
+    constraints.segments = segments.data();
+    constraints.segment_count = 2;
+    ConstrainedOptions options;
+    options.crossings = Crossings::split;
+    kept.constrained(coordinates.data(), n, constraints, options);
+  });
+  attack("a diagram", [&] { kept.voronoi(coordinates.data(), n, expected); });
+  attack("a locator", [&] {
+    Locator locator(kept, coordinates.data(), n, expected);
+    locator.nearest(coordinates.data(), n);
+  });
 }
 
 }  // namespace

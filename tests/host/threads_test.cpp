@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +46,29 @@ TEST(SmallThreads, TakeEveryElementOnce) {
 TEST(SmallThreads, OneAfterTheOtherWithoutLosingAny) {
   Threads threads(3);
   for (int round = 0; round < 3000; ++round) ASSERT_TRUE(shares_well(threads, 5, 1)) << "round " << round;
+}
+
+TEST(SmallThreads, ThrowWhatAnyOfThemThrows) {
+  Threads threads(4);
+  for (int round = 0; round < 200; ++round) {
+    std::atomic<int> done{0};
+    const auto fail_on = [&](bool helpers) {
+      const auto caller = std::this_thread::get_id();
+      threads.share(1000, 1, [&, caller](std::size_t begin, std::size_t) {
+        if (begin < 8) std::this_thread::yield();
+        if ((std::this_thread::get_id() != caller) == helpers) throw std::runtime_error("one");
+        ++done;
+      });
+    };
+    EXPECT_THROW(fail_on(false), std::runtime_error);
+    // Helpers may all come too late.
+    try {
+      fail_on(true);
+      EXPECT_GE(done, 1000);
+    } catch (const std::runtime_error&) {
+    }
+    ASSERT_TRUE(shares_well(threads, 100, 1)) << "round " << round;
+  }
 }
 
 TEST(SmallThreads, AreCountedByTheEnvironment) {

@@ -21,9 +21,21 @@ Function* next(Function*, const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
+// Whether another buffer fits; if not, says so.
+bool fits(cl_int* code) {
+  std::atomic<std::size_t>& left = opencl_calls().buffers_that_fit;
+  if (left > 0) {
+    --left;
+    return true;
+  }
+  if (code != nullptr) *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+  return false;
+}
+
 }  // namespace
 }  // namespace flaunay::testing
 
+using flaunay::testing::fits;
 using flaunay::testing::next;
 using flaunay::testing::opencl_calls;
 
@@ -31,13 +43,15 @@ extern "C" {
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
   static auto* const real = next(clCreateBuffer, "clCreateBuffer");
-  const cl_int failure = opencl_calls().buffer_failure;
-  if (failure != CL_SUCCESS) {
-    if (code != nullptr) *code = failure;
-    return nullptr;
-  }
+  if (!fits(code)) return nullptr;
   ++opencl_calls().buffers;
   return real(context, flags, bytes, host, code);
+}
+
+cl_mem clCreateSubBuffer(cl_mem buffer, cl_mem_flags flags, cl_buffer_create_type type, const void* info,
+                         cl_int* code) {
+  static auto* const real = next(clCreateSubBuffer, "clCreateSubBuffer");
+  return fits(code) ? real(buffer, flags, type, info, code) : nullptr;
 }
 
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <limits>
 
 namespace flaunay::testing {
 
@@ -14,9 +15,8 @@ struct OpenclCalls {
   std::atomic<std::size_t> bytes_to_host{0};    ///< read or mapped
   std::atomic<std::size_t> bytes_to_device{0};  ///< written
   std::atomic<std::size_t> waits{0};            ///< blocking calls
-  /// If not CL_SUCCESS, clCreateBuffer fails with it.
-  std::atomic<cl_int> buffer_failure{CL_SUCCESS};
-
+  /// After so many buffers, sub-buffers included, the next one and all later ones cannot be made.
+  std::atomic<std::size_t> buffers_that_fit{std::numeric_limits<std::size_t>::max()};
   /// Whether no device has double precision.
   std::atomic<bool> without_fp64{false};
 
