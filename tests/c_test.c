@@ -1166,6 +1166,37 @@ static void test_polygons(void) {
   CHECK(flaunay_constrained_mesh(result)->triangle_count == 5);
   flaunay_constrained_destroy(result);
 
+  // Borders and holes of any direction, if the parts are known: winding alone would fill this hole, and leave
+  // out what is in both parts.
+  static const double kParts[] = {0, 0, 6, 0, 6, 6, 0, 6, 2, 2, 4, 2, 4, 4, 2, 4, 5, 5, 5, 6, 6, 6, 6, 5};
+  static const size_t kPartRings[] = {0, 4, 8, 12}, kOnePolygon[] = {0, 3}, kPartOffsets[] = {0, 2, 3};
+  flaunay_polygons parts = {.coordinates = kParts,
+                            .ring_offsets = kPartRings,
+                            .ring_count = 3,
+                            .polygon_offsets = kOnePolygon,
+                            .polygon_count = 1,
+                            .labels = 1,
+                            .part_offsets = kPartOffsets,
+                            .part_count = 2};
+  for (int rule = FLAUNAY_FILL_RULE_EVEN_ODD; rule <= FLAUNAY_FILL_RULE_WINDING; ++rule) {
+    parts.has_fill_rule = 1;
+    parts.fill_rule = rule;
+    for (parts.map = 0; parts.map < 2; ++parts.map) {
+      REQUIRE(flaunay_triangulate_polygons(triangulator, &parts, NULL, &result) == FLAUNAY_SUCCESS);
+      mesh = flaunay_constrained_mesh(result);
+      arrays = flaunay_constrained_get_arrays(result);
+      double doubled_area = 0;
+      for (size_t t = 0; t < mesh->triangle_count; ++t) {
+        const double *a = &kParts[2 * mesh->triangles[3 * t]], *b = &kParts[2 * mesh->triangles[3 * t + 1]],
+                     *c = &kParts[2 * mesh->triangles[3 * t + 2]];
+        doubled_area += (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        CHECK(arrays->depths[t] == 1);
+      }
+      CHECK(doubled_area == 2 * (36 - 4));
+      flaunay_constrained_destroy(result);
+    }
+  }
+
   // What is outside and in holes may be kept.
   flaunay_polygons kept = kPolygons;
   kept.has_outside = 1;

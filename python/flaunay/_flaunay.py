@@ -442,6 +442,7 @@ class Triangulator(DeviceHandle):
         points: _Doubles,
         ring_offsets: _Offsets,
         polygon_offsets: _Offsets,
+        part_offsets: Optional[_Offsets],
         rules: dict[str, int],
         wanted: set[str],
     ) -> dict[str, Any]:
@@ -449,6 +450,7 @@ class Triangulator(DeviceHandle):
         parts = _parts_of(wanted) | PARTS["triangles"]
         rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
         outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
+        inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
         points = _as_doubles(points)
         polygons = _library.Polygons(
             coordinates=_address_of(points),
@@ -456,6 +458,8 @@ class Triangulator(DeviceHandle):
             ring_count=ring_count,
             polygon_offsets=_address_or_none(outer),
             polygon_count=count,
+            part_offsets=_address_or_none(inner),
+            part_count=part_count,
             has_outside=1,
             has_fill_rule=1,
             **rules,

@@ -248,7 +248,9 @@ class Polygons(ctypes.Structure):
         ("labels", c_int),
         ("map", c_int),
         ("overlaps", c_int),
-        ("reserved", c_size_t * 8),
+        ("part_offsets", c_void_p),
+        ("part_count", c_size_t),
+        ("reserved", c_size_t * 6),
     ]
 
 

@@ -26,8 +26,8 @@ Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 Offsets = npt.NDArray[np.int64]
 
-# Coordinates, offsets of rings and offsets of polygons.
-_Rings = tuple[Doubles, Offsets, Offsets]
+# Coordinates, offsets of rings and of polygons, and if it is known which rings are holes, of parts.
+_Rings = tuple[Doubles, Offsets, Offsets, Optional[Offsets]]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -149,6 +149,7 @@ def _of_shapely(geometries: npt.NDArray[Any]) -> _Rings:
         coordinates,
         _offsets_of(ring_of, len(rings)),
         _offsets_of(geometry_of[part_of], len(geometries)),
+        _offsets_of(part_of, len(parts)),
     )
 
 
@@ -162,7 +163,7 @@ def _geojson_of(given: Any) -> Any:
 
 
 def _rows_of_geojson(described: Mapping[str, Any]) -> Iterator[list[Any]]:
-    """The rings of each polygon."""
+    """The parts of each polygon: lists of rings, the border and then its holes."""
     kind = described["type"]
     if kind == "FeatureCollection":
         for feature in described["features"]:
@@ -174,9 +175,9 @@ def _rows_of_geojson(described: Mapping[str, Any]) -> Iterator[list[Any]]:
         else:
             yield from _rows_of_geojson(geometry)
     elif kind == "Polygon":
-        yield list(described["coordinates"])
+        yield [list(described["coordinates"])]
     elif kind == "MultiPolygon":
-        yield [ring for polygon in described["coordinates"] for ring in polygon]
+        yield list(described["coordinates"])
     else:
         raise UsageError(f"geometries have a {kind}: only Polygon and MultiPolygon have triangles")
 
@@ -184,19 +185,19 @@ def _rows_of_geojson(described: Mapping[str, Any]) -> Iterator[list[Any]]:
 # ---- Lists of rings
 
 
-def _rings_of_row(given: Any, row: int) -> list[Any]:
-    """The rings of one polygon, which may be an object that describes itself."""
+def _parts_of_row(given: Any, row: int) -> tuple[list[Any], bool]:
+    """The parts of one polygon, and whether they are known: of a list of rings, all are one."""
     if given is None:
-        return []
+        return [], True
     described = _geojson_of(given)
     if described is not None:
         rows = list(_rows_of_geojson(described))
         if len(rows) != 1:
             raise UsageError(f"geometries[{row}] are {len(rows)} polygons, not one")
-        return rows[0]
+        return rows[0], True
     if not isinstance(given, (Sequence, np.ndarray)) or isinstance(given, (str, bytes)):
         raise UsageError(f"geometries[{row}] is no polygon, but a {type(given).__name__}")
-    return list(given)
+    return [list(given)], False
 
 
 def _as_ring(given: Any, name: str) -> Doubles:
@@ -218,16 +219,26 @@ def _of_lists(rows: Sequence[Any]) -> _Rings:
     """The rings of polygons, each of which is a list of rings, or describes itself."""
     rings: list[Doubles] = []
     counts: list[int] = []
+    part_counts: list[int] = []
+    are_known = True
     for p, row in enumerate(rows):
-        members = _rings_of_row(row, p)
+        parts, is_known = _parts_of_row(row, p)
+        members = [ring for part in parts for ring in part]
         rings += [_as_ring(ring, f"geometries[{p}][{r}]") for r, ring in enumerate(members)]
         counts.append(len(members))
+        part_counts += [len(part) for part in parts]
+        are_known &= is_known
     sizes = [len(ring) for ring in rings]
     return (
         np.concatenate([np.empty((0, 2)), *rings]),
-        np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64),
-        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        _summed(sizes),
+        _summed(counts),
+        _summed(part_counts) if are_known else None,
     )
+
+
+def _summed(sizes: Sequence[int]) -> Offsets:
+    return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
 
 
 def _rows_of(given: Any) -> list[Any]:
@@ -252,7 +263,7 @@ def _rings_of(given: Any) -> _Rings:
     # A table of geopandas describes itself, too, but slowly.
     described = None if hasattr(given, "__array__") else _geojson_of(given)
     if described is not None:
-        return _of_lists(list(_rows_of_geojson(described)))
+        return _of_lists([{"type": "MultiPolygon", "coordinates": parts} for parts in _rows_of_geojson(described)])
     rows = _rows_of(given)
     if any(map(_is_shapely, rows)) and all(row is None or _is_shapely(row) for row in rows):
         geometries = np.empty(len(rows), object)
@@ -262,15 +273,20 @@ def _rings_of(given: Any) -> _Rings:
 
 
 def _with_offsets(
-    coordinates: ArrayLike, ring_offsets: npt.ArrayLike, polygon_offsets: Optional[npt.ArrayLike]
+    coordinates: ArrayLike,
+    ring_offsets: npt.ArrayLike,
+    polygon_offsets: Optional[npt.ArrayLike],
+    part_offsets: Optional[npt.ArrayLike],
 ) -> _Rings:
     """Rings in GeoArrow's layout. The library checks the offsets."""
     points = np.asarray(as_points(coordinates), np.float64)
     # Copies, which the result keeps.
     rings = as_offsets(ring_offsets, "ring_offsets").copy()
-    if polygon_offsets is None:
-        return points, rings, np.arange(max(len(rings), 1), dtype=np.int64)
-    return points, rings, as_offsets(polygon_offsets, "polygon_offsets").copy()
+    parts = None if part_offsets is None else as_offsets(part_offsets, "part_offsets")
+    if polygon_offsets is not None:
+        return points, rings, as_offsets(polygon_offsets, "polygon_offsets").copy(), parts
+    each = np.arange(max(len(rings), 1), dtype=np.int64)
+    return points, rings, each if parts is None else parts.copy(), parts
 
 
 def _check_increasing(offsets: Offsets, name: str) -> None:
@@ -283,6 +299,7 @@ def polygons(
     ring_offsets: Optional[npt.ArrayLike] = None,
     polygon_offsets: Optional[npt.ArrayLike] = None,
     *,
+    part_offsets: Optional[npt.ArrayLike] = None,
     map: bool = False,
     overlaps: str = "first",
     outside: str = "holes",
@@ -307,12 +324,15 @@ def polygons(
         - a list of polygons, each of them a list of rings of shape (n, 2): ``[[outer, hole], [outer]]``;
         - with `ring_offsets`, coordinates of shape (n, 2).
 
-        A ring may repeat its first point at its end or not, and may turn either way. Which rings are holes
-        is decided by `fill_rule`, not by their order. A MultiPolygon is one polygon with several outer rings.
-    ring_offsets, polygon_offsets : array_like of int, optional
+        A ring may repeat its first point at its end or not, and may turn either way. Geometries, and what
+        describes itself in the way of GeoJSON, say which rings are holes: a polygon is what is inside of its
+        border and of none of its holes, and a MultiPolygon is one polygon, all of its parts together. In
+        lists of rings and with `ring_offsets` alone, `fill_rule` decides that, not the order of rings.
+    ring_offsets, polygon_offsets, part_offsets : array_like of int, optional
         The layout of GeoArrow: ring r has the points ``ring_offsets[r]`` to ``ring_offsets[r + 1]``, and
         polygon p the rings ``polygon_offsets[p]`` to ``polygon_offsets[p + 1]``. Without the latter, each
-        ring is a polygon.
+        ring is a polygon, or each part. With `part_offsets`, part q has the rings ``part_offsets[q]`` to
+        ``part_offsets[q + 1]``, its border and then its holes; each polygon begins with a part.
     map : bool
         Whether polygons are one map, in which they share the edges of common borders: the triangles of
         all of them fit together. Otherwise each is triangulated on its own.
@@ -324,7 +344,9 @@ def polygons(
     crossings : {"error", "split"}
         What becomes of borders that cross where no point is, as in an invalid polygon.
     fill_rule : {"even_odd", "winding", "nesting"}
-        What is inside of a polygon; see `triangulate`. Letters of fonts are filled by ``"winding"``.
+        What is inside of a polygon; see `triangulate`. Letters of fonts are filled by ``"winding"``. If it
+        is known which rings are holes, the rule decides for each ring alone what is inside of it, unless it
+        is ``"nesting"``.
     labels, neighbors, halfedges : bool
         What else to compute; see `triangulate`.
     device : str, optional
@@ -372,16 +394,18 @@ def polygons(
     rules = rules_of(crossings, outside, fill_rule, labels)
     rules |= {"map": int(bool(map)), "overlaps": number_of(OVERLAPS, overlaps, "overlaps")}
     if ring_offsets is not None:
-        points, rings, outer = _with_offsets(geometries, ring_offsets, polygon_offsets)
+        points, rings, outer, parts = _with_offsets(
+            geometries, ring_offsets, polygon_offsets, part_offsets
+        )
         _check_increasing(rings, "ring_offsets")
         _check_increasing(outer, "polygon_offsets")
-    elif polygon_offsets is not None:
-        raise UsageError("polygon_offsets are for rings: pass ring_offsets, too")
+    elif polygon_offsets is not None or part_offsets is not None:
+        raise UsageError("polygon_offsets and part_offsets are for rings: pass ring_offsets, too")
     else:
-        points, rings, outer = _rings_of(geometries)
+        points, rings, outer, parts = _rings_of(geometries)
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     triangulator = _triangulators.of_device(device)
-    result = triangulator.triangulate_polygons(points, rings, outer, rules, wanted)
+    result = triangulator.triangulate_polygons(points, rings, outer, parts, rules, wanted)
     return PolygonTriangulation(
         **with_points(result, points), ring_offsets=frozen(rings), polygon_offsets=frozen(outer)
     )

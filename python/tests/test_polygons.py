@@ -1,5 +1,6 @@
 """Triangles of polygons."""
 
+import itertools
 from fractions import Fraction
 
 import numpy as np
@@ -43,6 +44,11 @@ def exact_area(polygon):
         - sum(abs(exact_ring_area(hole.coords)) for hole in part.interiors)
         for part in shapely.get_parts(polygon)
     )
+
+
+def exact_mesh_area(mesh):
+    """Twice the area of all triangles."""
+    return sum(exact_ring_area(mesh.points[row]) for row in mesh.triangles)
 
 
 def check(geometries, mesh):
@@ -256,6 +262,45 @@ def test_letters_are_filled_by_winding():
         assert flaunay.polygons([[SQUARE, hole]], fill_rule="winding").areas.sum() == area
 
 
+def in_directions(polygon, directions):
+    """The polygon, with its rings in these directions: its border, and then its holes."""
+    rings = [polygon.exterior, *polygon.interiors]
+    turned = [np.array(r.coords)[:: 1 if r.is_ccw == d else -1] for r, d in zip(rings, directions)]
+    return shapely.Polygon(turned[0], turned[1:])
+
+
+@pytest.mark.parametrize("fill_rule", ["even_odd", "winding"])
+@pytest.mark.parametrize("options", [{}, {"map": True}])
+def test_rings_may_have_any_direction(random, fill_rule, options):
+    polygon = with_holes(random)
+    options = {"fill_rule": fill_rule, "labels": True, **options}
+    for directions in itertools.product([True, False], repeat=3):
+        turned = in_directions(polygon, directions)
+        for given in turned, shapely.geometry.mapping(turned), [turned], [shapely.geometry.mapping(turned)]:
+            mesh = flaunay.polygons(given, **options)
+            assert exact_mesh_area(mesh) == exact_area(polygon) and set(mesh.depths) == {1}
+        # Parts unite, also in opposite directions.
+        inside = shapely.Polygon(np.array(turned.interiors[0].coords)[::-1])
+        both = flaunay.polygons(shapely.MultiPolygon([turned, inside]), **options)
+        assert exact_mesh_area(both) == exact_area(polygon) + exact_area(inside)
+        border = shapely.Polygon(turned.exterior)
+        overlapping = flaunay.polygons(shapely.MultiPolygon([border, turned, inside]), **options)
+        assert exact_mesh_area(overlapping) == exact_area(border)
+
+
+def test_parts_in_the_layout_of_geoarrow():
+    multi = shapely.MultiPolygon([shapely.Polygon(SQUARE, [HOLE[::-1]]), shapely.box(1, 1, 2, 2)])
+    _, coordinates, (rings, parts, each) = shapely.to_ragged_array([multi, multi])
+    options = {"part_offsets": parts, "fill_rule": "winding"}
+    mesh = flaunay.polygons(coordinates, rings, parts[each], **options)
+    assert mesh.polygon_areas.tolist() == [32, 32]
+    assert flaunay.polygons(coordinates, rings, **options).polygon_areas.tolist() == [32, 1, 32, 1]
+    with pytest.raises(flaunay.UsageError, match="a polygon does not begin with a part"):
+        flaunay.polygons(coordinates, rings, [0, 1, len(rings) - 1], **options)
+    with pytest.raises(flaunay.UsageError, match="part_offsets end with 2, but there are 6 rings"):
+        flaunay.polygons(coordinates, rings, part_offsets=[0, 2])
+
+
 def test_a_map_has_common_borders():
     apart = flaunay.polygons(EXPECTED)
     mesh = flaunay.polygons(EXPECTED, map=True, neighbors=True)
@@ -335,7 +380,7 @@ def test_what_are_no_polygons(given, message):
         ([0, 4], [0, 2], "polygon_offsets end with 2, but there are 1 rings"),
         ([0, 2, 4], [0, 2, 1, 2], "polygon_offsets must begin with 0 and not decrease"),
         ([0, 4], [[0, 1]], "polygon_offsets must be integers in one dimension"),
-        (None, [0, 1], "polygon_offsets are for rings"),
+        (None, [0, 1], "polygon_offsets and part_offsets are for rings"),
     ],
 )
 def test_offsets_that_are_none(rings, outer, message):

@@ -130,6 +130,9 @@ Polygons to_polygons(const flaunay_polygons& given) {
     result.polygon_offsets.resize(given.ring_count + 1);
     std::iota(result.polygon_offsets.begin(), result.polygon_offsets.end(), 0);
   }
+  if (given.part_offsets != nullptr) {
+    result.part_offsets.assign(given.part_offsets, given.part_offsets + given.part_count + 1);
+  }
   return result;
 }
 

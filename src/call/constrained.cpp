@@ -166,15 +166,46 @@ void call::finish(const Options& options, ConstrainedTriangulation& result) {
   result.statistics.triangles = result.triangles.size() / 3;
 }
 
+void call::leave_polygons(const double* coordinates, const std::vector<std::size_t>& offsets,
+                          const Constraints& constraints, const constrained::Curves& curves,
+                          const ConstrainedOptions& options, Overlaps overlaps,
+                          ConstrainedTriangulation& result) {
+  const std::vector<double> added = with_added(coordinates, offsets.back(), result.added_points);
+  const double* const all = added.empty() ? coordinates : added.data();
+  constrained::HostRegions regions = constrained::find_regions_on_host(result);
+  constrained::MapLabels labels =
+      constrained::label_map(all, result, regions.of_triangles, regions.left.size(), constraints.segments,
+                             curves, options.fill_rule, overlaps);
+  if (options.outside != Outside::keep) {
+    for (std::size_t r = 0; r < regions.left.size(); ++r) regions.left[r] = labels.polygons[r] >= 0 ? 1 : 0;
+  }
+  regions.depths = std::move(labels.depths);
+  result.polygons.resize(regions.of_triangles.size());
+  for (std::size_t t = 0; t < result.polygons.size(); ++t) {
+    result.polygons[t] = labels.polygons[regions.of_triangles[t]];
+  }
+  constrained::leave_on_host(all, offsets, constraints, options.labels, regions, result);
+}
+
 ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
                                                    const std::vector<std::size_t>& offsets,
                                                    const Constraints& constraints,
                                                    const ConstrainedOptions& options, bool are_closed) {
+  const Rings& rings = constraints.rings;
+  if (!rings.segment_offsets.empty()) {
+    constrained::check_rings(rings, constraints.segment_count, options.fill_rule);
+  }
   ConstrainedTriangulation result = constrain(self, coordinates, offsets, constraints, options);
   const double begin = host::now();
-  const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
-  apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints,
-                request_of(options, are_closed), result);
+  const constrained::DomainRequest request = request_of(options, are_closed);
+  if (!rings.segment_offsets.empty() && request.needs_depths()) {
+    leave_polygons(coordinates, offsets, constraints, constrained::curves_of(rings), options, Overlaps::first,
+                   result);
+    result.polygons.clear();
+  } else {
+    const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
+    apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints, request, result);
+  }
   finish(options, result);
   end_phase("domains", begin, result.statistics);
   return result;

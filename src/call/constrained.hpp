@@ -6,6 +6,7 @@
 
 #include "call/implementation.hpp"
 #include "constrained/constrained.hpp"
+#include "constrained/map.hpp"
 #include "flaunay/constrained.hpp"
 
 namespace flaunay::call {
@@ -19,6 +20,12 @@ void take(constrained::Result&& made, ConstrainedTriangulation& result);
 ConstrainedTriangulation constrain(Implementation& self, const double* coordinates,
                                    const std::vector<std::size_t>& offsets, const Constraints& constraints,
                                    const ConstrainedOptions& options);
+
+/// Labels a triangulation by the polygons that curves bound, says for each triangle the first polygon, and
+/// leaves out what the options and the holes say.
+void leave_polygons(const double* coordinates, const std::vector<std::size_t>& offsets,
+                    const Constraints& constraints, const constrained::Curves& curves,
+                    const ConstrainedOptions& options, Overlaps overlaps, ConstrainedTriangulation& result);
 
 /// Implements Triangulator::constrained. are_closed: whether segments are known to be closed curves.
 ConstrainedTriangulation constrain_and_leave(Implementation& self, const double* coordinates,

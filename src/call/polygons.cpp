@@ -56,6 +56,13 @@ std::size_t polygon_of(const std::vector<std::size_t>& points, std::size_t segme
          1;
 }
 
+bool has_single_rings(const Polygons& polygons) {
+  const std::vector<std::size_t>& offsets = polygons.polygon_offsets;
+  return std::adjacent_find(offsets.begin(), offsets.end(), [](std::size_t first, std::size_t end) {
+           return end > first + 1;
+         }) == offsets.end();
+}
+
 // Runs a call on the segments of polygons. If some cross, names their polygons, too.
 template <typename Work>
 auto with_names(const std::vector<std::size_t>& points, const Work& work) {
@@ -72,35 +79,16 @@ auto with_names(const std::vector<std::size_t>& points, const Work& work) {
 
 // All polygons as one set.
 ConstrainedTriangulation make_map(call::Implementation& self, const Polygons& polygons,
-                                  const std::vector<std::size_t>& points, const Ids& segments,
-                                  const Constraints& constraints, const PolygonOptions& options) {
+                                  const std::vector<std::size_t>& points, const Constraints& constraints,
+                                  const PolygonOptions& options) {
+  const std::vector<std::size_t> offsets = {0, points.back()};
   ConstrainedTriangulation result =
-      call::constrain(self, polygons.coordinates, {0, points.back()}, constraints, options);
+      call::constrain(self, polygons.coordinates, offsets, constraints, options);
   const double begin = host::now();
-  Ids polygon_of_segment;
-  polygon_of_segment.reserve(points.back());
-  for (std::size_t p = 0; p + 1 < points.size(); ++p) {
-    polygon_of_segment.resize(points[p + 1], static_cast<std::int32_t>(p));
-  }
-  const std::vector<double> all = call::with_added(polygons.coordinates, points.back(), result.added_points);
-  constrained::HostRegions regions = constrained::find_regions_on_host(result);
-  constrained::MapLabels labels = constrained::label_map(
-      all.empty() ? polygons.coordinates : all.data(), result, regions.of_triangles, regions.left.size(),
-      segments, polygon_of_segment, options.fill_rule, options.overlaps);
-  if (options.outside != Outside::keep) {
-    for (std::size_t r = 0; r < regions.left.size(); ++r) regions.left[r] = labels.polygons[r] >= 0 ? 1 : 0;
-  }
-  regions.depths = std::move(labels.depths);
-  Ids left;
-  for (std::size_t r = 0; r < regions.left.size(); ++r) {
-    if (regions.left[r] != 0) left.push_back(labels.polygons[r]);
-  }
-  constrained::leave_on_host(result, regions);
-  result.polygons.resize(regions.of_triangles.size());
-  for (std::size_t t = 0; t < result.polygons.size(); ++t) {
-    result.polygons[t] = left[static_cast<std::size_t>(regions.of_triangles[t])];
-  }
-  if (options.labels) constrained::label_on_host(regions, result);
+  call::leave_polygons(polygons.coordinates, offsets, constraints,
+                       polygons.part_offsets.empty() ? constrained::curves_of_polygons(points)
+                                                     : constrained::curves_of(constraints.rings),
+                       options, options.overlaps, result);
   call::finish(options, result);
   call::end_phase("domains", begin, result.statistics);
   return result;
@@ -114,10 +102,21 @@ ConstrainedTriangulation compute(call::Implementation& self, const Polygons& pol
   Constraints constraints;
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
+  const bool has_parts = !polygons.part_offsets.empty() && options.fill_rule != FillRule::nesting;
+  if (has_parts) {
+    const Rings rings = {polygons.ring_offsets, polygons.part_offsets, polygons.polygon_offsets};
+    constrained::check_rings(rings, constraints.segment_count, options.fill_rule);
+    if (options.map || !has_single_rings(polygons)) constraints.rings = rings;
+  }
   return with_names(points, [&] {
-    return options.map
-               ? make_map(self, polygons, points, segments, constraints, options)
-               : call::constrain_and_leave(self, polygons.coordinates, points, constraints, options, true);
+    if (options.map) return make_map(self, polygons, points, constraints, options);
+    ConstrainedTriangulation result =
+        call::constrain_and_leave(self, polygons.coordinates, points, constraints, options, true);
+    // The rule has counted how often the only ring of a polygon goes around a triangle.
+    if (has_parts) {
+      for (std::int32_t& depth : result.depths) depth = depth != 0 ? 1 : 0;
+    }
+    return result;
   });
 }
 

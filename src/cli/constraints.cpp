@@ -125,6 +125,7 @@ ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const 
   polygons.coordinates = map.points.coordinates.data();
   polygons.ring_offsets = map.ring_offsets;
   polygons.polygon_offsets = map.polygon_offsets;
+  polygons.part_offsets = map.part_offsets;
   PolygonOptions polygon_options;
   static_cast<ConstrainedOptions&>(polygon_options) = options;
   polygon_options.map = !request.separate;
@@ -135,8 +136,9 @@ ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const 
 ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const io::Map& map,
                                               const ConstraintRequest& request,
                                               const ConstrainedOptions& options) {
-  const std::vector<std::int32_t> segments = all_segments(map, request.fill);
+  const std::vector<std::int32_t> segments = all_segments(map);
   Constraints constraints;
+  constraints.rings = rings_of(map, request.fill);
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
   constraints.holes = map.holes.data();
@@ -165,7 +167,6 @@ ConstraintFacts facts_of(const io::Map& map, const ConstraintRequest& request,
                          const ConstrainedTriangulation& mesh) {
   ConstraintFacts facts;
   facts.sets = request.separate ? map.polygon_count() : 1;
-  // Without the second direction of lines, which comes last.
   facts.segments = (map.segments.size() + map.lines.size()) / 2;
   facts.pieces = static_cast<std::size_t>(mesh.piece_offsets.at(facts.segments));
   facts.edges = mesh.constraint_edges.size() / 2;
@@ -276,11 +277,15 @@ io::Map read_domain(const std::string& input, ConstraintRequest& request) {
   return map;
 }
 
-std::vector<std::int32_t> all_segments(const io::Map& map, FillRule fill) {
+std::vector<std::int32_t> all_segments(const io::Map& map) {
   std::vector<std::int32_t> segments = map.segments;
   segments.insert(segments.end(), map.lines.begin(), map.lines.end());
-  if (fill != FillRule::nesting) segments.insert(segments.end(), map.lines.rbegin(), map.lines.rend());
   return segments;
+}
+
+Rings rings_of(const io::Map& map, FillRule fill) {
+  if (fill == FillRule::nesting || (map.polygon_count() == 0 && map.lines.empty())) return {};
+  return {map.ring_offsets, map.part_offsets, map.polygon_offsets};
 }
 
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request) {

@@ -63,8 +63,10 @@ void check_domain_options(const CLI::App& command, const std::string& input, Con
 
 /// Reads points, segments and holes, and decides what is outside unless the user has.
 io::Map read_domain(const std::string& input, ConstraintRequest& request);
-/// The map's segments with its lines. A line in both directions bounds nothing by rules that count crossings.
-std::vector<std::int32_t> all_segments(const io::Map& map, FillRule fill);
+/// The map's segments, and after them its lines.
+std::vector<std::int32_t> all_segments(const io::Map& map);
+/// The rings of the map's polygons, unless it has neither polygons nor lines, or the rule is nesting.
+Rings rings_of(const io::Map& map, FillRule fill);
 
 /// Whether the triangulation has constraints. Throws Error(usage) for options that do not go together.
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request);

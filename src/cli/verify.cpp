@@ -111,12 +111,14 @@ Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Pro
 Checked verify_with_constraints(const VerifyRequest& request, Progress& progress) {
   ConstraintRequest asked = request.constraints;
   const io::Map map = read_domain(request.points, asked);
-  const std::vector<std::int32_t> segments = all_segments(map, asked.fill);
+  const std::vector<std::int32_t> segments = all_segments(map);
+  const Rings rings = rings_of(map, asked.fill);
   const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
   std::vector<std::int32_t> neighbors, edges;
   if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);
   VerifyConstraints constraints;
   constraints.segments = &segments;
+  if (!rings.segment_offsets.empty()) constraints.rings = &rings;
   constraints.outside = asked.outside;
   constraints.fill_rule = asked.fill;
   if (!map.holes.empty()) constraints.holes = &map.holes;

@@ -167,7 +167,9 @@ HostRegions find_regions_on_host(const ConstrainedTriangulation& mesh) {
   return regions;
 }
 
-void leave_on_host(ConstrainedTriangulation& mesh, HostRegions& regions) {
+namespace {
+
+void leave(ConstrainedTriangulation& mesh, HostRegions& regions) {
   const std::size_t triangles = mesh.triangles.size() / 3;
   Ids places(triangles, -1), numbers(regions.left.size(), -1);
   std::int32_t count = 0;
@@ -194,15 +196,24 @@ void leave_on_host(ConstrainedTriangulation& mesh, HostRegions& regions) {
       mesh.constrained[3 * to + k] = mesh.constrained[3 * t + k];
     }
     regions.of_triangles[to] = numbers[regions.of_triangles[t]];
+    if (!mesh.polygons.empty()) mesh.polygons[to] = mesh.polygons[t];
   }
   mesh.triangle_offsets = std::move(offsets);
   mesh.triangles.resize(3 * static_cast<std::size_t>(count));
   mesh.neighbors.resize(mesh.triangles.size());
   mesh.constrained.resize(mesh.triangles.size());
   regions.of_triangles.resize(static_cast<std::size_t>(count));
+  if (!mesh.polygons.empty()) mesh.polygons.resize(regions.of_triangles.size());
 }
 
-void label_on_host(HostRegions& regions, ConstrainedTriangulation& result) {
+}  // namespace
+
+void leave_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
+                   const Constraints& constraints, bool labels, HostRegions& regions,
+                   ConstrainedTriangulation& result) {
+  drop_holes(coordinates, offsets, constraints, result, regions);
+  if (std::find(regions.left.begin(), regions.left.end(), 0) != regions.left.end()) leave(result, regions);
+  if (!labels) return;
   result.depths.resize(regions.of_triangles.size());
   for (std::size_t t = 0; t < result.depths.size(); ++t) {
     result.depths[t] = regions.depths[regions.of_triangles[t]];
@@ -234,10 +245,7 @@ void apply_domains_on_host(const double* coordinates, const std::vector<std::siz
     const EdgeWeights weights(coordinates, offsets.back(), constraints, request.rules, result);
     find_depths(result, request.rules, weights, regions);
   }
-  drop_holes(coordinates, offsets, constraints, result, regions);
-  if (std::find(regions.left.begin(), regions.left.end(), 0) != regions.left.end())
-    leave_on_host(result, regions);
-  if (request.labels) label_on_host(regions, result);
+  leave_on_host(coordinates, offsets, constraints, request.labels, regions, result);
 }
 
 }  // namespace flaunay::constrained

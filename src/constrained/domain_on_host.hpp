@@ -23,11 +23,6 @@ struct HostRegions {
   std::vector<char> left;
 };
 HostRegions find_regions_on_host(const ConstrainedTriangulation& mesh);
-/// Moves the triangles that are left to the front, and numbers their regions and those regions' depths.
-void leave_on_host(ConstrainedTriangulation& mesh, HostRegions& regions);
-/// Writes depths and regions of triangles into the result.
-void label_on_host(HostRegions& regions, ConstrainedTriangulation& result);
-
 /// Labels a triangulation with constraints and leaves out what the request and the holes say. It must have
 /// neighbours; half-edges are not kept up to date. coordinates: of all points, those that splitting added
 /// too. n: the number of points without those. Expected O(n + s) for s segments, besides the holes: O(log h)
@@ -35,6 +30,11 @@ void label_on_host(HostRegions& regions, ConstrainedTriangulation& result);
 void apply_domains_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
                            const Constraints& constraints, const DomainRequest& request,
                            ConstrainedTriangulation& result);
+/// Its last steps: leaves out what the regions and the holes say, also of the result's polygons, and writes
+/// the labels if they are wanted.
+void leave_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
+                   const Constraints& constraints, bool labels, HostRegions& regions,
+                   ConstrainedTriangulation& result);
 
 /// The magnitudes of the points of sets that have holes, with those that splitting added; of other sets, of
 /// none.

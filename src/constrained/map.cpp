@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -70,10 +70,10 @@ Tree make_tree(const ConstrainedTriangulation& mesh, const Ids& regions, std::si
   return tree;
 }
 
-// What segments of a polygon do to those who enter a region: how many of them they cross from right to left,
+// What segments of a curve do to those who enter a region: how many of them they cross from right to left,
 // less those the other way.
 struct Step {
-  std::int32_t polygon, amount;
+  std::int32_t curve, amount;
 };
 
 // The steps into each region.
@@ -92,9 +92,9 @@ class Coverage {
     find_edges(tree);
   }
 
-  Steps steps(const Ids& segments, const Ids& polygons) const {
+  Steps steps(const std::int32_t* segments, const Ids& curves) const {
     std::vector<std::pair<std::int32_t, Step>> all;
-    for (std::size_t s = 0; s < polygons.size(); ++s) {
+    for (std::size_t s = 0; s < curves.size(); ++s) {
       const std::int32_t a = mesh_.representatives[segments[2 * s]],
                          b = mesh_.representatives[segments[2 * s + 1]];
       if (a == b) continue;
@@ -110,7 +110,7 @@ class Coverage {
         for (std::int32_t e = next_[first]; e < end; e = next_[e + 1]) {
           for (std::int32_t i = wanted_[e]; i >= 0; i = following_[i]) {
             const bool same = (is_backward == is_turned) == is_forward_[i];
-            all.push_back({i, {polygons[s], same ? 1 : -1}});
+            all.push_back({i, {curves[s], same ? 1 : -1}});
           }
         }
       }
@@ -181,28 +181,53 @@ class Coverage {
 // The polygons around the place of a walk.
 class Around {
  public:
-  Around(std::size_t polygons, FillRule rule) : counts_(polygons, 0), rule_(rule) {}
+  Around(const Curves& curves, FillRule rule)
+      : curves_(curves), counts_(curves.parts.size(), 0), parts_(curves.polygons.size()), rule_(rule) {}
 
   void step(const Step& step, int times) {
-    std::int32_t& count = counts_[step.polygon];
+    std::int32_t& count = counts_[step.curve];
     const bool was_in = is_in(count);
     count += times * step.amount;
     if (is_in(count) == was_in) return;
-    if (was_in) {
-      in_.erase(step.polygon);
+    Part& part = parts_[curves_.parts[step.curve]];
+    const bool was_in_part = part.is_in();
+    (curves_.are_holes[step.curve] != 0 ? part.holes : part.borders) += was_in ? -1 : 1;
+    if (part.is_in() == was_in_part) return;
+    const std::int32_t polygon = curves_.polygons[curves_.parts[step.curve]];
+    if (was_in_part) {
+      const auto found = in_.find(polygon);
+      if (--found->second == 0) in_.erase(found);
     } else {
-      in_.insert(step.polygon);
+      ++in_[polygon];
     }
   }
-  const std::set<std::int32_t>& polygons() const { return in_; }
+  /// With the number of their parts here.
+  const std::map<std::int32_t, std::int32_t>& polygons() const { return in_; }
 
  private:
+  // In how many of its borders and holes the place is.
+  struct Part {
+    std::int32_t borders = 0, holes = 0;
+    bool is_in() const { return borders > 0 && holes == 0; }
+  };
   bool is_in(std::int32_t count) const { return rule_ == FillRule::winding ? count != 0 : count % 2 != 0; }
 
+  const Curves& curves_;
   Ids counts_;
-  std::set<std::int32_t> in_;
+  std::vector<Part> parts_;
+  std::map<std::int32_t, std::int32_t> in_;
   FillRule rule_;
 };
+
+// Row i of offsets has the members [offsets[i], offsets[i + 1]): by member its row.
+Ids rows_of(const std::vector<std::size_t>& offsets) {
+  Ids rows;
+  rows.reserve(offsets.back());
+  for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+    rows.resize(offsets[i + 1], static_cast<std::int32_t>(i));
+  }
+  return rows;
+}
 
 [[noreturn]] void throw_overlap(const ConstrainedTriangulation& mesh, const Ids& regions, std::int32_t region,
                                 const std::pair<std::int32_t, std::int32_t>& polygons) {
@@ -214,21 +239,65 @@ class Around {
                           mesh.triangles[3 * t + 2]));
 }
 
+void expect(bool holds, const char* otherwise) {
+  if (!holds) throw Error(ErrorKind::usage, otherwise);
+}
+
 }  // namespace
 
+void check_rings(const Rings& rings, std::size_t segments, FillRule rule) {
+  expect(rule != FillRule::nesting, "rings need the fill rule even-odd or winding");
+  for (const auto* offsets : {&rings.segment_offsets, &rings.part_offsets, &rings.polygon_offsets}) {
+    expect(!offsets->empty() && offsets->front() == 0 && std::is_sorted(offsets->begin(), offsets->end()),
+           "the offsets of rings, parts and polygons must begin with 0 and not decrease");
+  }
+  const std::size_t count = rings.segment_offsets.size() - 1;
+  expect(rings.segment_offsets.back() <= segments, "the rings have more segments than there are");
+  expect(rings.part_offsets.back() == count && rings.polygon_offsets.back() == count,
+         "the offsets of parts and polygons do not end with the number of rings");
+  for (const std::size_t first : rings.polygon_offsets) {
+    expect(std::binary_search(rings.part_offsets.begin(), rings.part_offsets.end(), first),
+           "a polygon does not begin with a part");
+  }
+}
+
+Curves curves_of(const Rings& rings) {
+  Curves curves;
+  curves.of_segments = rows_of(rings.segment_offsets);
+  curves.parts = rows_of(rings.part_offsets);
+  curves.are_holes.assign(curves.parts.size(), 1);
+  const Ids polygon_of_ring = rows_of(rings.polygon_offsets);
+  for (std::size_t q = 0; q + 1 < rings.part_offsets.size(); ++q) {
+    const std::size_t border = rings.part_offsets[q];
+    const bool has_border = border < rings.part_offsets[q + 1];
+    if (has_border) curves.are_holes[border] = 0;
+    curves.polygons.push_back(has_border ? polygon_of_ring[border] : -1);
+  }
+  return curves;
+}
+
+Curves curves_of_polygons(const std::vector<std::size_t>& offsets) {
+  Curves curves;
+  curves.of_segments = rows_of(offsets);
+  curves.parts.resize(offsets.size() - 1);
+  std::iota(curves.parts.begin(), curves.parts.end(), 0);
+  curves.are_holes.assign(curves.parts.size(), 0);
+  curves.polygons = curves.parts;
+  return curves;
+}
+
 MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& mesh, const Ids& regions,
-                    std::size_t count, const Ids& segments, const Ids& polygons, FillRule rule,
+                    std::size_t count, const std::int32_t* segments, const Curves& curves, FillRule rule,
                     Overlaps overlaps) {
   const Tree tree = make_tree(mesh, regions, count);
-  const Steps into = Coverage(coordinates, mesh, tree).steps(segments, polygons);
+  const Steps into = Coverage(coordinates, mesh, tree).steps(segments, curves.of_segments);
   Ids first_child(count + 1, -1), sibling(count, -1);
   for (auto r = tree.order.rbegin(); r != tree.order.rend(); ++r) {
     const std::int32_t parent = tree.entries[*r].from;
     std::int32_t& first = first_child[parent < 0 ? count : static_cast<std::size_t>(parent)];
     sibling[*r] = std::exchange(first, *r);
   }
-  const std::int32_t most = polygons.empty() ? -1 : *std::max_element(polygons.begin(), polygons.end());
-  Around around(static_cast<std::size_t>(most + 1), rule);
+  Around around(curves, rule);
   const auto step = [&](std::int32_t region, int times) {
     for (std::int32_t i = into.offsets[region]; i < into.offsets[region + 1]; ++i) {
       around.step(into.steps[i], times);
@@ -240,12 +309,12 @@ MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& m
   // Depth first: down to the first child, else on to the next sibling, of the region or of one above it.
   for (std::int32_t r = first_child[count]; r >= 0;) {
     step(r, 1);
-    const std::set<std::int32_t>& in = around.polygons();
+    const std::map<std::int32_t, std::int32_t>& in = around.polygons();
     labels.depths[r] = static_cast<std::int32_t>(in.size());
-    if (!in.empty()) labels.polygons[r] = *in.begin();
+    if (!in.empty()) labels.polygons[r] = in.begin()->first;
     if (in.size() > 1 && r < first_overlap) {
       first_overlap = r;
-      overlapping = {*in.begin(), *std::next(in.begin())};
+      overlapping = {in.begin()->first, std::next(in.begin())->first};
     }
     if (first_child[r] >= 0) {
       r = first_child[r];

@@ -15,15 +15,28 @@ struct MapLabels {
   std::vector<std::int32_t> depths;    ///< the number of polygons that it is in
 };
 
+/// Closed curves, and what they bound: a part of a polygon is what is inside of one of its borders and of
+/// none of its holes.
+struct Curves {
+  std::vector<std::int32_t> of_segments;  ///< by segment; those after the last one bound nothing
+  std::vector<std::int32_t> parts;        ///< by curve: the part that it bounds
+  std::vector<char> are_holes;            ///< by curve
+  std::vector<std::int32_t> polygons;     ///< by part
+};
+/// Throws Error(usage) if offsets do not fit each other or the number of segments, or if the rule is nesting.
+void check_rings(const Rings& rings, std::size_t segments, FillRule rule);
+/// A curve for each ring.
+Curves curves_of(const Rings& rings);
+/// For each polygon one curve that has all of its segments. offsets: those of polygons.
+Curves curves_of_polygons(const std::vector<std::size_t>& offsets);
+
 /// Goes through all regions from outside, each time over one edge, whose segments lead into polygons or out
-/// of them. mesh: of one set, complete. regions: by triangle; count: their number. segments: 2 points per
-/// segment; polygons: the polygon of each segment, whose segments are closed curves. Throws Error(input) for
-/// the first region in several polygons if that is an error. coordinates: of all points. O(n +
-/// log p) per segment on an edge over which it goes, where p polygons are around; usually there is one such
-/// edge per segment at most.
+/// of them. mesh: complete. regions: by triangle; count: their number. segments: 2 points per segment. rule:
+/// of the inside of a curve. Throws Error(input) for the first region in several polygons if that is an
+/// error. coordinates: of all points. O(n + log p) per segment on an edge over which it goes, where p
+/// polygons are around; usually there is one such edge per segment at most.
 MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& mesh,
-                    const std::vector<std::int32_t>& regions, std::size_t count,
-                    const std::vector<std::int32_t>& segments, const std::vector<std::int32_t>& polygons,
-                    FillRule rule, Overlaps overlaps);
+                    const std::vector<std::int32_t>& regions, std::size_t count, const std::int32_t* segments,
+                    const Curves& curves, FillRule rule, Overlaps overlaps);
 
 }  // namespace flaunay::constrained

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "io/file.hpp"
-#include "io/ring.hpp"
 #include "io/text.hpp"
 
 namespace flaunay::io {
@@ -182,14 +181,11 @@ class GeoJsonReader {
 
   /// Of a polygon: the first one is its border, and the others are holes.
   void read_rings(const Json& value, const Place& at) {
-    bool is_outer = true;
-    for_each(value, at, [&](const Json& ring, const Place& place) {
-      read_ring(ring, place, is_outer);
-      is_outer = false;
-    });
+    for_each(value, at, [this](const Json& ring, const Place& place) { read_ring(ring, place); });
+    map_.part_offsets.push_back(map_.ring_offsets.size() - 1);
   }
 
-  void read_ring(const Json& value, const Place& at, bool is_outer) {
+  void read_ring(const Json& value, const Place& at) {
     std::vector<double>& coordinates = map_.points.coordinates;
     const std::size_t first = read_positions(value, at);
     std::size_t end = map_.points.size();
@@ -204,13 +200,10 @@ class GeoJsonReader {
       fail_at(at, "is a ring of {} positions; expected at least 4, the last one equal to the first",
               value.size());
     }
-    const int turn = ring_orientation(&coordinates[2 * first], end - first);
-    const bool is_reversed = is_outer ? turn < 0 : turn > 0;
     for (std::size_t i = first; i < end; ++i) {
-      const std::size_t next = i + 1 < end ? i + 1 : first;
-      is_reversed ? add_segment(map_.segments, next, i) : add_segment(map_.segments, i, next);
+      add_segment(map_.segments, i, i + 1 < end ? i + 1 : first);
     }
-    map_.ring_offsets.push_back(end);
+    map_.ring_offsets.push_back(map_.segments.size() / 2);
   }
 
   static void add_segment(std::vector<std::int32_t>& segments, std::size_t from, std::size_t to) {

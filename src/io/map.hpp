@@ -13,14 +13,15 @@ namespace flaunay::io {
 /// Points with segments between them, and what the file says about the inside.
 struct Map {
   Points points;
-  /// 2 points per segment, in the order of the file. Rings of polygons have the polygon on their left.
+  /// 2 points per segment, in the order of the file: of rings, if there are polygons.
   std::vector<std::int32_t> segments;
   /// Further segments: those of lines beside polygons, which bound nothing.
   std::vector<std::int32_t> lines;
   std::vector<double> holes;  ///< x and y per hole: a place inside of it
-  /// Polygon p has rings [polygon_offsets[p], polygon_offsets[p + 1]), and ring r has points
-  /// [ring_offsets[r], ring_offsets[r + 1]), without the first one again, if there are only polygons.
-  std::vector<std::size_t> ring_offsets = {0}, polygon_offsets = {0};
+  /// Ring r has segments [ring_offsets[r], ring_offsets[r + 1]), which begin at its points in their order.
+  /// Part q has rings [part_offsets[q], part_offsets[q + 1]), its border and then its holes, and polygon p
+  /// has rings [polygon_offsets[p], polygon_offsets[p + 1]).
+  std::vector<std::size_t> ring_offsets = {0}, part_offsets = {0}, polygon_offsets = {0};
   bool has_others = false;         ///< lines or points besides polygons
   std::vector<std::string> notes;  ///< what was left out or mended, a sentence each
 

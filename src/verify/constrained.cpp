@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "verify/checker.hpp"
 #include "verify/sweep.hpp"
@@ -36,6 +37,57 @@ using verification::Span;
 using verification::Sweep;
 
 constexpr std::int32_t kNoPiece = -1, kNoPoint = -1;
+
+/// How rings go around a place, and how many polygons it is in.
+class PolygonsAround {
+ public:
+  PolygonsAround(const Rings& rings, bool is_even_odd)
+      : is_even_odd_(is_even_odd), windings_(rings.segment_offsets.size() - 1, 0) {
+    for (std::size_t r = 0, part = 0, polygon = 0; r < windings_.size(); ++r) {
+      while (rings.part_offsets[part + 1] <= r) ++part;
+      while (rings.polygon_offsets[polygon + 1] <= r) ++polygon;
+      bounded_.push_back({part, polygon, rings.part_offsets[part] == r});
+    }
+    borders_.assign(rings.part_offsets.size(), 0);
+    holes_.assign(rings.part_offsets.size(), 0);
+    parts_.assign(rings.polygon_offsets.size(), 0);
+  }
+
+  void cross(std::size_t ring, int amount) {
+    count_here(ring, -1);
+    windings_[ring] += amount;
+    count_here(ring, 1);
+  }
+  std::int64_t count() const { return count_; }
+
+ private:
+  struct Bounded {
+    std::size_t part, polygon;
+    bool is_border;
+  };
+
+  /// Adds the polygon of a ring to the count, or takes it from there, if it is here.
+  void count_here(std::size_t ring, int amount) {
+    const auto [part, polygon, is_border] = bounded_[ring];
+    const auto add_part = [&](int sign) {
+      if (borders_[part] == 0 || holes_[part] != 0) return;
+      if (parts_[polygon] > 0) --count_;
+      parts_[polygon] += sign;
+      if (parts_[polygon] > 0) ++count_;
+    };
+    const bool is_around = is_even_odd_ ? windings_[ring] % 2 != 0 : windings_[ring] != 0;
+    add_part(-1);
+    if (is_around) (is_border ? borders_ : holes_)[part] += amount;
+    add_part(1);
+  }
+
+  bool is_even_odd_;
+  std::vector<std::int64_t> windings_;  // by ring
+  std::vector<Bounded> bounded_;
+  std::vector<std::int64_t> borders_, holes_;  // by part: how many are around
+  std::vector<std::int64_t> parts_;            // by polygon
+  std::int64_t count_ = 0;
+};
 
 class ConstrainedChecker : public Checker {
  public:
@@ -200,7 +252,9 @@ class ConstrainedChecker : public Checker {
     const bool by_nesting = constraints_.fill_rule == FillRule::nesting;
     if (constraints_.outside != Outside::keep || constraints_.depths != nullptr) {
       if (!check_closed()) return false;
-      depths_ = by_nesting ? nesting_depths() : winding_depths();
+      depths_ = by_nesting                      ? nesting_depths()
+                : constraints_.rings != nullptr ? polygon_depths()
+                                                : winding_depths();
     }
     if (constraints_.outside != Outside::keep) {
       const bool drops_holes = by_nesting && constraints_.outside == Outside::holes;
@@ -215,7 +269,9 @@ class ConstrainedChecker : public Checker {
   bool check_closed() {
     if (constraints_.fill_rule == FillRule::nesting) return true;
     std::vector<std::int32_t> excess(places_.size(), 0);
-    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+    const Rings* const rings = constraints_.rings;
+    const std::size_t count = rings != nullptr ? rings->segment_offsets.back() : segments_.size() / 2;
+    for (std::size_t s = 0; s < count; ++s) {
       for (std::size_t k = 0; k < 2; ++k) {
         std::int32_t& of_place = excess[place_of_point_[segments_[2 * s + k]]];
         of_place += is_even_odd() || k == 1 ? 1 : -1;
@@ -304,6 +360,72 @@ class ConstrainedChecker : public Checker {
     for (std::size_t i = 0; i < pieces.order.size(); ++i) steps[pieces.order[i]] = sum += changes[i];
     return steps;
   }
+  /// A step over a piece, from its right to its left or back, into a face that was not reached before, or out
+  /// of it again.
+  struct Move {
+    std::int32_t piece, face;  // kNoFace on the way back
+    int sign;
+  };
+  /// Goes through all faces, from outside and back.
+  std::vector<Move> tour() const {
+    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
+    std::vector<char> reached(covered_.size(), 0);
+    std::vector<Move> moves, open;
+    const auto look_around = [&](std::int32_t face) {
+      reached[face] = 1;
+      for (const Beyond& other : beyond[face]) {
+        const bool is_upward = sweep_.pieces()[other.piece].below == face;
+        open.push_back({other.piece, other.face, is_upward ? 1 : -1});
+      }
+    };
+    look_around(0);
+    while (!open.empty()) {
+      const Move move = open.back();
+      open.pop_back();
+      if (move.face != Sweep::kNoFace && reached[move.face] != 0) continue;
+      moves.push_back(move);
+      if (move.face == Sweep::kNoFace) continue;
+      open.push_back({move.piece, Sweep::kNoFace, -move.sign});
+      look_around(move.face);
+    }
+    return moves;
+  }
+
+  /// By face: the number of polygons that it is in.
+  std::vector<std::int64_t> polygon_depths() const {
+    const std::vector<Move> moves = tour();
+    // Of each piece on the way, its rings, those that run back negated.
+    std::vector<std::vector<std::int64_t>> rings_at(sweep_.pieces().size());
+    std::vector<char> is_on_way(rings_at.size(), 0);
+    for (const Move& move : moves) is_on_way[move.piece] = 1;
+    const PiecesByLine pieces(sweep_);
+    std::vector<std::size_t> next(pieces.order.size() + 1, pieces.order.size());
+    for (std::size_t i = pieces.order.size(); i-- > 0;) {
+      next[i] = is_on_way[pieces.order[i]] != 0 ? i : next[i + 1];
+    }
+    const std::vector<std::size_t>& offsets = constraints_.rings->segment_offsets;
+    for (std::size_t r = 0; r + 1 < offsets.size(); ++r) {
+      for (std::size_t s = offsets[r]; s < offsets[r + 1]; ++s) {
+        if (first_place(s) == last_place(s)) continue;
+        const bool is_forward = place_of_point_[segments_[2 * s]] == first_place(s);
+        const std::size_t end = pieces.position(s, last_place(s));
+        for (std::size_t i = next[pieces.position(s, first_place(s))]; i < end; i = next[i + 1]) {
+          const auto number = static_cast<std::int64_t>(r) + 1;
+          rings_at[pieces.order[i]].push_back(is_forward ? number : -number);
+        }
+      }
+    }
+    std::vector<std::int64_t> depths(covered_.size(), 0);
+    PolygonsAround around(*constraints_.rings, is_even_odd());
+    for (const Move& move : moves) {
+      for (const std::int64_t ring : rings_at[move.piece]) {
+        around.cross(static_cast<std::size_t>(std::abs(ring)) - 1, ring < 0 ? -move.sign : move.sign);
+      }
+      if (move.face != Sweep::kNoFace) depths[move.face] = around.count();
+    }
+    return depths;
+  }
+
   std::int32_t first_place(std::size_t segment) const {
     return std::min(place_of_point_[segments_[2 * segment]], place_of_point_[segments_[2 * segment + 1]]);
   }

@@ -17,6 +17,8 @@ struct VerifyConstraints {
   const std::vector<std::int32_t>* segments = nullptr;
   Outside outside = Outside::keep;
   FillRule fill_rule = FillRule::nesting;
+  /// If given: the rings of polygons, which the rule is about; see Constraints::rings.
+  const Rings* rings = nullptr;
   /// If given: x and y of each place whose face is left out, too.
   const std::vector<double>* holes = nullptr;
   /// If given: the edges that segments are made of, 2 points per edge, and per segment the first of its edges

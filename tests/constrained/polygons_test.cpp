@@ -14,6 +14,7 @@
 #include "tests/constrained/domains.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/shared_triangulator.hpp"
+#include "verify/constrained.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -22,8 +23,12 @@ namespace {
 struct Rings {
   Coordinates coordinates;
   std::vector<std::size_t> rings = {0}, polygons = {0};
+  // Whether it is known which rings are borders.
+  bool has_parts = false;
+  std::vector<std::size_t> borders = {};
 
-  void add_ring(const Coordinates& ring) {
+  void add_ring(const Coordinates& ring, bool is_border = false) {
+    if (is_border || polygons.back() == rings.size() - 1) borders.push_back(rings.size() - 1);
     coordinates.insert(coordinates.end(), ring.begin(), ring.end());
     rings.push_back(coordinates.size() / 2);
   }
@@ -32,7 +37,15 @@ struct Rings {
     for (const Coordinates& ring : polygon) add_ring(ring);
     end_polygon();
   }
-  Polygons view() const { return {coordinates.data(), rings, polygons}; }
+  Polygons view() const { return {coordinates.data(), rings, polygons, parts()}; }
+  std::vector<std::size_t> parts() const {
+    std::vector<std::size_t> offsets;
+    if (!has_parts) return offsets;
+    offsets = borders;
+    if (offsets.empty()) offsets.push_back(0);
+    if (offsets.back() != rings.size() - 1) offsets.push_back(rings.size() - 1);
+    return offsets;
+  }
   std::size_t count() const { return polygons.size() - 1; }
 
   Segments segments() const {
@@ -50,11 +63,30 @@ struct Rings {
     return testing::around(coordinates, segments(), rings[polygons[polygon]], rings[polygons[polygon + 1]],
                            place);
   }
+  // By the definition in docs/constrained.md.
+  bool is_in(std::size_t polygon, const RationalPlace& place, FillRule rule) const {
+    const auto is_around = [rule](const Around& found) {
+      return rule == FillRule::winding ? found.winding != 0 : found.crossings % 2 != 0;
+    };
+    if (!has_parts) return is_around(around(polygon, place));
+    bool is_in_part = false;
+    for (std::size_t r = polygons[polygon]; r < polygons[polygon + 1]; ++r) {
+      const bool is_here = is_around(testing::around(coordinates, segments(), rings[r], rings[r + 1], place));
+      if (std::binary_search(borders.begin(), borders.end(), r)) {
+        if (is_in_part) return true;
+        is_in_part = is_here;
+      } else if (is_here) {
+        is_in_part = false;
+      }
+    }
+    return is_in_part;
+  }
+  // Of a polygon that is a set.
+  std::int32_t depth(std::size_t polygon, const RationalPlace& place, FillRule rule) const {
+    if (has_parts || rule == FillRule::even_odd) return is_in(polygon, place, rule) ? 1 : 0;
+    return around(polygon, place).winding;
+  }
 };
-
-bool is_in(const Around& found, FillRule rule) {
-  return rule == FillRule::winding ? found.winding != 0 : found.crossings % 2 != 0;
-}
 
 PolygonOptions options_of(FillRule rule, Outside outside = Outside::holes, bool map = false) {
   PolygonOptions options;
@@ -82,9 +114,9 @@ void expect_right_sets(const Rings& input) {
     std::vector<std::size_t> offsets = {0};
     for (std::size_t p = 0; p < input.count(); ++p) {
       for (std::size_t t = all.triangle_offsets[p]; t < all.triangle_offsets[p + 1]; ++t) {
-        const Around at = input.around(p, centroid(input.coordinates, &all.triangles[3 * t]));
-        EXPECT_EQ(all.depths[t], rule == FillRule::winding ? at.winding : at.crossings % 2);
-        if (!is_in(at, rule)) continue;
+        const RationalPlace place = centroid(input.coordinates, &all.triangles[3 * t]);
+        EXPECT_EQ(all.depths[t], input.depth(p, place, rule));
+        if (!input.is_in(p, place, rule)) continue;
         triangles.insert(triangles.end(), &all.triangles[3 * t], &all.triangles[3 * t] + 3);
       }
       offsets.push_back(triangles.size() / 3);
@@ -94,6 +126,43 @@ void expect_right_sets(const Rings& input) {
     EXPECT_EQ(found.neighbors, reference_neighbors(triangles));
     EXPECT_EQ(found.hull, all.hull);
     EXPECT_TRUE(found.polygons.empty());
+  }
+}
+
+// Segments with rings are a map, too, and the verifier reads rings as the library does.
+void expect_right_by_the_verifier(const Rings& input, FillRule rule, const ConstrainedTriangulation& all,
+                                  const ConstrainedTriangulation& found) {
+  const Segments segments = input.segments();
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  constraints.rings = {input.rings, input.parts(), input.polygons};
+  ConstrainedOptions options;
+  options.labels = true;
+  options.fill_rule = rule;
+  VerifyConstraints checked;
+  checked.segments = &segments;
+  checked.fill_rule = rule;
+  checked.rings = &constraints.rings;
+  for (const Outside outside : {Outside::keep, Outside::holes}) {
+    const ConstrainedTriangulation& expected = outside == Outside::keep ? all : found;
+    checked.outside = options.outside = outside;
+    checked.depths = &expected.depths;
+    const std::size_t points = input.coordinates.size() / 2;
+    const ConstrainedTriangulation mesh =
+        triangulator().constrained(input.coordinates.data(), points, constraints, options);
+    EXPECT_EQ(mesh.triangles, expected.triangles);
+    EXPECT_EQ(mesh.depths, expected.depths);
+    EXPECT_TRUE(mesh.polygons.empty());
+    const VerifyReport report = verify_constrained(input.coordinates.data(), points, expected.triangles,
+                                                   &expected.neighbors, checked);
+    EXPECT_TRUE(report.ok) << report.problem;
+    if (expected.depths.empty()) continue;
+    std::vector<std::int32_t> wrong = expected.depths;
+    ++wrong.back();
+    checked.depths = &wrong;
+    EXPECT_FALSE(
+        verify_constrained(input.coordinates.data(), points, expected.triangles, nullptr, checked).ok);
   }
 }
 
@@ -111,7 +180,7 @@ void expect_right_map(const Rings& input) {
       const RationalPlace place = centroid(input.coordinates, &all.triangles[3 * t]);
       std::int32_t first = -1, count = 0;
       for (std::size_t p = 0; p < input.count(); ++p) {
-        if (!is_in(input.around(p, place), rule)) continue;
+        if (!input.is_in(p, place, rule)) continue;
         if (first < 0) first = static_cast<std::int32_t>(p);
         ++count;
       }
@@ -128,6 +197,7 @@ void expect_right_map(const Rings& input) {
     EXPECT_EQ(found.depths, depths);
     EXPECT_EQ(found.neighbors, reference_neighbors(triangles));
     EXPECT_EQ(found.triangle_offsets, (std::vector<std::size_t>{0, triangles.size() / 3}));
+    if (input.has_parts) expect_right_by_the_verifier(input, rule, all, found);
     PolygonOptions strict = options_of(rule, Outside::holes, true);
     strict.overlaps = Overlaps::error;
     if (overlap) {
@@ -144,6 +214,7 @@ Rings random_polygons(FixtureRandom& random, std::uint64_t round, int most) {
   const Coordinates points = random_integer_points(n, static_cast<int>(random.integer(2, 7)), round);
   const Triangulation mesh = delaunay_of(points, {0, n});
   Rings rings;
+  rings.has_parts = random.integer(0, 1) != 0;
   for (std::int64_t p = random.integer(0, most); p > 0; --p) {
     for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
       if (random.integer(0, 2) != 0) continue;
@@ -158,7 +229,7 @@ Rings random_polygons(FixtureRandom& random, std::uint64_t round, int most) {
       }
       if (is_turned && corners == 4)
         ring = {ring[0], ring[1], ring[2], ring[3], ring[4], ring[5], ring[0], ring[1]};
-      rings.add_ring(ring);
+      rings.add_ring(ring, random.integer(0, 1) != 0);
     }
     if (random.integer(0, 3) == 0) rings.add_ring({});
     if (random.integer(0, 3) == 0) rings.add_ring({points[0], points[1]});
@@ -244,6 +315,53 @@ TEST(SmallPolygons, Shapes) {
             (std::vector<std::size_t>{0, 0}));
 }
 
+// Parts are what is inside of their border and of none of their holes, whatever the directions of rings.
+TEST(SmallPolygons, PartsAndTheirHoles) {
+  const auto turned = [](const Coordinates& ring) {
+    Coordinates result;
+    for (std::size_t i = ring.size(); i > 0; i -= 2) result.insert(result.end(), {ring[i - 2], ring[i - 1]});
+    return result;
+  };
+  // Parts of polygons, and how large the polygon is.
+  struct Case {
+    std::vector<std::vector<Coordinates>> parts;
+    double area;
+  };
+  const Coordinates large = square(0, 10), hole = square(2, 8), inner = square(4, 6), apart = square(20, 30);
+  const Coordinates eight = {0, 0, 2, 2, 4, 0, 4, 4, 2, 2, 0, 4};
+  const std::vector<Case> cases = {
+      {{{large, hole}}, 64},          {{{large, hole, hole}}, 64},
+      {{{large, hole, inner}}, 64},   {{{large, square(12, 14)}}, 100},
+      {{{large, large}}, 0},          {{{large}, {hole}}, 100},
+      {{{large, hole}, {inner}}, 68}, {{{large, square(22, 24)}, {apart}}, 200},
+      {{{large}, {large}}, 100},      {{{eight}}, 8},
+      {{{large, eight}}, 92},         {{{large, hole}, {square(2, 8), inner}}, 96},
+  };
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    for (unsigned directions = 0; directions < 16; ++directions) {
+      for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+        for (const bool map : {false, true}) {
+          Rings input;
+          input.has_parts = true;
+          unsigned ring = 0;
+          for (const std::vector<Coordinates>& part : cases[c].parts) {
+            bool is_border = true;
+            for (const Coordinates& corners : part) {
+              input.add_ring((directions >> ring++ & 1) != 0 ? turned(corners) : corners, is_border);
+              is_border = false;
+            }
+          }
+          input.end_polygon();
+          const PolygonOptions options = options_of(rule, Outside::holes, map);
+          const ConstrainedTriangulation mesh = triangulator().polygons(input.view(), options);
+          EXPECT_EQ(area_of(input, mesh), cases[c].area) << c << ", directions " << directions;
+          for (const std::int32_t depth : mesh.depths) EXPECT_EQ(depth, 1);
+        }
+      }
+    }
+  }
+}
+
 // Whether a place is so near to a segment that rounded crossings may have moved it to the other side.
 bool is_near(const Rings& input, const Segments& segments, const RationalPlace& place) {
   for (std::size_t s = 0; s < segments.size(); s += 2) {
@@ -262,6 +380,7 @@ TEST(SmallPolygons, CrossingsThatAreSplit) {
   std::size_t all = 0, checked = 0;
   for (int round = 0; round < (is_simulated() ? 2 : 40); ++round) {
     Rings input;
+    input.has_parts = random.integer(0, 1) != 0;
     for (std::int64_t p = random.integer(1, 3); p > 0; --p) {
       std::vector<Coordinates> rings;
       for (std::int64_t r = random.integer(1, 2); r > 0; --r) {
@@ -285,7 +404,7 @@ TEST(SmallPolygons, CrossingsThatAreSplit) {
           ++checked;
           std::int32_t count = 0, first = -1;
           for (std::size_t p = input.count(); p-- > 0;) {
-            if (!is_in(input.around(p, place), rule)) continue;
+            if (!input.is_in(p, place, rule)) continue;
             first = static_cast<std::int32_t>(p);
             ++count;
           }
@@ -293,8 +412,7 @@ TEST(SmallPolygons, CrossingsThatAreSplit) {
             ASSERT_EQ(mesh.polygons[t], first);
             ASSERT_EQ(mesh.depths[t], count);
           } else {
-            const Around at = input.around(set, place);
-            ASSERT_EQ(mesh.depths[t], rule == FillRule::winding ? at.winding : at.crossings % 2);
+            ASSERT_EQ(mesh.depths[t], input.depth(set, place, rule));
           }
         }
         all += mesh.triangles.size() / 3;
@@ -369,6 +487,16 @@ TEST(SmallPolygons, Errors) {
             "polygons 0 and 1: segments 1 (points 1 and 2) and 4 (points 4 and 5) cross near (4, 1)");
   EXPECT_EQ(message(pair, options_of(FillRule::nesting, Outside::holes, true), ErrorKind::usage),
             "the polygons of a map need the fill rule even-odd or winding");
+  pair.has_parts = true;
+  EXPECT_EQ(message(pair, options_of(FillRule::nesting), ErrorKind::input), "no error");
+  pair.borders = {0};
+  EXPECT_EQ(message(pair, {}, ErrorKind::usage), "a polygon does not begin with a part");
+  pair.borders = {1};
+  EXPECT_EQ(message(pair, {}, ErrorKind::usage),
+            "the offsets of rings, parts and polygons must begin with 0 and not decrease");
+  pair.borders = {0, 1, 2, 3};
+  EXPECT_NE(message(pair, {}, ErrorKind::usage), "no error");
+  pair.has_parts = false;
   pair.polygons.back() = 1;
   EXPECT_EQ(message(pair, {}, ErrorKind::usage),
             "the offsets of polygons do not end with the number of rings");

@@ -14,7 +14,6 @@
 #include "io/mesh.hpp"
 #include "io/output.hpp"
 #include "io/points.hpp"
-#include "io/ring.hpp"
 #include "tests/io/folder.hpp"
 #include "tests/support/paths.hpp"
 
@@ -127,19 +126,17 @@ std::string geometry(const std::string& type, const std::string& coordinates) {
   return "{\"type\": \"" + type + "\", \"coordinates\": " + coordinates + "}";
 }
 
-TEST_F(MapTest, RingsHaveThePolygonOnTheirLeft) {
+TEST_F(MapTest, RingsKeepTheirDirections) {
   // The border clockwise and the hole counter-clockwise, against the standard.
   const Map map =
       map_of("a.json", geometry("Polygon", "[[[0,0],[0,9],[9,9],[9,0],[0,0]],[[1,1],[2,1],[1,2],[1,1]]]"));
   EXPECT_EQ(map.points.coordinates, (Values{0, 0, 0, 9, 9, 9, 9, 0, 1, 1, 2, 1, 1, 2}));
-  EXPECT_EQ(map.segments, (Indices{1, 0, 2, 1, 3, 2, 0, 3, 5, 4, 6, 5, 4, 6}));
+  EXPECT_EQ(map.segments, (Indices{0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 4}));
   EXPECT_EQ(map.ring_offsets, (Offsets{0, 4, 7}));
   EXPECT_EQ(map.polygon_offsets, (Offsets{0, 2}));
   EXPECT_FALSE(map.has_others);
+  EXPECT_EQ(map.part_offsets, (Offsets{0, 2}));
   EXPECT_TRUE(map.notes.empty());
-  const Map as_the_standard_says =
-      map_of("a.json", geometry("Polygon", "[[[0,0],[9,0],[9,9],[0,9],[0,0]],[[1,1],[1,2],[2,1],[1,1]]]"));
-  EXPECT_EQ(as_the_standard_says.segments, (Indices{0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 4}));
 }
 
 TEST_F(MapTest, GeoJsonHasAllTypes) {
@@ -163,6 +160,7 @@ TEST_F(MapTest, GeoJsonHasAllTypes) {
   EXPECT_EQ(map.lines, (Indices{9, 10, 10, 11, 12, 13}));
   EXPECT_EQ(map.ring_offsets, (Offsets{0, 3, 6, 9}));
   EXPECT_EQ(map.polygon_offsets, (Offsets{0, 1, 3})) << "the parts of a MultiPolygon are one";
+  EXPECT_EQ(map.part_offsets, (Offsets{0, 1, 2, 3, 3}));
   EXPECT_TRUE(map.has_others);
 }
 
@@ -214,26 +212,6 @@ TEST_F(MapTest, CollectionsThatAreTooDeepAreAnError) {
   for (int i = 0; i < kLevels; ++i) deep += "{\"type\":\"GeometryCollection\",\"geometries\":[";
   for (int i = 0; i < kLevels; ++i) deep += "]}";
   expect_bad_map("a.json", deep, {"too deep"});
-}
-
-TEST_F(MapTest, OrientationsOfRingsAreExact) {
-  EXPECT_EQ(ring_orientation(Values{0, 0, 1, 0, 0, 1}.data(), 3), 1);
-  EXPECT_EQ(ring_orientation(Values{0, 0, 0, 1, 1, 0}.data(), 3), -1);
-  EXPECT_EQ(ring_orientation(Values{0, 0, 1, 1, 2, 2, 1, 1}.data(), 4), 0);
-  EXPECT_EQ(ring_orientation(Values{0, 0, 1, 1}.data(), 2), 0);
-  // Out and back along a line, and one unit in the last place beside it.
-  const double third = 1.0 / 3, large = 1e15;
-  for (const double turn : {-1.0, 1.0}) {
-    const double beside = std::nextafter(third, turn * std::numeric_limits<double>::infinity());
-    const Values needle = {large, large, large + third * 3, large + 1, third, beside, large, large};
-    const Values reversed = {large, large, third, beside, large + third * 3, large + 1, large, large};
-    EXPECT_EQ(ring_orientation(needle.data(), 4), -ring_orientation(reversed.data(), 4));
-    EXPECT_EQ(ring_orientation(needle.data(), 4), static_cast<int>(turn));
-  }
-  const Values huge = {-1e308, -1e308, 1e308, -1e308, 1e308, 1e308};
-  EXPECT_EQ(ring_orientation(huge.data(), 3), 1);
-  const Values tiny = {0, 0, 0, 5e-324, 5e-324, 0};
-  EXPECT_EQ(ring_orientation(tiny.data(), 3), -1);
 }
 
 // -----------------------------------------------------------------------------------------------------

@@ -37,6 +37,19 @@ enum class FillRule {
   winding,
 };
 
+/// Which segments are the borders and the holes of polygons.
+struct Rings {
+  /// rings + 1 values: ring r has segments [segment_offsets[r], segment_offsets[r + 1]), which are a closed
+  /// curve of any direction. Segments after the last ring bound nothing.
+  std::vector<std::size_t> segment_offsets;
+  /// parts + 1 values: part q has rings [part_offsets[q], part_offsets[q + 1]). The first one is its border,
+  /// the others are its holes.
+  std::vector<std::size_t> part_offsets;
+  /// polygons + 1 values: polygon p has rings [polygon_offsets[p], polygon_offsets[p + 1]), those of its
+  /// parts.
+  std::vector<std::size_t> polygon_offsets;
+};
+
 /// Segments that are to be edges, and what is to be left out. The arrays belong to the caller.
 struct Constraints {
   const std::int32_t* segments = nullptr;  ///< 2 indices of points of the same set per segment
@@ -48,6 +61,10 @@ struct Constraints {
   /// sets + 1 values: set s has holes [hole_offsets[s], hole_offsets[s + 1]). May be empty if there is one
   /// set.
   std::vector<std::size_t> hole_offsets;
+  /// Unless segment_offsets is empty, the fill rule, which must not be nesting, decides for each ring alone
+  /// what is inside of it. A part is what is inside of its border and of none of its holes, and a polygon is
+  /// all of its parts. The depth is the number of polygons that a triangle is in.
+  Rings rings;
 };
 
 /// The options of one constrained triangulation.
@@ -66,7 +83,7 @@ enum class Overlaps {
 
 /// Polygons with holes, as rings with offsets, in the layout of GeoArrow. A ring may repeat its first point
 /// at its end, and may have any orientation. Rings without area, such as those of fewer than 3 points, have
-/// no triangles. A polygon may have several outer rings.
+/// no triangles. A polygon may have several outer rings, or several parts.
 struct Polygons {
   const double* coordinates = nullptr;  ///< x and y per point; the array belongs to the caller
   /// rings + 1 values: ring r has points [ring_offsets[r], ring_offsets[r + 1]). It has a segment from each
@@ -74,6 +91,11 @@ struct Polygons {
   std::vector<std::size_t> ring_offsets;
   /// polygons + 1 values: polygon p has rings [polygon_offsets[p], polygon_offsets[p + 1]).
   std::vector<std::size_t> polygon_offsets;
+  /// If it is known which rings are holes: parts + 1 values. Part q has rings
+  /// [part_offsets[q], part_offsets[q + 1]), the first one its border, the others its holes; each polygon
+  /// begins with a part. Then insides are those of Constraints::rings, and depths are numbers of polygons,
+  /// unless the fill rule is nesting. If it is empty, the fill rule counts all rings of a polygon alike.
+  std::vector<std::size_t> part_offsets = {};
 };
 
 /// The options of a triangulation of polygons. Unlike for segments, only what is inside is kept, and insides

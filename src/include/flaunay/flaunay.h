@@ -424,7 +424,7 @@ typedef struct flaunay_constraints {
 
 /// Polygons with holes, as rings with offsets, in the layout of GeoArrow. {0}: no polygons. A ring may repeat
 /// its first point at its end, and may have any orientation. Rings without area, such as those of fewer than
-/// 3 points, have no triangles. A polygon may have several outer rings.
+/// 3 points, have no triangles. A polygon may have several outer rings, or several parts.
 typedef struct flaunay_polygons {
   const double* coordinates;  ///< x and y per point
   /// ring_count + 1 values from 0: ring r has points [ring_offsets[r], ring_offsets[r + 1]). It has a segment
@@ -447,8 +447,16 @@ typedef struct flaunay_polygons {
   /// borders. The result says which triangle is in which polygon. The fill rule decides for each polygon what
   /// is inside of it, and must not be nesting. Depths are numbers of polygons.
   int map;
-  int overlaps;           ///< a flaunay_overlaps
-  uintptr_t reserved[8];  ///< 0
+  int overlaps;  ///< a flaunay_overlaps
+  /// If it is known which rings are holes: part_count + 1 values from 0 to ring_count. Part q has rings
+  /// [part_offsets[q], part_offsets[q + 1]), the first one its border, the others its holes; each polygon
+  /// begins with a part. Then the fill rule decides for each ring alone what is inside of it: a part is what
+  /// is inside of its border and of none of its holes, and a polygon is all of its parts. Depths are numbers
+  /// of polygons. Ignored by nesting. NULL: the fill rule counts all rings of a polygon alike, and part_count
+  /// is ignored.
+  const size_t* part_offsets;
+  size_t part_count;      ///< number of parts
+  uintptr_t reserved[6];  ///< 0
 } flaunay_polygons;
 
 /// What a constrained triangulation has besides its triangles. Arrays are NULL if they are empty.
