@@ -29,13 +29,14 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate*
 }
 
 const std::vector<flaunay_mode_info>& modes() {
-  static const std::vector<flaunay_mode_info> infos = [] {
+  // Never destroyed, like those of list_modes.
+  static const auto& infos = *new std::vector<flaunay_mode_info>([] {
     std::vector<flaunay_mode_info> all;
     for (const research::ModeInfo& mode : research::list_modes()) {
       all.push_back({static_cast<int>(mode.mode), mode.name, mode.description, mode.on_host});
     }
     return all;
-  }();
+  }());
   return infos;
 }
 

@@ -175,11 +175,12 @@ const ModeRow& row_of(research::Mode mode) {
 namespace research {
 
 const std::vector<ModeInfo>& list_modes() {
-  static const std::vector<ModeInfo> modes = [] {
+  // Never destroyed, since threads and destructors of other objects may make calls until the process ends.
+  static const auto& modes = *new std::vector<ModeInfo>([] {
     std::vector<ModeInfo> infos;
     for (const call::ModeRow& row : call::kModes) infos.push_back(row.info);
     return infos;
-  }();
+  }());
   return modes;
 }
 

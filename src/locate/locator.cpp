@@ -356,8 +356,8 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
                     std::size_t m, const Buffer<cl_int>& found, const Buffer<cl_int>& points,
                     const Buffer<cl_int>& unanswered) {
   const Levels& levels = locator.levels;
-  static const Locator kNone;
-  const Locator& samples = locator.samples ? *locator.samples : kNone;
+  const Locator none;
+  const Locator& samples = locator.samples ? *locator.samples : none;
   runtime.map(m, kernels::nearest_points{.sets = pass.sets,
                                          .long_from = limits.long_from,
                                          .most_neighbors = limits.most,
