@@ -17,7 +17,7 @@ everything else for later calls.
 
 Threads may call at the same time: the interpreter's lock is released while a device works, and one
 device does one call after the other. OpenCL does not survive a fork: in a child of a process that
-used it, calls run on the host, and calls that name a device raise ``DeviceError``.
+used it, calls run on the host, and calls that name or need a device raise ``DeviceError``.
 """
 
 from flaunay._alpha_shape import AlphaShape, alpha_shape

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._accurate import signs_of_turns
-from flaunay._arrays import ArrayLike, freeze_all, frozen, summary
+from flaunay._arrays import ArrayLike, Fixed, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._graphs import minimum_spanning_forest
@@ -24,7 +24,7 @@ Indices = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
 
 
-class AlphaShape:
+class AlphaShape(Fixed):
     """An alpha shape of points in the plane. `alpha_shape` makes it.
 
     Attributes
@@ -41,10 +41,6 @@ class AlphaShape:
         self.delaunay = delaunay
         self.alpha = alpha
         self.inside: Mask = frozen(delaunay.circumradii <= alpha)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=self.delaunay.npoints, triangles=len(self.simplices))

@@ -238,6 +238,19 @@ def freeze_all(state: Mapping[str, Any]) -> None:
                 frozen(array)
 
 
+class Fixed:
+    """An object that refuses other attributes in place of those that all the rest was computed from."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self.__dict__ and not name.startswith("_"):
+            raise AttributeError(f"{name} cannot be replaced: make another {type(self).__name__}")
+        super().__setattr__(name, value)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        freeze_all(state)
+
+
 def check_out(out: Any, dtype: npt.DTypeLike, shape: tuple[Optional[int], ...], name: str) -> None:
     """UsageError unless results of a type and shape can be written to an array; None is any size."""
     wanted = (

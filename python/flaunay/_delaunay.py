@@ -35,6 +35,9 @@ Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
 _Answers = TypeVar("_Answers", Indices, Doubles)
 
+# Of values and of results in a call that interpolates: 512 MiB of each.
+_MOST_NUMBERS = 1 << 26
+
 
 def _check_points(indices: Indices, n: int, name: str) -> None:
     """UsageError unless there are n, each the index of one of n points."""
@@ -529,9 +532,11 @@ class Delaunay(TrianglePlots, TriangleExports):
         trailing = given.shape[1:]
         if out is not None:
             check_out(out, np.float64, shape + trailing, "out")
-        # One call for each number that a point has.
-        columns = np.ascontiguousarray(given.reshape(self.npoints, math.prod(trailing)).T)
-        result = np.empty((len(queries), len(columns)))
-        for k, column in enumerate(columns):
-            result[:, k] = _answers(partial(self._locator.interpolate, column), queries, np.nan)
+        rows = given.reshape(self.npoints, math.prod(trailing))
+        result = np.empty((len(queries), rows.shape[1]))
+        # Each call locates the queries, so that it takes all columns for which a device may have memory.
+        step = max(1, _MOST_NUMBERS // max(1, len(queries), len(rows)))
+        for k in range(0, rows.shape[1], step):
+            ask = partial(self._locator.interpolate, rows[:, k : k + step], "linear", np.nan)
+            result[:, k : k + step] = _answers(ask, queries, np.nan)
         return _given(result.reshape(shape + trailing), out)

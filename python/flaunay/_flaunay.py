@@ -1023,22 +1023,22 @@ class Locator(_Locator):
                 )
             )
 
-    def _answers(self, ask: Any, queries: _Doubles, dtype: np.dtype[Any], *given: int) -> Any:
-        """One answer for each query. given: what the function takes before the queries."""
+    def _answers(self, ask: Any, queries: _Doubles) -> _Indices:
+        """One answer for each query."""
         m = _count_points(queries)
         queries = _as_doubles(queries)
-        answers = np.empty(m, dtype)
+        answers = np.empty(m, _INT32)
         with self._triangulator.turn:
-            check(ask(self.pointer, *given, _address_of(queries), m, None, 0, _address_of(answers)))
+            check(ask(self.pointer, _address_of(queries), m, None, 0, _address_of(answers)))
         return answers
 
     def locate(self, queries: _Doubles) -> _Indices:
         """The triangle of each query; -1 outside of the hull."""
-        return cast(_Indices, self._answers(library.locator_locate, queries, _INT32))
+        return self._answers(library.locator_locate, queries)
 
     def nearest(self, queries: _Doubles) -> _Indices:
         """The point that is nearest to each query; -1 if there is none."""
-        return cast(_Indices, self._answers(library.locator_nearest, queries, _INT32))
+        return self._answers(library.locator_nearest, queries)
 
     def _check_rows(self, values: _Doubles) -> None:
         if len(values) != self._point_count:
@@ -1047,19 +1047,12 @@ class Locator(_Locator):
                 "triangulation"
             )
 
-    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
-        """The interpolated value at each query. values: one for each point."""
-        self._check_rows(values)
-        values = _as_doubles(values)
-        answers = self._answers(library.locator_interpolate, queries, _FLOAT64, _address_of(values))
-        return cast(_Doubles, answers)
-
-    def interpolate_with(
+    def interpolate(
         self,
         values: _Doubles,
-        queries: _Doubles,
         method: str,
         fill: float,
+        queries: _Doubles,
         gradients: Optional[_Doubles] = None,
     ) -> _Doubles:
         """A row of interpolated values at each query. values: a row of some for each point."""

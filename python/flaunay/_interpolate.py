@@ -8,7 +8,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import as_any, as_floats, check_memory, is_masked
+from flaunay._arrays import Fixed, as_any, as_floats, check_memory, frozen, is_masked
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 
@@ -40,19 +40,20 @@ def _as_coordinates(given: Any, name: str, may_be_flat: bool = False) -> Doubles
     return points
 
 
-def _as_fill(given: Any, is_complex: bool) -> complex:
-    """The number outside of the hull, complex if the values are."""
+def _as_fill(given: Any) -> complex:
+    """The number outside of the hull, complex if it is given so."""
     try:
         if is_masked(given):
             raise TypeError("it is masked")
         number = complex(given)
     except (TypeError, ValueError) as error:
         raise UsageError(f"fill_value must be a number, not {given!r}") from error
-    if is_complex:
-        return number
-    if np.iscomplexobj(given):
+    return number if np.iscomplexobj(given) else number.real
+
+
+def _check_fill(fill: complex, values: npt.NDArray[Any]) -> None:
+    if isinstance(fill, complex) and values.dtype.kind != "c":
         raise UsageError("fill_value is complex, but values are real")
-    return float(number.real)
 
 
 class _Scale:
@@ -80,15 +81,16 @@ class _Scale:
         return scaled
 
 
-class _Interpolator:
+class _Interpolator(Fixed):
     """Values at points, and a triangulation of these."""
 
     def __call__(self, *xi: Any) -> npt.NDArray[Any]:
         raise NotImplementedError
 
-    def __init__(
-        self, points: Points, values: npt.ArrayLike, rescale: bool, device: Optional[str]
-    ) -> None:
+    # The values, and what is computed from them. It is replaced as a whole: another thread may be reading it.
+    _data: tuple[npt.NDArray[Any], Any, Any]
+
+    def __init__(self, points: Points, rescale: bool, device: Optional[str]) -> None:
         if isinstance(points, Delaunay):
             if rescale:
                 raise UsageError("rescale needs points, not their triangulation")
@@ -105,13 +107,27 @@ class _Interpolator:
             self._scale = _Scale(coordinates, rescale)
             self.tri = Delaunay(self._scale(coordinates), device=device)
         self.points = self.tri.points
+
+    @property
+    def values(self) -> npt.NDArray[Any]:
+        """What the points have, read-only. Other values of as many points can be assigned."""
+        return self._data[0]
+
+    @values.setter
+    def values(self, values: npt.ArrayLike) -> None:
         check_memory(values, "values")
-        self.values = self._as_values(values)
-        if self.values.ndim == 0 or len(self.values) != self.tri.npoints:
+        array = self._as_values(values)
+        if array.ndim == 0 or len(array) != self.tri.npoints:
             raise UsageError(
-                f"values must have the shape ({self.tri.npoints}, ...), not {self.values.shape}: "
+                f"values must have the shape ({self.tri.npoints}, ...), not {array.shape}: "
                 "one row for each point"
             )
+        # A view, as the caller may go on writing to an array of its own.
+        self._data = (frozen(array.view()), *self._prepared(array))
+
+    def _prepared(self, values: npt.NDArray[Any]) -> tuple[Any, Any]:
+        """What is computed from values, once for all calls."""
+        return None, None
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
         array = as_any(values, "values")
@@ -149,43 +165,55 @@ class _Columns(_Interpolator):
         rescale: bool,
         device: Optional[str],
     ) -> None:
-        super().__init__(points, values, rescale, device)
-        self._is_complex = self.values.dtype.kind == "c"
-        self.fill_value = _as_fill(fill_value, self._is_complex)
-        rows = self.values.reshape(self.tri.npoints, -1) if self.values.size else None
-        if rows is None:
-            self._rows = np.empty((self.tri.npoints, 0))
-        elif self._is_complex:
-            # A further column is 0, but outside of the hull.
-            self._rows = np.concatenate(
-                [rows.real, rows.imag, np.zeros((self.tri.npoints, 1))], axis=1
-            )
-        else:
-            self._rows = np.ascontiguousarray(rows)
+        super().__init__(points, rescale, device)
+        self._fill = _as_fill(fill_value)
+        self.values = values
 
-    def _gradients(self) -> Optional[Doubles]:
+    @property
+    def fill_value(self) -> complex:
+        """The result outside of the hull. Another one can be assigned."""
+        return self._fill
+
+    @fill_value.setter
+    def fill_value(self, given: complex) -> None:
+        fill = _as_fill(given)
+        _check_fill(fill, self.values)
+        self._fill = fill
+
+    def _prepared(self, values: npt.NDArray[Any]) -> tuple[Doubles, Optional[Doubles]]:
+        """The numbers of each point in a row, and their gradients."""
+        _check_fill(self._fill, values)
+        n = self.tri.npoints
+        rows = values.reshape(n, -1) if values.size else np.empty((n, 0))
+        if rows.dtype.kind == "c":
+            # A further column is 0, but outside of the hull.
+            rows = np.concatenate([rows.real, rows.imag, np.zeros((n, 1))], axis=1)
+        rows = np.ascontiguousarray(rows)
+        return rows, self._gradients(values, rows)
+
+    def _gradients(self, values: npt.NDArray[Any], rows: Doubles) -> Optional[Doubles]:
         return None
 
     def __call__(self, *xi: Any) -> npt.NDArray[Any]:
         """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast."""
         queries, shape = self._queries(xi)
-        shape += self.values.shape[1:]
-        columns = self._rows.shape[1]
+        (values, numbers, gradients), fill_value = self._data, self._fill
+        is_complex = values.dtype.kind == "c"
+        shape += values.shape[1:]
+        columns = numbers.shape[1]
         if columns == 0 or len(queries) == 0:
-            return np.full(shape, self.fill_value, self.values.dtype)
+            return np.full(shape, fill_value, values.dtype)
         queries, are_bad = self._finite(queries)
-        fill = np.nan if self._is_complex else self.fill_value.real
-        rows = self.tri._locator.interpolate_with(
-            self._rows, queries, self._method, fill, self._gradients()
-        )
+        fill = np.nan if is_complex else fill_value.real
+        rows = self.tri._locator.interpolate(numbers, self._method, fill, queries, gradients)
         if are_bad is not None:
             rows[are_bad] = fill
-        if not self._is_complex:
+        if not is_complex:
             return rows.reshape(shape)
         k = columns // 2
         result = np.empty((len(rows), k), np.complex128)
         result.real, result.imag = rows[:, :k], rows[:, k : 2 * k]
-        result[np.isnan(rows[:, -1])] = self.fill_value
+        result[np.isnan(rows[:, -1])] = fill_value
         return result.reshape(shape)
 
 
@@ -209,6 +237,10 @@ class LinearInterpolator(_Columns):
     ----------
     tri : Delaunay
         The triangulation, of the rescaled points if they are rescaled.
+    values : ndarray, shape (npoints, ...)
+        What the points have. The array is read-only; others can be assigned, of any shape (npoints, ...).
+    fill_value : float or complex
+        The result outside of the hull; another one can be assigned.
 
     Raises
     ------
@@ -217,6 +249,8 @@ class LinearInterpolator(_Columns):
 
     Notes
     -----
+    Values of float64 are not copied: do not change an array that an interpolator has.
+
     Queries are located exactly, and at a point the result is exactly its value. A query that is not
     finite is outside. Points on one line have no triangles, so that all queries are outside; SciPy
     raises an exception for them.
@@ -272,6 +306,9 @@ class CloughTocherInterpolator(_Columns):
     ----------
     tri : Delaunay
         The triangulation, of the rescaled points if they are rescaled.
+    values, fill_value
+        As of `LinearInterpolator`. For values that are assigned, gradients are estimated; if they were
+        given, no others can be assigned.
     grad : ndarray, shape (npoints, ..., 2)
         The gradients, NaN at points that another one represents and on one line.
 
@@ -311,7 +348,6 @@ class CloughTocherInterpolator(_Columns):
         *,
         device: Optional[str] = None,
     ) -> None:
-        super().__init__(points, values, fill_value, rescale, device)
         if not tol > 0:
             raise UsageError(f"tol must be greater than 0, not {tol}")
         if maxiter < 1:
@@ -322,39 +358,45 @@ class CloughTocherInterpolator(_Columns):
                     f"{maxiter} iterations do not reach the tolerance of gradients, {tol}",
                     stacklevel=2,
                 )
-            self._slopes = self._estimated(tol, maxiter)
-        else:
-            self._slopes = self._given(gradients)
+        self._tolerance, self._iterations = tol, maxiter
+        self._are_estimated, self._given = gradients is None, gradients
+        super().__init__(points, values, fill_value, rescale, device)
+        self._given = None
 
-    def _estimated(self, tol: float, maxiter: int) -> Doubles:
-        if self._rows.size == 0:
-            return np.empty((*self._rows.shape, 2))
-        return self.tri._locator.gradients(self._rows, tol, maxiter)
+    def _gradients(self, values: npt.NDArray[Any], rows: Doubles) -> Doubles:
+        if not self._are_estimated:
+            return self._given_for(values)
+        if rows.size == 0:
+            return np.empty((*rows.shape, 2))
+        return self.tri._locator.gradients(rows, self._tolerance, self._iterations)
 
-    def _given(self, gradients: npt.ArrayLike) -> Doubles:
-        wanted = (*self.values.shape, 2)
+    def _given_for(self, values: npt.NDArray[Any]) -> Doubles:
+        gradients = self._given
+        if gradients is None:
+            raise UsageError(
+                "gradients were given for other values: make another CloughTocherInterpolator"
+            )
+        wanted = (*values.shape, 2)
         check_memory(gradients, "gradients")
         given = self._as_values(gradients)
         if given.shape != wanted:
             raise UsageError(f"gradients must have the shape {wanted}, not {given.shape}")
-        if given.dtype.kind == "c" and not self._is_complex:
+        if given.dtype.kind == "c" and values.dtype.kind != "c":
             raise UsageError("gradients are complex, but values are real")
         n = self.tri.npoints
         rows = given.reshape(n, -1, 2) if given.size else np.empty((n, 0, 2))
-        if not self._is_complex or self.values.size == 0:
+        if values.dtype.kind != "c" or values.size == 0:
             return np.ascontiguousarray(rows)
         return np.concatenate([rows.real, rows.imag, np.zeros((n, 1, 2))], axis=1)
 
-    def _gradients(self) -> Optional[Doubles]:
-        return self._slopes
-
     @property
     def grad(self) -> npt.NDArray[Any]:
-        shape = (*self.values.shape, 2)
-        if not self._is_complex or self.values.size == 0:
-            return self._slopes.reshape(shape).astype(self.values.dtype)
-        k = self._rows.shape[1] // 2
-        slopes: npt.NDArray[Any] = self._slopes[:, :k] + 1j * self._slopes[:, k : 2 * k]
+        values, rows, gradients = self._data
+        shape = (*values.shape, 2)
+        if values.dtype.kind != "c" or values.size == 0:
+            return np.asarray(gradients.reshape(shape).astype(values.dtype))
+        k = rows.shape[1] // 2
+        slopes: npt.NDArray[Any] = gradients[:, :k] + 1j * gradients[:, k : 2 * k]
         return slopes.reshape(shape)
 
 
@@ -399,7 +441,8 @@ class NearestInterpolator(_Interpolator):
         *,
         device: Optional[str] = None,
     ) -> None:
-        super().__init__(points, values, rescale, device)
+        super().__init__(points, rescale, device)
+        self.values = values
         if self.tri.npoints == 0:
             raise UsageError("there are no points, so none is nearest")
 
@@ -411,12 +454,13 @@ class NearestInterpolator(_Interpolator):
         """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast."""
         queries, shape = self._queries(xi)
         queries, are_bad = self._finite(queries)
-        result: npt.NDArray[Any] = self.values[self.tri._locator.nearest(queries)]
+        values = self.values
+        result: npt.NDArray[Any] = values[self.tri._locator.nearest(queries)]
         if are_bad is not None:
             if result.dtype.kind not in "fc":
                 raise UsageError(f"xi are not finite, and values of {result.dtype} have no NaN")
             result[are_bad] = np.nan
-        return result.reshape(shape + self.values.shape[1:])
+        return result.reshape(shape + values.shape[1:])
 
 
 def griddata(

@@ -473,7 +473,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "locator_destroy": (None, [c_void_p]),
     "locator_locate": (c_int, _ANSWER),
     "locator_nearest": (c_int, _ANSWER),
-    "locator_interpolate": (c_int, [c_void_p, *_ANSWER]),
     "locator_interpolate_with": (
         c_int,
         [

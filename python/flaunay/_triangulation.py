@@ -80,7 +80,7 @@ def arrays_of_mesh(
             raise UsageError(f"mode {mode} runs on the host and takes no device")
         doubles = np.asarray(coordinates, dtype=np.float64)
         return _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
-    triangulator = _triangulators.of_device(device)
+    triangulator = _triangulators.of_device(device, may_be_host=mode == "blocks")
     return triangulator.triangulate(coordinates, offsets, mode, wanted)
 
 

@@ -207,3 +207,10 @@ def test_other_radii_are_refused(alpha):
 def test_options_are_for_points():
     with pytest.raises(flaunay.UsageError, match="device is for points"):
         flaunay.alpha_shape(flaunay.Delaunay(SQUARE), 1, device="host")
+
+
+def test_another_radius_is_another_shape():
+    shape = flaunay.alpha_shape(SQUARE, 1)
+    with pytest.raises(AttributeError, match="alpha cannot be replaced"):
+        shape.alpha = 2
+    assert shape.alpha == 1

@@ -226,3 +226,59 @@ def test_points_that_cannot_be_rescaled_are_refused(kind):
     # Their extent overflows, and all would get the same x.
     with pytest.raises(flaunay.InputError, match="too large to be rescaled"):
         kind([[-1e308, 0], [1e308, 0], [0, 1]], [1, 2, 3], rescale=True)
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS)
+@pytest.mark.parametrize("first, second", [((), (2,)), ((2,), ())])
+def test_values_can_be_assigned(scattered, kind, first, second):
+    points, values, queries = scattered
+    before = np.multiply.outer(values, np.ones(first))
+    for factor in [3.0, 2 - 1j, 1.0]:
+        after = np.multiply.outer(values**2, np.full(second, factor))
+        interpolator = kind(points, before)
+        interpolator(queries)
+        interpolator.values = after
+        expected = kind(points, after)
+        for changed in interpolator, pickle.loads(pickle.dumps(interpolator)):
+            assert changed(queries).tobytes() == expected(queries).tobytes()
+            np.testing.assert_array_equal(changed.values, after)
+            with pytest.raises(ValueError, match="read-only"):
+                changed.values[0] = 1
+        if kind is flaunay.CloughTocherInterpolator:
+            assert interpolator.grad.tobytes() == expected.grad.tobytes()
+        before = after
+        first, second = second, first
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS)
+def test_what_cannot_be_assigned_is_refused(kind):
+    interpolator = kind(CORNERS, [1, 2, 3])
+    for wrong in [1, 2], 1, np.ma.masked_array([1, 2, 3], mask=[0, 1, 0]):
+        with pytest.raises(flaunay.UsageError, match="values"):
+            interpolator.values = wrong
+    for name in "points", "tri":
+        with pytest.raises(AttributeError, match=f"{name} cannot be replaced"):
+            setattr(interpolator, name, getattr(interpolator, name))
+    assert interpolator([[4, 0]]) == [2]
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS[:3])
+def test_what_fills_can_be_assigned(kind):
+    interpolator = kind(CORNERS, [1, 2, 3])
+    interpolator.fill_value = 7
+    assert interpolator([[9, 9]]) == [7]
+    with pytest.raises(flaunay.UsageError, match="fill_value is complex"):
+        interpolator.fill_value = 2j
+    interpolator.values = [1j, 2, 3]
+    interpolator.fill_value = 2j
+    assert interpolator([[9, 9]]) == [2j]
+    with pytest.raises(flaunay.UsageError, match="fill_value is complex"):
+        interpolator.values = [1, 2, 3]
+    assert interpolator([[0, 0]]) == [1j]
+
+
+def test_given_gradients_are_for_the_values_they_came_with():
+    interpolator = flaunay.CloughTocherInterpolator(CORNERS, [1, 2, 3], gradients=np.ones((3, 2)))
+    with pytest.raises(flaunay.UsageError, match="gradients were given for other values"):
+        interpolator.values = [1, 2, 4]
+    assert interpolator([[0, 4]]) == [3] and (interpolator.grad == 1).all()

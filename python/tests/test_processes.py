@@ -2,6 +2,8 @@
 
 import multiprocessing
 import os
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -84,3 +86,60 @@ def test_a_fork_while_another_thread_is_at_work():
 
 def check_and_exit(expected):
     assert are_same(everything_on_the_host(1), expected)
+
+
+# Prints what became of each call in a forked child of its own, and ends there.
+FORKS = """
+import os, signal, sys
+import numpy as np
+import flaunay
+
+points = np.random.default_rng(1).random((300, 2))
+tri = flaunay.Delaunay(points, device=sys.argv[1] or None) if sys.argv[1] != "none" else None
+expected = flaunay.triangulate(points, mode="dwyer").hull
+if tri is not None:
+    tri.nearest(points)
+calls = {
+    "unnamed": lambda: flaunay.triangulate(points).hull,
+    "host": lambda: flaunay.triangulate(points, device="host").hull,
+    "dwyer": lambda: flaunay.triangulate(points, mode="dwyer").hull,
+    "chunks": lambda: flaunay.triangulate_chunks(points, hull=True, chunk_points=100).hull,
+    "voronoi": lambda: flaunay.Voronoi(points).delaunay.hull,
+    "inherited": lambda: tri.hull[tri.nearest(points[tri.hull]) == tri.hull] if tri else expected,
+    "named": lambda: flaunay.triangulate(points, device="#0").hull,
+    "flattened": lambda: flaunay.triangulate(points, mode="flattened").hull,
+    "chunks named": lambda: flaunay.triangulate_chunks(points, hull=True, devices="#0").hull,
+    "devices": lambda: expected if flaunay.devices() else None,
+}
+for name, call in calls.items():
+    child = os.fork()
+    if child == 0:
+        signal.alarm(100)
+        try:
+            ending = 0 if np.array_equal(call(), expected) else 1
+        except flaunay.DeviceError as error:
+            ending = 2 if "forked" in str(error) else 3
+        except BaseException:
+            ending = 4
+        os._exit(ending)
+    print(name, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), sep=":")
+"""
+ON_DEVICES = {"named", "flattened", "chunks named", "devices"}
+
+
+@pytest.mark.parametrize(
+    "device, fail",
+    [("none", set()), ("host", set()), ("", ON_DEVICES), ("#0", ON_DEVICES | {"inherited"})],
+)
+def test_what_forked_children_can_do(device, fail):
+    environment = {key: value for key, value in os.environ.items() if key != "FLAUNAY_DEVICE"}
+    printed = subprocess.run(
+        [sys.executable, "-c", FORKS, device],
+        env=environment,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    endings = dict(line.rsplit(":", 1) for line in printed.splitlines())
+    assert len(endings) == 10
+    assert endings == {name: "2" if name in fail else "0" for name in endings}

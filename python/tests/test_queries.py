@@ -80,6 +80,27 @@ def test_interpolation_is_that_of_scipy(points, queries, random):
     np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12)
 
 
+@pytest.mark.parametrize("most, wanted_calls", [(1 << 26, 1), (5000, 3), (1, 24)])
+def test_columns_are_interpolated_together(
+    points, queries, random, monkeypatch, most, wanted_calls
+):
+    values = random.random((len(points), 4, 6))
+    values[::50] = np.nan
+    tri = flaunay.Delaunay(points)
+    expected = [tri.interpolate(column, queries) for column in values.reshape(-1, 24).T]
+    calls = []
+    ask = flaunay._flaunay.Locator.interpolate
+    monkeypatch.setattr(flaunay._delaunay, "_MOST_NUMBERS", most)
+    monkeypatch.setattr(
+        flaunay._flaunay.Locator, "interpolate", lambda *all: calls.append(1) or ask(*all)
+    )
+    found = tri.interpolate(values, queries)
+    assert found.tobytes() == np.stack(expected, axis=1).tobytes()
+    assert len(calls) == wanted_calls
+    queries[::70] = np.inf
+    assert np.isnan(tri.interpolate(values, queries)[::70]).all()
+
+
 def test_interpolation_at_the_points_is_exact(points, random):
     values = random.random(len(points))
     assert np.array_equal(flaunay.Delaunay(points).interpolate(values, points), values)
