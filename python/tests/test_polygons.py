@@ -298,7 +298,7 @@ def test_parts_in_the_layout_of_geoarrow():
     with pytest.raises(flaunay.UsageError, match="a polygon does not begin with a part"):
         flaunay.polygons(coordinates, rings, [0, 1, len(rings) - 1], **options)
     with pytest.raises(flaunay.UsageError, match="part_offsets end with 2, but there are 6 rings"):
-        flaunay.polygons(coordinates, rings, part_offsets=[0, 2])
+        flaunay.polygons(coordinates, rings, [0, 6], part_offsets=[0, 2])
 
 
 def test_a_map_has_common_borders():
