@@ -1,5 +1,6 @@
 #include "host/pocl.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -10,12 +11,12 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <system_error>
 #include <thread>
 
 #include "host/error.hpp"
+#include "host/private_folder.hpp"
 #include "host/system_memory.hpp"
 
 namespace flaunay::host {
@@ -101,7 +102,10 @@ void require_pocl_compiler() {
 
 void note_pocl_ended_well() noexcept {
   try {
-    std::ofstream(pocl_cache_folder() + kEndedWell);
+    // Another user's link of this name is not followed.
+    const int note = ::open((pocl_cache_folder() + kEndedWell).c_str(),
+                            O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    if (note >= 0) close(note);
   } catch (...) {
     // Then the next process looks.
   }
@@ -117,9 +121,9 @@ std::string pocl_cache_folder() {
 }
 
 void require_cache_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw_cache_error(folder, error.message());
+  if (const int error = make_private_folder(folder); error != 0) {
+    throw_cache_error(folder, std::strerror(error));
+  }
   std::string probe = folder + "/flaunay-XXXXXX";
   const int file = mkstemp(probe.data());
   if (file < 0) throw_cache_error(folder, std::strerror(errno));

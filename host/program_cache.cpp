@@ -1,19 +1,23 @@
 #include "host/program_cache.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <boost/uuid/detail/sha1.hpp>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <mutex>
+#include <random>
 #include <utility>
 #include <vector>
+
+#include "host/private_folder.hpp"
 
 namespace flaunay::host {
 namespace {
@@ -57,42 +61,126 @@ std::optional<std::string> unpacked(const std::string& content, const std::strin
   return content.substr(begin + key.size(), lengths[1]);
 }
 
+std::string name_of(const std::string& key) { return hash_of(key) + kEnding; }
+
+// Of a file or folder.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  explicit operator bool() const { return number_ >= 0; }
+  int number() const { return number_; }
+  bool close() {
+    const int number = std::exchange(number_, -1);
+    return number < 0 || ::close(number) == 0;
+  }
+
+ private:
+  int number_;
+};
+
+// Reads or writes all bytes: `move` is read or write.
+template <typename Move, typename Byte>
+bool moved_all(Move move, int file, Byte* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t moved = move(file, bytes, count);
+    if (moved < 0 && errno == EINTR) continue;
+    if (moved <= 0) return false;
+    bytes += moved;
+    count -= static_cast<std::size_t>(moved);
+  }
+  return true;
+}
+
+// What the user is still to be told.
+struct Note {
+  std::mutex mutex;
+  bool is_made = false;
+  std::string text;
+};
+Note& the_note() {
+  static Note note;
+  return note;
+}
+
+void make_note(const std::string& folder, const std::string& reason) {
+  Note& note = the_note();
+  const std::lock_guard<std::mutex> lock(note.mutex);
+  if (note.is_made) return;
+  note.is_made = true;
+  note.text = fmt::format(
+      "compiled kernels are not kept in {}: {}; mend that, or name another folder in FLAUNAY_CACHE_DIR",
+      folder, reason);
+}
+
 }  // namespace
+
+void add_cache_note(std::string& note) {
+  Note& made = the_note();
+  const std::lock_guard<std::mutex> lock(made.mutex);
+  if (made.text.empty()) return;
+  note += (note.empty() ? "" : "; ") + std::exchange(made.text, "");
+}
 
 ProgramCache::ProgramCache(std::string folder, std::size_t most_bytes)
     : folder_(std::move(folder)), most_bytes_(most_bytes) {}
 
-std::string ProgramCache::path_of(const std::string& key) const {
-  return folder_ + "/" + hash_of(key) + kEnding;
+// The folder's descriptor, with which files are opened: whatever has its name by then, this is what was
+// checked. -1 if it is not there or not to be used.
+int ProgramCache::opened() const {
+  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  struct stat status {};
+  if (folder < 0 || ::fstat(folder, &status) != 0) {
+    if (errno != ENOENT) make_note(folder_, std::strerror(errno));
+    return folder;
+  }
+  const std::string reason = who_else_writes(status);
+  if (reason.empty()) return folder;
+  make_note(folder_, reason);
+  ::close(folder);
+  return -1;
 }
 
 std::optional<std::string> ProgramCache::load(const std::string& key) const {
   if (folder_.empty()) return {};
-  std::ifstream file(path_of(key), std::ios::binary);
-  if (!file) return {};
-  const std::string content{std::istreambuf_iterator<char>(file), {}};
+  const Descriptor folder(opened());
+  if (!folder) return {};
+  // Without waiting for the writer of a FIFO.
+  const Descriptor file(::openat(folder.number(), name_of(key).c_str(),
+                                 O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  struct stat status {};
+  if (!file || ::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
+  const auto size = static_cast<std::uintmax_t>(status.st_size);
+  if (size > most_bytes_ || !who_else_writes(status).empty()) return {};
+  std::string content(size, '\0');
+  if (!moved_all(::read, file.number(), content.data(), content.size())) return {};
   return unpacked(content, key);
 }
 
 void ProgramCache::store(const std::string& key, const std::string& program) const {
-  if (folder_.empty()) return;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  const std::string path = path_of(key);
-  static std::atomic<unsigned> number{0};
-  const std::string unfinished = fmt::format("{}.{}-{}.tmp", path, getpid(), number++);
-  {
-    std::ofstream file(unfinished, std::ios::binary);
-    const std::string content = packed(key, program);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    if (!file) {
-      fs::remove(unfinished, error);
-      return;
-    }
+  const std::string content = packed(key, program);
+  if (folder_.empty() || content.size() > most_bytes_) return;
+  if (const int error = make_private_folder(folder_); error != 0) {
+    make_note(folder_, std::strerror(error));
+    return;
   }
-  fs::rename(unfinished, path, error);
-  if (error) fs::remove(unfinished, error);
+  const Descriptor folder(opened());
+  if (!folder) return;
+  std::random_device random;
+  const std::string name = name_of(key),
+                    unfinished = fmt::format("{}.{:08x}{:08x}.tmp", name, random(), random());
+  Descriptor file(::openat(folder.number(), unfinished.c_str(),
+                           O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR));
+  if (!file) return;
+  const bool is_written = moved_all(::write, file.number(), content.data(), content.size());
+  if (!file.close() || !is_written ||
+      ::renameat(folder.number(), unfinished.c_str(), folder.number(), name.c_str()) != 0) {
+    ::unlinkat(folder.number(), unfinished.c_str(), 0);
+    return;
+  }
   remove_oldest();
 }
 

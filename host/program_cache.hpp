@@ -10,10 +10,13 @@ namespace flaunay::host {
 /// A folder of compiled programs, each in a file that is named by the hash of its key. Several processes may
 /// use a folder at the same time. Nothing here throws: a folder that cannot be used and a file that is
 /// damaged are as if they were not there.
+///
+/// Drivers execute programs and are no match for damaged ones. So the folder must belong to the user, and
+/// nobody else may be able to write to it or to a file that is read; see add_cache_note.
 class ProgramCache {
  public:
-  /// folder: made when a program is stored; empty: nothing is kept. most_bytes: when programs take more,
-  /// those that were stored first are removed.
+  /// folder: made when a program is stored, for the user alone; empty: nothing is kept. most_bytes: when
+  /// programs take more, those that were stored first are removed.
   explicit ProgramCache(std::string folder, std::size_t most_bytes = std::size_t{64} << 20);
 
   /// The program that was stored with this key; nothing if there is none.
@@ -24,12 +27,15 @@ class ProgramCache {
   const std::string& folder() const { return folder_; }
 
  private:
-  std::string path_of(const std::string& key) const;
+  int opened() const;
   void remove_oldest() const;
 
   std::string folder_;
   std::size_t most_bytes_;
 };
+
+/// Appends to a note for the user why a folder is not used, once per process.
+void add_cache_note(std::string& note);
 
 /// The folder of the cache: the environment variable FLAUNAY_CACHE_DIR if it is set ("" for no cache), else
 /// flaunay in XDG_CACHE_HOME or in ~/.cache; empty if none of them is set.

@@ -883,6 +883,31 @@ TEST_F(CommandTriangulateTest, StatisticsAreComplete) {
   EXPECT_GT(stats["kernels"][0].value("launches", 0), 0);
 }
 
+TEST_F(CommandTriangulateTest, ACacheThatOthersCanWriteToIsSaidOnce) {
+  const std::string points = write("points.xy", "0 0\n4 0\n4 3\n0 4\n1 1\n");
+  const std::string map = write("map.poly", "4 2 0 0\n0 0 0\n1 4 0\n2 4 3\n3 0 4\n1 0\n0 0 2\n0\n");
+  fs::create_directory(path("cache"));
+  const auto notes = [&](Arguments arguments) {
+    arguments.insert(arguments.end(), {"--device", "#0"});
+    const std::string out = run_well(arguments, {{"FLAUNAY_CACHE_DIR", path("cache")}}).out;
+    const std::string line = "note: compiled kernels are not kept in " + path("cache") + ": its mode 0777";
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = out.find(line, at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  const std::vector<Arguments> runs = {
+      {"triangulate", points},
+      {"triangulate", points, "--mode", "flattened"},
+      {"triangulate", points, "--chunk-points", "2", "--stats", path("s.json")},
+      {"triangulate", map}};
+  fs::permissions(path("cache"), fs::perms::all);
+  for (const Arguments& arguments : runs) EXPECT_EQ(notes(arguments), 1U) << arguments.back();
+  EXPECT_EQ(nlohmann::json::parse(contents(path("s.json")))["chunks"].value("host_points", -1), 0);
+  EXPECT_TRUE(fs::is_empty(path("cache")));
+  fs::permissions(path("cache"), fs::perms::owner_all);
+  for (const Arguments& arguments : runs) EXPECT_EQ(notes(arguments), 0U) << arguments.back();
+}
+
 TEST_F(CommandTriangulateTest, TimesAddUpAndCompilingIsNoneOfThem) {
   // A new cache, so that everything is compiled.
   const Environment environment = {{"POCL_CACHE_DIR", path("cache")}};

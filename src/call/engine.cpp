@@ -10,6 +10,7 @@
 #include "call/device_info.hpp"
 #include "call/self_test.hpp"
 #include "host/device.hpp"
+#include "host/program_cache.hpp"
 #include "shared/limits.h"
 #include "shared/records.h"
 #include "tuning/tuning.hpp"
@@ -161,6 +162,7 @@ void Engine::write_accounts(Statistics& statistics) {
   statistics.bytes_to_host = runtime.bytes_to_host();
   statistics.device_allocations = allocations() - allocations_before_;
   statistics.build_seconds = runtime.build_seconds();
+  host::add_cache_note(statistics.note);
   for (const auto& [name, time] : runtime.kernel_times()) {
     statistics.kernels.push_back({name, time.launches, time.seconds});
   }

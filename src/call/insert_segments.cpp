@@ -48,7 +48,9 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
   constrained::Result result =
       constrained::constrain(engine.runtime, coordinates, offsets, delaunay, segments, options.halfedges);
   Statistics step;
+  step.note = std::move(delaunay.statistics.note);
   engine.write_accounts(step);
+  delaunay.statistics.note = std::move(step.note);
   add(step, delaunay.statistics);
   return result;
 }
@@ -67,7 +69,7 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
     return insert_on(engine, coordinates, offsets, delaunay, segments, options);
   } catch (const geometry::TooWideForFixedPoint& error) {
     Engine& other = self.with_doubles(engine);
-    if (delaunay.statistics.note.empty()) {
+    if (delaunay.statistics.host_points == 0) {
       add_note(engine, other, error.reason(), "segments inserted", delaunay.statistics);
     }
     return insert_on(other, coordinates, offsets, delaunay, segments, options);

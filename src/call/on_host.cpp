@@ -7,6 +7,7 @@ namespace flaunay::call {
 void add_note(const Engine& asked, const Engine& used, const std::string& what, const std::string& done,
               Statistics& statistics) {
   if (&asked == &used || !used.runtime.is_native()) return;
+  statistics.host_points = statistics.points;
   statistics.note += fmt::format("{}{} has no double precision (fp64) for {}: {} on the host",
                                  statistics.note.empty() ? "" : "; ", asked.runtime.name(), what, done);
 }

@@ -302,8 +302,11 @@ class Round {
     if (is_first_) call_.vertices += chunk.points().size() - made.duplicates;
     statistics_.duplicates += made.duplicates;
     statistics_.undecided += made.undecided;
-    if (!made.note.empty()) statistics_.host_points += chunk.points().size();
-    if (statistics_.note.empty()) statistics_.note = made.note;
+    const bool is_known = made.host_points > 0 && statistics_.host_points > 0;
+    if (!made.note.empty() && !is_known) {
+      statistics_.note += (statistics_.note.empty() ? "" : "; ") + made.note;
+    }
+    statistics_.host_points += made.host_points;
     statistics_.device_points[solver] += chunk.points().size();
     result_.points += chunk.points().size();
     result_.triangles += chunk.triangles();

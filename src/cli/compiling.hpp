@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "cli/progress.hpp"
+#include "cli/report.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::cli {
@@ -25,6 +26,11 @@ double compile_kernels(std::size_t points, research::Mode mode, const Call& call
   const Stopwatch stopwatch;
   call(std::min(points, enough));
   return stopwatch.seconds();
+}
+
+/// To be called with what `call` has made. What was left to the host, the next call says, too.
+inline void note_compiling(const Triangulation& made, RunFacts& facts) {
+  if (made.statistics.host_points == 0) facts.compiling_note = made.statistics.note;
 }
 
 }  // namespace flaunay::cli

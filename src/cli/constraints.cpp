@@ -340,8 +340,9 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   Triangulator triangulator(work.device);
   facts.opening_seconds = stopwatch.restart();
   const double* const coordinates = map.points.coordinates.data();
-  facts.compiling_seconds = compile_kernels(map.points.size(), Mode::blocks,
-                                            [&](std::size_t n) { triangulator.triangulate(coordinates, n); });
+  facts.compiling_seconds = compile_kernels(map.points.size(), Mode::blocks, [&](std::size_t n) {
+    note_compiling(triangulator.triangulate(coordinates, n), facts);
+  });
 
   ConstrainedTriangulation mesh = naming_files(
       {{"segment", request.segments.empty() ? work.input : request.segments},
@@ -357,8 +358,8 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   if (!work.quiet) {
     std::string text = work.profile ? kernel_table(mesh.statistics) : "";
     for (const std::string& note : map.notes) text += "note: " + note + "\n";
-    print(text + empty_note(mesh, request) + host_note(mesh.statistics.note) +
-          summary(mesh.statistics, facts));
+    print(text + empty_note(mesh, request) + host_note(facts.compiling_note) +
+          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
   }
   return kSuccess;
 }

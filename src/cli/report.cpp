@@ -242,7 +242,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["flaunay"] = version();
   // The keys are always the same; values that a mode does not have are null.
   json["device"] = statistics.device;
-  json["note"] = text_or_null(statistics.note);
+  json["note"] = text_or_null(statistics.note.empty() ? facts.compiling_note : statistics.note);
   json["mode"] = facts.mode;
   json["cut"] = text_or_null(facts.cut);
   json["hull_variant"] = text_or_null(facts.dividing_paths);

@@ -28,6 +28,7 @@ struct RunFacts {
   double reading_seconds = 0;
   double opening_seconds = 0;    ///< choosing the device and testing it, which compiles a few kernels
   double compiling_seconds = 0;  ///< the call of compile_kernels
+  std::string compiling_note;    ///< of that call, if it is about compiling
   double solving_seconds = 0;    ///< solving regions that no other program has solved
   double writing_seconds = 0;
 };

@@ -180,7 +180,7 @@ int triangulate(const TriangulateRequest& request) {
     research::Options silent = options;
     silent.progress = nullptr;
     facts.compiling_seconds = compile_kernels(points.size(), request.mode, [&](std::size_t n) {
-      research::triangulate(*triangulator, points.coordinates.data(), n, silent);
+      note_compiling(research::triangulate(*triangulator, points.coordinates.data(), n, silent), facts);
     });
     mesh = research::triangulate(*triangulator, points.coordinates.data(), points.size(), options);
   }
@@ -189,8 +189,8 @@ int triangulate(const TriangulateRequest& request) {
 
   if (!request.quiet) {
     print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
-          degenerate_note(mesh.statistics) + host_note(mesh.statistics.note) +
-          summary(mesh.statistics, facts));
+          degenerate_note(mesh.statistics) + host_note(facts.compiling_note) +
+          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
   }
   return kSuccess;
 }

@@ -220,7 +220,7 @@ class Run {
       sums[kWorkers] = 1;
       sums[kDuplicates] = static_cast<std::int64_t>(mesh.statistics.duplicates);
       sums[kUndecided] = static_cast<std::int64_t>(mesh.statistics.undecided);
-      if (!mesh.statistics.note.empty()) sums[kOnHost] = points;
+      sums[kOnHost] = static_cast<std::int64_t>(mesh.statistics.host_points);
       const FinishedChunk finished(threads_, std::move(own), std::move(mesh), {rectangle(), frame_.all},
                                    frame_.scaling);
       sums[kTriangles] = static_cast<std::int64_t>(finished.triangles());

@@ -2,8 +2,10 @@
 #include "host/pocl.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "tests/host/support.hpp"
@@ -44,6 +46,34 @@ TEST(SmallPocl, AFolderThatCannotBeUsedIsNamed) {
     const std::string message = message_of([&] { require_cache_folder(wrong); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, wrong) && contains(message, "POCL_CACHE_DIR")) << message;
   }
+}
+
+TEST(SmallPocl, ANewFolderIsTheUsersAlone) {
+  const TemporaryFolder folder;
+  const mode_t before = umask(0);
+  require_cache_folder(folder.path() + "/new/folder");
+  umask(before);
+  for (const char* made : {"/new", "/new/folder"}) {
+    struct stat status {};
+    ASSERT_EQ(stat((folder.path() + made).c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, 0700U) << made;
+  }
+}
+
+TEST(SmallPocl, APlantedLinkIsNotFollowed) {
+  const TemporaryFolder folder, elsewhere;
+  const ScopedEnvironment own("POCL_CACHE_DIR", folder.path().c_str());
+  note_pocl_ended_well();
+  ASSERT_FALSE(std::filesystem::is_empty(folder.path()));
+  const auto note = std::filesystem::directory_iterator(folder.path())->path();
+  elsewhere.write("precious", "precious");
+  for (const char* target : {"precious", "nothing"}) {
+    std::filesystem::remove(note);
+    std::filesystem::create_symlink(elsewhere.path() + "/" + target, note);
+    note_pocl_ended_well();
+  }
+  EXPECT_EQ(std::filesystem::file_size(elsewhere.path() + "/precious"), 8U);
+  EXPECT_FALSE(std::filesystem::exists(elsewhere.path() + "/nothing"));
 }
 
 TEST(SmallPocl, TheFolderIsThatOfTheEnvironment) {

@@ -2,6 +2,7 @@
 #include "host/program_cache.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -82,6 +83,99 @@ TEST(SmallProgramCache, IgnoresDamagedAndForeignFiles) {
   EXPECT_EQ(cache.load("key"), "program");
 }
 
+mode_t mode_of(const fs::path& path) {
+  struct stat status {};
+  EXPECT_EQ(lstat(path.c_str(), &status), 0) << path;
+  return status.st_mode & 07777;
+}
+
+TEST(SmallProgramCache, IsTheUsersAloneWhateverTheUmask) {
+  const TemporaryFolder folder;
+  for (const mode_t mask : {0, 022, 077}) {
+    const fs::path made = fs::path(folder.path()) / std::to_string(mask);
+    const mode_t before = umask(mask);
+    ProgramCache(made / "cache").store("key", "program");
+    umask(before);
+    EXPECT_EQ(mode_of(made), 0700U);
+    EXPECT_EQ(mode_of(made / "cache"), 0700U);
+    EXPECT_EQ(mode_of(files_in(made / "cache").at(0)), 0600U);
+  }
+}
+
+TEST(SmallProgramCache, IsNotUsedIfOthersCanWriteToIt) {
+  const TemporaryFolder folder;
+  const ProgramCache cache(folder.path());
+  cache.store("key", "program");
+  const fs::path file = files_in(folder.path()).at(0);
+  for (const mode_t mode : {0777U, 01777U, 0770U, 0702U}) {
+    SCOPED_TRACE(mode);
+    ASSERT_EQ(chmod(folder.path().c_str(), mode), 0);
+    EXPECT_FALSE(cache.load("key"));
+    cache.store("other", "program");
+    EXPECT_EQ(files_in(folder.path()).size(), 1U);
+    EXPECT_EQ(mode_of(folder.path()), mode) << "not ours to change";
+    ASSERT_EQ(chmod(folder.path().c_str(), 0755), 0);
+    EXPECT_EQ(cache.load("key"), "program");
+    ASSERT_EQ(chmod(file.c_str(), mode), 0);
+    EXPECT_FALSE(cache.load("key"));
+    cache.store("key", "program");
+    EXPECT_EQ(cache.load("key"), "program");
+  }
+  constexpr uid_t kAnother = 12345;
+  if (chown(file.c_str(), kAnother, getegid()) != 0) GTEST_SKIP() << "files cannot be given away here";
+  EXPECT_FALSE(cache.load("key"));
+  cache.store("key", "program");
+  EXPECT_EQ(cache.load("key"), "program");
+  ASSERT_EQ(chown(folder.path().c_str(), kAnother, getegid()), 0);
+  EXPECT_FALSE(cache.load("key"));
+  cache.store("other", "program");
+  EXPECT_EQ(files_in(folder.path()).size(), 1U);
+}
+
+TEST(SmallProgramCache, LoadsFilesOnly) {
+  const TemporaryFolder folder, elsewhere;
+  const ProgramCache cache(folder.path());
+  cache.store("key", "program");
+  const fs::path file = files_in(folder.path()).at(0), moved = fs::path(elsewhere.path()) / "moved";
+  fs::rename(file, moved);
+  const auto expect_replaced = [&](const char* what) {
+    alarm(60);  // if it waits for a writer, or reads without end
+    EXPECT_FALSE(cache.load("key")) << what;
+    cache.store("key", "program");
+    EXPECT_EQ(cache.load("key"), "program") << what;
+    alarm(0);
+    fs::remove(file);
+  };
+  for (const fs::path& target : {moved, fs::path("/dev/zero"), fs::path(elsewhere.path()) / "nothing"}) {
+    fs::create_symlink(target, file);
+    expect_replaced(target.c_str());
+  }
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  expect_replaced("FIFO");
+  write(file, "large");
+  fs::resize_file(file, std::uintmax_t{1} << 40);
+  expect_replaced("larger than memory");
+  EXPECT_EQ(files_in(elsewhere.path()).size(), 1U);
+}
+
+TEST(SmallProgramCache, FollowsNoLinks) {
+  const TemporaryFolder folder, elsewhere;
+  const ProgramCache cache(folder.path());
+  cache.store("key", "program");
+  const fs::path file = files_in(folder.path()).at(0), precious = fs::path(elsewhere.path()) / "precious";
+  write(precious, "precious");
+  fs::remove(file);
+  fs::create_symlink(precious, file);
+  // Names that were guessed.
+  for (int k = 0; k < 2000; ++k) {
+    fs::create_symlink(precious,
+                       file.string() + "." + std::to_string(getpid()) + "-" + std::to_string(k) + ".tmp");
+  }
+  cache.store("key", "program");
+  EXPECT_EQ(cache.load("key"), "program");
+  EXPECT_EQ(content_of(precious), "precious");
+}
+
 TEST(SmallProgramCache, IsBoundedAndDropsTheOldest) {
   const TemporaryFolder folder;
   const ProgramCache cache(folder.path(), 5000);
@@ -98,6 +192,8 @@ TEST(SmallProgramCache, IsBoundedAndDropsTheOldest) {
   EXPECT_LE(bytes, 5000u);
   EXPECT_FALSE(cache.load("0"));
   EXPECT_EQ(cache.load("9"), program);
+  cache.store("10", std::string(5000, 'x'));
+  EXPECT_EQ(cache.load("9"), program) << "what is too large takes no other's place";
 }
 
 TEST(SmallProgramCache, NeedsNoFolder) {

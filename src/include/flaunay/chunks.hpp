@@ -89,7 +89,7 @@ struct ChunkStatistics {
   std::vector<PhaseStatistics> phases;       ///< in the order in which they ran
   double seconds = 0;                        ///< wall time
   std::uint64_t host_points = 0;  ///< points of the chunks that devices without fp64 left to the host
-  std::string note;               ///< Statistics::note of the first such chunk
+  std::string note;               ///< as Statistics::note; of such chunks, that of the first
 };
 
 /// Triangulates one set of points in chunks. What is final in a chunk is written; points around which

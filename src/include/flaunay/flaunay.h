@@ -384,7 +384,8 @@ typedef struct flaunay_statistics {
   size_t phase_count;             ///< number of phases
   const flaunay_kernel* kernels;  ///< the slowest first; none without profile
   size_t kernel_count;            ///< number of kernels
-  /// What a device without double precision has left to the host, and why; "" if it has left nothing.
+  /// For people: what a device without double precision has left to the host, and why; and once per process,
+  /// why the folder of compiled kernels is not used. "" otherwise.
   const char* note;
 } flaunay_statistics;
 
@@ -516,7 +517,7 @@ typedef struct flaunay_chunk_statistics {
   const flaunay_phase* phases;          ///< in the order in which they ran
   size_t phase_count;                   ///< number of phases
   uint64_t host_points;                 ///< points of the chunks that devices without fp64 left to the host
-  const char* note;                     ///< as in flaunay_statistics, of the first such chunk
+  const char* note;                     ///< as in flaunay_statistics; of such chunks, that of the first
 } flaunay_chunk_statistics;
 
 /// An OpenCL device.

@@ -100,8 +100,10 @@ struct Statistics {
   std::size_t merged_points = 0;
   std::vector<PhaseStatistics> phases;    ///< in the order in which they ran
   std::vector<KernelStatistics> kernels;  ///< the slowest first; empty without Options::profile
-  /// What a device without double precision has left to the host, and why, in a sentence for people; empty if
-  /// it has left nothing. The result is the same.
+  /// Points of a call of which a device without double precision has left something to the host.
+  std::size_t host_points = 0;
+  /// For people: what a device without double precision has left to the host, and why; and once per process,
+  /// why the folder of compiled kernels is not used. Empty otherwise. The result is the same.
   std::string note;
 };
 
