@@ -111,7 +111,7 @@ static void use_at_exit(int round) {
   atexit(destroy_kept);
   load();
   kept = make();
-  triangulate(kept, POINTS);
+  triangulate(kept, FEW);
   exit(STATUS);
 }
 

@@ -7,6 +7,7 @@
 #include "blocks/stages.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/native/opencl.hpp"
+#include "host/of_thread.hpp"
 #include "shared/bit_account.h"
 #include "shared/codes.h"
 #include "shared/coordinates.h"
@@ -92,7 +93,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
       coordinates, offsets,
       [coordinates](std::size_t first, std::size_t last) { return inspected(coordinates, first, last); });
 
-  static thread_local Scratch s;
+  Scratch& s = host::of_thread<Scratch>();
   s.offsets.assign(offsets.begin(), offsets.end());
   s.set_blocks.resize(sets + 1);
   std::iota(s.set_blocks.begin(), s.set_blocks.end(), 0);

@@ -4,14 +4,20 @@
 #include <new>
 #include <string>
 
+#include "host/of_thread.hpp"
+
 namespace flaunay::c {
 namespace {
 
 constexpr const char* kOutOfMemory = "the host is out of memory";
 
+struct Texts {
+  std::string message, call;
+};
+
+// Refers to the thread's Texts, or to literals if there was no memory for copies.
 struct LastError {
-  std::string text, call;
-  const char* message = "";  // the text, or a literal if there was no memory for a copy
+  const char *message = "", *call = "";
   int code = 0;
   flaunay_status status = FLAUNAY_SUCCESS;
 };
@@ -19,13 +25,16 @@ thread_local LastError last;
 
 void remember(const char* message, const std::string& call = {}, int code = 0) noexcept {
   last.code = code;
+  last.call = "";
+  last.message = kOutOfMemory;
   try {
-    last.call = call;
-    last.text = message;
-    last.message = last.text.c_str();
+    Texts& texts = host::of_thread<Texts>();
+    texts.call = call;
+    texts.message = message;
+    last.call = texts.call.c_str();
+    last.message = texts.message.c_str();
   } catch (...) {
-    last.call.clear();
-    last.message = kOutOfMemory;
+    // There was no memory.
   }
 }
 
@@ -50,9 +59,7 @@ flaunay_status remember_handled() noexcept {
     remember(error.what(), error.call(), error.code());
     return status_of(error.kind());
   } catch (const std::bad_alloc&) {
-    last.code = 0;
-    last.call.clear();
-    last.message = kOutOfMemory;
+    last = {kOutOfMemory, ""};
     return FLAUNAY_ERROR_MEMORY;
   } catch (const Stopped& error) {
     remember(error.what());
@@ -77,7 +84,7 @@ flaunay_status remember_exception() noexcept {
 const char* flaunay_last_error(void) { return flaunay::c::last.message; }
 int flaunay_last_error_status(void) { return flaunay::c::last.status; }
 int flaunay_last_error_code(void) { return flaunay::c::last.code; }
-const char* flaunay_last_error_call(void) { return flaunay::c::last.call.c_str(); }
+const char* flaunay_last_error_call(void) { return flaunay::c::last.call; }
 
 const char* flaunay_status_string(int status) {
   switch (status) {

@@ -186,4 +186,8 @@ Batch degenerate_batch(FixtureRandom& random) {
   return std::all_of(scaled.begin(), scaled.end(), all_finite) ? scaled : batch;
 }
 
+Batch large_set(FixtureRandom& random) {
+  return {degenerate_set(random, static_cast<std::size_t>(5000 * std::pow(20, random.unit())))};
+}
+
 }  // namespace flaunay::fuzz

@@ -11,4 +11,7 @@ namespace flaunay::fuzz {
 /// of magnitudes.
 Batch degenerate_batch(testing::FixtureRandom& random);
 
+/// One such set of 5,000 to 100,000 points, smaller ones more often.
+Batch large_set(testing::FixtureRandom& random);
+
 }  // namespace flaunay::fuzz

@@ -2,8 +2,10 @@
 // check and, for small sets, with the reference in GMP. Stops at the first wrong result, shrinks its points
 // and prints them.
 //
-//   fuzz_triangulations [--seconds N] [--seed S] [--first CASE]
+//   fuzz_triangulations [--large] [--seconds N] [--seed S] [--first CASE]
 //
+// With --large, single sets of 5,000 to 100,000 points, in mode blocks alone, with sizes of GPUs and in both
+// arithmetics.
 // Each case depends on the seed and its number alone, so --first repeats one.
 #include <fmt/format.h>
 
@@ -200,10 +202,59 @@ Verdict judge(const Batch& batch, const std::vector<Execution>& executions) {
   return {"", !expected->error.empty()};
 }
 
+/// Mode blocks with many sizes: natively, so that no compiler of a driver is between, and on the first
+/// device.
+class LargeTriangulators {
+ public:
+  LargeTriangulators() {
+    for (const char* const tuning : {"", "gpu", "gpu:32", "small", "small-blocks", "gpu,round_points=64"})
+      add(native_, "host", tuning);
+    for (const char* const tuning :
+         {"gpu", "gpu:32", "gpu,fixed_point=1", "gpu:32,round_points=64,fixed_point=1"})
+      add(on_device_, "#0", tuning);
+  }
+
+  std::vector<Execution> executions(testing::FixtureRandom& random, std::size_t points) {
+    // With the sizes of GPUs, a CPU's devices are slow, and with small ones everything is.
+    constexpr std::size_t kMostOnDevice = 20000, kMostInSmallChunks = 20000;
+    std::vector<Execution> chosen(1);
+    chosen[0].name = "dwyer";
+    chosen[0].options.mode = Mode::dwyer;
+    chosen[0].options.halfedges = true;
+    for (const Tuned& tuned : native_) {
+      if (points <= kMostInSmallChunks || tuned.name.find("small") == std::string::npos)
+        chosen.push_back(of(tuned));
+    }
+    if (points <= kMostOnDevice)
+      chosen.push_back(of(on_device_[random.integer(0, std::ssize(on_device_) - 1)]));
+    return chosen;
+  }
+
+ private:
+  struct Tuned {
+    std::string name;
+    std::unique_ptr<Triangulator> triangulator;
+  };
+
+  static void add(std::vector<Tuned>& to, const char* device, const char* tuning) {
+    const testing::ScopedEnvironment environment("FLAUNAY_TUNING", tuning);
+    to.push_back(
+        {fmt::format("blocks on {} tuned '{}'", device, tuning), std::make_unique<Triangulator>(device)});
+  }
+  static Execution of(const Tuned& tuned) {
+    Execution execution{tuned.name, tuned.triangulator.get(), {}};
+    execution.options.halfedges = true;
+    return execution;
+  }
+
+  std::vector<Tuned> native_, on_device_;
+};
+
+template <typename Triangulators, Batch (*MakeBatch)(testing::FixtureRandom&)>
 class Triangulations : public Fuzzer {
  public:
   bool run(testing::FixtureRandom& random) override {
-    const Batch batch = degenerate_batch(random);
+    const Batch batch = MakeBatch(random);
     const std::vector<Execution> executions = triangulators_.executions(random, points_of(batch));
     const Verdict verdict = judge(batch, executions);
     if (!verdict.problem.empty()) {
@@ -244,7 +295,14 @@ class Triangulations : public Fuzzer {
 }  // namespace flaunay::fuzz
 
 int main(int argc, char** argv) {
-  return flaunay::fuzz::run_fuzzer<flaunay::fuzz::Triangulations>(
-      argc, argv, "fuzz_triangulations",
-      "Triangulates degenerate point sets in all modes until a result is wrong or the time is over.");
+  using namespace flaunay::fuzz;
+  constexpr const char* kDescription =
+      "Triangulates degenerate point sets in all modes until a result is wrong or the time is over.";
+  if (argc < 2 || std::string(argv[1]) != "--large") {
+    using Small = Triangulations<Triangulators, degenerate_batch>;
+    return run_fuzzer<Small>(argc, argv, "fuzz_triangulations", kDescription);
+  }
+  std::swap(argv[0], argv[1]);
+  using Large = Triangulations<LargeTriangulators, large_set>;
+  return run_fuzzer<Large>(argc - 1, argv + 1, "fuzz_triangulations --large", kDescription);
 }

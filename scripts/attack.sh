@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Looks for errors in ways that take too long for every run of the tests; scripts/fuzz.sh looks for hours.
+#   scripts/attack.sh [ATTACK...]    all, or those named; the times are those of two cores, without building
+#     allocations    2 minutes   each allocation of many calls fails, one after the other, in the release build
+#     threads        6 minutes   calls at once, chunks and failing allocations under the thread sanitizer
+#     segments       5 minutes   random segments under the sanitizers of addresses and undefined behaviour
+#     large         10 minutes   sets of 5,000 to 100,000 points, with sizes of GPUs and in both arithmetics
+#     files          2 minutes   files of all formats in chunks, compared with runs in memory
+# Fails if an attack found something, and says what.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+build() {
+  local preset="$1"
+  shift
+  cmake --preset "$preset" && cmake --build --preset "$preset" --target "$@"
+}
+
+allocations() {
+  build release test_allocations && FLAUNAY_EVERY_ALLOCATION=1 build/release/tests/test_allocations --gtest_brief=1
+}
+
+# PoCL was not compiled with the sanitizer, which would report its threads. The sanitizer needs addresses that are not
+# random beyond some bits.
+threads() {
+  build tsan test_threads test_chunks test_allocations || return
+  local test
+  for test in test_threads test_chunks test_allocations; do
+    FLAUNAY_DEVICE=host setarch -R "build/tsan/tests/$test" --gtest_brief=1 || return
+  done
+}
+
+segments() {
+  build asan fuzz_constrained || return
+  # PoCL and its compiler leak memory.
+  ASAN_OPTIONS=detect_leaks=0 build/asan/tests/fuzz_constrained --seconds 300 --seed "$RANDOM"
+}
+
+large() {
+  build release fuzz_triangulations && build/release/tests/fuzz_triangulations --large --seconds 600 --seed "$RANDOM"
+}
+
+files() {
+  build release flaunay_cli && python3 tests/chunk_files.py build/release/flaunay --seconds 120 --seed "$RANDOM"
+}
+
+all=(allocations threads segments large files)
+attacks=("$@")
+if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
+for attack in "${attacks[@]}"; do
+  if [[ " ${all[*]} " != *" $attack "* ]]; then
+    echo "usage: scripts/attack.sh [$(IFS='|' && echo "${all[*]}")]..." >&2
+    exit 2
+  fi
+done
+export POCL_CACHE_DIR="${POCL_CACHE_DIR-$PWD/build/kernels}" FLAUNAY_CACHE_DIR="${FLAUNAY_CACHE_DIR-}"
+failed=()
+for attack in "${attacks[@]}"; do
+  echo "== $attack"
+  "$attack" || failed+=("$attack")
+done
+if ((${#failed[@]} > 0)); then
+  echo "found something: ${failed[*]}"
+  exit 1
+fi
