@@ -426,6 +426,12 @@ TEST_F(CommandVerifyTest, Constraints) {
           .exit_code,
       kFailure);
 
+  EXPECT_EQ(run_well({"verify", points, other, "--constraints", segments, "--quiet"}, kNoPlatform).out, "");
+  const Outcome wrong = run({"verify", points, from_first, "--constraints", text, "--quiet"}, kNoPlatform);
+  EXPECT_EQ(wrong.exit_code, kFailure);
+  EXPECT_EQ(wrong.out, "");
+  EXPECT_NE(wrong.err.find("flaunay: "), std::string::npos) << wrong.err;
+
   // What is left of it: a triangle, by its border, by a hole, and by a file of its own.
   const std::string half = mesh("half.npy", {0, 1, 3}), border = write("border.txt", "0 1\n1 3\n3 0\n");
   run_well({"verify", points, half, "--constraints", border, "--outside", "hull", "--fill", "even-odd"},

@@ -402,7 +402,10 @@ def polygons(
     elif polygon_offsets is not None or part_offsets is not None:
         raise UsageError("polygon_offsets and part_offsets are for rings: pass ring_offsets, too")
     else:
-        points, rings, outer, parts = _rings_of(geometries)
+        try:
+            points, rings, outer, parts = _rings_of(geometries)
+        except RecursionError:
+            raise UsageError("geometries have collections inside of collections, too deep") from None
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     triangulator = _triangulators.of_device(device)
     result = triangulator.triangulate_polygons(points, rings, outer, parts, rules, wanted)

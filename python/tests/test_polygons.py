@@ -401,6 +401,18 @@ def test_options_that_are_none(options, message):
         flaunay.polygons(EXPECTED, **options)
 
 
+def test_collections_that_are_too_deep():
+    features, arrays = {"type": "FeatureCollection", "features": []}, []
+    for _ in range(100_000):
+        features, arrays = {"type": "FeatureCollection", "features": [features]}, [arrays]
+    for given in features, [features]:
+        with pytest.raises(flaunay.UsageError, match="too deep"):
+            flaunay.polygons(given)
+    for given in arrays, {"type": "Polygon", "coordinates": arrays}:
+        with pytest.raises(flaunay.UsageError, match="no array of numbers"):
+            flaunay.polygons(given)
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_coordinates_that_are_not_finite(bad):
     with pytest.raises(flaunay.InputError, match="finite"):

@@ -37,6 +37,7 @@ struct VerifyRequest {
   std::uint64_t memory_bytes = 0;  // 0: as much as there is
   std::string scratch;
   bool has_constraints = false;
+  bool quiet = false;
   ConstraintRequest constraints;
   std::string constraint_edges;
 };
@@ -142,7 +143,7 @@ Checked check(const VerifyRequest& request, Progress& progress) {
 
 int verify(const VerifyRequest& request) {
   if (!io::is_map(request.points)) io::check_points_ending(request.points);
-  Progress progress(true);
+  Progress progress(!request.quiet);
   progress.update("reading");
   const auto [report, seconds, how] = check(request, progress);
   progress.finish();
@@ -151,11 +152,13 @@ int verify(const VerifyRequest& request) {
   if (!report.ok) {
     report_error("flaunay", kFailure, fmt::format("{}: {}", request.triangles, report.problem));
   }
-  print(
-      fmt::format("{}: {} points, {} distinct, {} triangles, {} hull vertices, {} cocircular edges; "
-                  "{} exact evaluations, {:.3f} s{}\n",
-                  report.ok ? "right" : "wrong", report.points, report.distinct_points, report.triangles,
-                  report.hull_vertices, report.cocircular_edges, report.exact_evaluations, seconds, how));
+  if (!request.quiet) {
+    print(
+        fmt::format("{}: {} points, {} distinct, {} triangles, {} hull vertices, {} cocircular edges; "
+                    "{} exact evaluations, {:.3f} s{}\n",
+                    report.ok ? "right" : "wrong", report.points, report.distinct_points, report.triangles,
+                    report.hull_vertices, report.cocircular_edges, report.exact_evaluations, seconds, how));
+  }
   return report.ok ? kSuccess : kFailure;
 }
 
@@ -201,6 +204,7 @@ void add_verify(CLI::App& app, Action& action) {
       command, "--scratch", request->scratch,
       "Chunks: the folder for about 24 bytes per point, in files without names; default: TMPDIR, or /tmp")
       ->check(CLI::ExistingDirectory);
+  add_quiet(command, request->quiet);
   command->callback([request, command, &action] {
     request->has_constraints = has_constraints(*command, *request);
     action = [request] { return verify(*request); };

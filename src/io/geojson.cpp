@@ -84,10 +84,14 @@ class GeoJsonReader {
     fail(path_, "{} {}", at.text(), fmt::format(format, std::forward<Arguments>(arguments)...));
   }
 
-  /// A value for messages.
+  /// A value for messages. Nothing here may recurse into values: arrays may lie in each other to any depth,
+  /// and the library's parser and destructor do not recurse, but its serializer does.
   static std::string shown(const Json& value) {
     if (value.is_object()) return "an object";
-    if (value.is_array() && value.size() > 4) return fmt::format("an array of {} values", value.size());
+    const auto is_structured = [](const Json& element) { return element.is_structured(); };
+    if (value.is_array() && (value.size() > 4 || std::any_of(value.begin(), value.end(), is_structured))) {
+      return fmt::format("an array of {} value{}", value.size(), value.size() == 1 ? "" : "s");
+    }
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     constexpr std::size_t kLongest = 60;
     return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
@@ -197,8 +201,8 @@ class GeoJsonReader {
       ++unclosed_;
     }
     if (end - first < 3) {
-      fail_at(at, "is a ring of {} positions; expected at least 4, the last one equal to the first",
-              value.size());
+      fail_at(at, "is a ring of {} positions{}; expected at least 4, the last one equal to the first",
+              value.size(), is_closed || value.empty() ? "" : " that is not closed");
     }
     for (std::size_t i = first; i < end; ++i) {
       add_segment(map_.segments, i, i + 1 < end ? i + 1 : first);

@@ -198,7 +198,11 @@ TEST_F(MapTest, GeoJsonWithErrorsNamesThePath) {
                  {"coordinates[0][0] is 0", "[x, y]"});
   expect_bad_map("a.json", in_feature(geometry("Polygon", "[[[0,0],[1,0],[0,0]]]")),
                  {"coordinates[0] is a ring of 3 positions"});
-  expect_bad_map("a.json", in_feature(geometry("Polygon", "[[]]")), {"a ring of 0 positions"});
+  expect_bad_map("a.json", in_feature(geometry("Polygon", "[[]]")), {"a ring of 0 positions;"});
+  expect_bad_map("a.json", in_feature(geometry("Polygon", "[[[0,0],[1,0]]]")),
+                 {"coordinates[0] is a ring of 2 positions that is not closed"});
+  expect_bad_map("a.json", in_feature(geometry("Polygon", "[[[[0,0]]]]")),
+                 {"coordinates[0][0] is an array of 1 value; expected a position [x, y]"});
   expect_bad_map("a.json", in_feature(geometry("LineString", "[[0,0]]")), {"coordinates has one position"});
   expect_bad_map("a.json", in_feature(geometry("Point", "[\"0\",\"0\"]")), {"coordinates is [\"0\",\"0\"]"});
   expect_bad_map("a.json", in_feature("7"), {"features[1].geometry is 7"});
@@ -212,6 +216,22 @@ TEST_F(MapTest, CollectionsThatAreTooDeepAreAnError) {
   for (int i = 0; i < kLevels; ++i) deep += "{\"type\":\"GeometryCollection\",\"geometries\":[";
   for (int i = 0; i < kLevels; ++i) deep += "]}";
   expect_bad_map("a.json", deep, {"too deep"});
+}
+
+TEST_F(MapTest, ValuesOfAnyDepthAreReadOrAnError) {
+  constexpr std::size_t kLevels = 200'000;
+  const std::string open(kLevels, '['), close(kLevels, ']');
+  for (const char* type : {"Point", "LineString", "MultiPolygon", "FeatureCollection", "Curve"}) {
+    expect_bad_map("a.json", geometry(type, open + close), {});
+  }
+  expect_bad_map("a.json", geometry("Polygon", open + close), {"[0][0] is an array of 1 value"});
+  expect_bad_map("a.json", open + close, {"the document is an array of 1 value"});
+  expect_bad_map("a.json", open, {"no valid JSON"});
+  expect_bad_map("a.json", "{\"type\": " + open + close + "}", {"type is an array of 1 value"});
+  // What is not needed is not looked at.
+  const Map map = map_of("a.json", "{\"type\": \"Feature\", \"properties\": " + open + close +
+                                       ", \"geometry\": " + geometry("Point", "[1, 2]") + "}");
+  EXPECT_EQ(map.points.coordinates, (Values{1, 2}));
 }
 
 // -----------------------------------------------------------------------------------------------------
