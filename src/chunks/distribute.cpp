@@ -236,11 +236,12 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
     source.read(first, size, piece.coordinates.data());
     return piece;
   };
-  std::future<Piece> next = std::async(std::launch::async, read, 0);
+  // If the system refuses a thread, a piece is read when it is asked for.
+  std::future<Piece> next = std::async(read, 0);
   for (std::uint64_t first = 0; first < n; first += kPiece) {
     progress("distributing", static_cast<double>(first) / static_cast<double>(n));
     Piece piece = next.get();
-    if (first + kPiece < n) next = std::async(std::launch::async, read, first + kPiece);
+    if (first + kPiece < n) next = std::async(read, first + kPiece);
     account.add(threads, piece);
     find_leaves(threads, tree, piece);
     for (std::size_t i = 0; i < piece.size(); ++i) {

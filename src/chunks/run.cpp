@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -97,14 +98,24 @@ class Round {
           const std::lock_guard lock(mutex_);
           ++working_;
         }
-        threads.emplace_back([this, &solvers, &is_lost, s] {
+        const auto solve = [this, &solvers, &is_lost, s] {
           bool lost = false;
           work(solvers[s], s, lost);
           const std::lock_guard lock(mutex_);
           is_lost[s] = lost;
           --working_;
           changed_.notify_all();
-        });
+        };
+        try {
+          threads.emplace_back(solve);
+        } catch (const std::system_error& error) {
+          // If the system refuses a thread, the other solvers do its work.
+          if (threads.empty()) {
+            throw Error(ErrorKind::device, fmt::format("there is no thread for chunks: {}", error.what()));
+          }
+          const std::lock_guard lock(mutex_);
+          --working_;
+        }
       }
       await(progress);
     } catch (...) {
@@ -238,8 +249,9 @@ class Round {
     }
   }
 
+  // If the system refuses a thread, chunks are read and written when the futures are asked.
   std::future<ChunkPoints> load(std::size_t k) {
-    return std::async(std::launch::async, [this, k] {
+    return std::async([this, k] {
       return is_last() ? std::move(*last_) : read_chunk(call_.file, chunks_[k].stored, is_first_);
     });
   }
@@ -271,17 +283,16 @@ class Round {
     const std::optional<std::uint64_t> first_row = publish(k, worker.number, *finished, statistics);
     if (!first_row) return true;  // another one failed
     if (worker.writing.valid()) worker.writing.get();
-    worker.writing =
-        std::async(std::launch::async, [this, chunk = std::move(finished), row = *first_row]() mutable {
-          try {
-            chunk->write(call_.sink, row);
-            if (is_first_) chunk->write_duplicates(call_.sink);
-            if (is_last()) chunk->write_hull(call_.sink);
-          } catch (...) {
-            stop(std::current_exception());
-          }
-          chunk.reset();  // its memory, before anybody asks whether this is done
-        });
+    worker.writing = std::async([this, chunk = std::move(finished), row = *first_row]() mutable {
+      try {
+        chunk->write(call_.sink, row);
+        if (is_first_) chunk->write_duplicates(call_.sink);
+        if (is_last()) chunk->write_hull(call_.sink);
+      } catch (...) {
+        stop(std::current_exception());
+      }
+      chunk.reset();  // its memory, before anybody asks whether this is done
+    });
     return true;
   }
 

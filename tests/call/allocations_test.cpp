@@ -11,7 +11,6 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "flaunay/chunks.hpp"
@@ -73,9 +72,6 @@ void attack(const Call& call) {
           found = call();
         } catch (const std::bad_alloc&) {
           ++errors;
-        } catch (const std::system_error& error) {
-          // No thread.
-          if (error.code() != std::errc::resource_unavailable_try_again) problem = error.what();
         } catch (const std::exception& error) {
           problem = error.what();
         }
