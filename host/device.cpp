@@ -86,6 +86,14 @@ std::vector<boost::compute::device> all_devices() {
   return devices;
 }
 
+static std::vector<boost::compute::device> some_devices() {
+  std::vector<boost::compute::device> devices = all_devices();
+  if (devices.empty()) {
+    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo");
+  }
+  return devices;
+}
+
 bool has_fp64(const boost::compute::device& device) {
   // Before OpenCL 1.2, devices without fp64 may answer CL_INVALID_VALUE.
   cl_device_fp_config config = 0;
@@ -146,11 +154,10 @@ std::optional<boost::compute::device> find_device_with_fp64() {
   return preferred(devices);
 }
 
+boost::compute::device best_device() { return preferred(some_devices()); }
+
 boost::compute::device find_device(const std::string& requested) {
-  const std::vector<boost::compute::device> devices = all_devices();
-  if (devices.empty()) {
-    throw DeviceError("OpenCL platforms are installed, but none has a device; see clinfo");
-  }
+  const std::vector<boost::compute::device> devices = some_devices();
   const std::string wanted = wanted_device(requested);
   const std::string origin = requested.empty() ? " (FLAUNAY_DEVICE)" : "";
   if (wanted.empty()) return preferred(devices);

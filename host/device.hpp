@@ -30,8 +30,12 @@ std::optional<boost::compute::device> find_gpu();
 /// OpenCL's drivers (OCL_ICD_VENDORS, OCL_ICD_FILENAMES, OPENCL_VENDOR_PATH).
 bool may_have_gpu(const std::string& folder = "/dev");
 
-/// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else the GPU of find_gpu, else
-/// the first device with fp64, else the first one), "#k" (the k-th of all_devices), or a part of a device's
+/// The first GPU with fp64, else the first GPU, else the first device with fp64, else the first one. Throws
+/// DeviceError if there is none.
+boost::compute::device best_device();
+
+/// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else that of
+/// best_device), "#k" (the k-th of all_devices), or a part of a device's
 /// or platform's name in upper or lower case. Throws DeviceError, which lists the devices, if none matches.
 boost::compute::device find_device(const std::string& wanted);
 

@@ -267,6 +267,36 @@ TEST_F(ChunkFaultsTest, ADiskThatIsTooSmallIsFoundFirst) {
   EXPECT_EQ(everything(), before);
 }
 
+TEST_F(ChunkFaultsTest, AScratchFolderThatIsTooSmallIsNamed) {
+  const std::string mounted = "mkdir disk && mount -t tmpfs -o size=16k none disk";
+  if (run_script("unshare --mount sh -c '" + mounted + "'").exit_code != 0) {
+    GTEST_SKIP() << "file systems cannot be mounted here";
+  }
+  fs::remove(path("disk"));
+  const auto before = everything();
+  const std::string needs =
+      "has room for 16.0 KiB, but the scratch file needs 23.4 KiB; name another scratch folder\n";
+  for (const auto& [arguments, said] :
+       {std::pair{"--scratch disk --triangles t.npy", "disk: " + needs},
+        std::pair{"--scratch disk/", "disk/: " + needs},
+        std::pair{
+            "--scratch disk --hull disk/h.npy --triangles disk/t.npy",
+            std::string("disk/t.npy: the disk of 'disk/' has room for 16.0 KiB, but the outputs and the "
+                        "scratch file need 46.9 KiB\n")}}) {
+    const Outcome outcome =
+        run_script("unshare --mount sh -c '" + mounted +
+                   " && { \"$FLAUNAY\" triangulate points.npy --device host --memory 1G --index 32 " +
+                   arguments + "; echo $?; ls -A disk; }'; rmdir disk");
+    EXPECT_EQ(outcome.out, "3\n");
+    EXPECT_EQ(outcome.err, "flaunay: " + said);
+    EXPECT_EQ(everything(), before);
+  }
+  const Outcome none = run_script(
+      "TMPDIR=/nowhere \"$FLAUNAY\" triangulate points.npy --device host --memory 1G --triangles t.npy");
+  EXPECT_EQ(none.exit_code, kBadInput);
+  EXPECT_EQ(none.err, "flaunay: /nowhere: has no room for a scratch file: No such file or directory\n");
+}
+
 // ---------------------------------------------------------------------------------------------- partition
 
 class PartitionFaultsTest : public CommandFaultsTest {

@@ -48,15 +48,19 @@ std::size_t largest_call(const host::Runtime& runtime) {
 
 }  // namespace
 
-Engine::Engine()
-    : runtime(native_tuning()), persistent(runtime.memory()), even(runtime.memory()), odd(runtime.memory()) {
+Engine::Engine(const std::string& tuning)
+    : runtime(native_tuning(tuning)),
+      persistent(runtime.memory()),
+      even(runtime.memory()),
+      odd(runtime.memory()) {
   separate_buffers();
   check_arithmetic();
 }
 
-Engine::Engine(const boost::compute::context& context, const boost::compute::device& device)
+Engine::Engine(const boost::compute::context& context, const boost::compute::device& device,
+               const std::string& tuning)
     : Engine(context.get() == nullptr ? boost::compute::context(device) : context, device,
-             tuning_for(device)) {
+             tuning_for(device, tuning)) {
   choose_arithmetic(runtime);
   check_arithmetic();
 }

@@ -15,12 +15,13 @@
 namespace flaunay::call {
 
 struct Engine {
-  /// Runs kernels natively on threads of the host, without OpenCL.
-  Engine();
+  /// Runs kernels natively on threads of the host, without OpenCL. tuning: as FLAUNAY_TUNING has it.
+  explicit Engine(const std::string& tuning);
   /// Runs them on a device, in the given context or, if that is null, in one of its own: in double precision,
   /// or in fixed point if its tuning says so, if it lacks fp64, or if its doubles fail the self-test. Throws
   /// Error(device) if it fails the self-test of fixed point, too.
-  Engine(const boost::compute::context& context, const boost::compute::device& device);
+  Engine(const boost::compute::context& context, const boost::compute::device& device,
+         const std::string& tuning);
   /// Makes an engine with double precision on the same device and in the same context. Null if the device
   /// lacks fp64 or fails its self-test.
   std::unique_ptr<Engine> with_doubles() const;

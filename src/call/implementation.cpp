@@ -24,20 +24,20 @@ bool can_be_used(call::Implementation& self) {
 
 }  // namespace
 
-Triangulator::Implementation::Implementation(const std::string& wanted) : host_tuning_(native_tuning()) {
+Triangulator::Implementation::Implementation(const std::string& wanted) {
   const std::string name = host::wanted_device(wanted);
   is_named_ = !name.empty();
   is_host_named_ = name == host::kHostName;
   if (is_host_named_) {
     for_host_memory();
   } else if (is_named_) {
-    device_ = std::make_unique<Engine>(boost::compute::context(), host::find_device(wanted));
+    device_ = std::make_unique<Engine>(boost::compute::context(), host::find_device(wanted), tuning_);
   }
 }
 
 Triangulator::Implementation::Implementation(const boost::compute::context& context,
                                              const boost::compute::device& device)
-    : is_named_(true), host_tuning_(native_tuning()), device_(std::make_unique<Engine>(context, device)) {}
+    : is_named_(true), device_(std::make_unique<Engine>(context, device, tuning_)) {}
 
 Engine& Triangulator::Implementation::on_device() {
   const std::lock_guard lock(making_);
@@ -47,14 +47,14 @@ Engine& Triangulator::Implementation::on_device() {
                   "the device \"host\" has no OpenCL: it runs mode blocks, Voronoi diagrams and queries on "
                   "points in host memory; name another device");
     }
-    device_ = std::make_unique<Engine>(boost::compute::context(), host::find_device(""));
+    device_ = std::make_unique<Engine>(boost::compute::context(), host::best_device(), tuning_);
   }
   return *device_;
 }
 
 Engine& Triangulator::Implementation::native() {
   const std::lock_guard lock(making_);
-  if (native_ == nullptr) native_ = std::make_unique<Engine>();
+  if (native_ == nullptr) native_ = std::make_unique<Engine>(tuning_);
   return *native_;
 }
 
@@ -86,7 +86,7 @@ Engine& Triangulator::Implementation::on_any_device_with_doubles(const std::stri
   if (!engine.runtime.is_native()) return engine;
   if (other_device_ == nullptr && !is_named_) {
     if (const auto device = host::find_device_with_fp64()) {
-      other_device_ = std::make_unique<Engine>(boost::compute::context(), *device);
+      other_device_ = std::make_unique<Engine>(boost::compute::context(), *device, tuning_);
     }
   }
   if (other_device_ != nullptr && other_device_->has_doubles()) return *other_device_;

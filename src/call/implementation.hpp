@@ -51,7 +51,9 @@ struct Triangulator::Implementation {
 
   bool is_named_ = false;
   bool is_host_named_ = false;
-  std::shared_ptr<const Tuning> host_tuning_;
+  // As the environment has it when the object is made; engines that are made later follow it, too.
+  const std::string tuning_ = tuning_in_environment();
+  std::shared_ptr<const Tuning> host_tuning_ = native_tuning(tuning_);
   // Held while an engine is made or looked for.
   std::recursive_mutex making_;
   std::unique_ptr<call::Engine> device_, native_;

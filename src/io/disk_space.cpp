@@ -1,7 +1,10 @@
 #include "io/disk_space.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 
 #include "io/file.hpp"
 #include "io/output.hpp"
@@ -25,24 +28,40 @@ void check_disk_space(const std::vector<SizedOutput>& files) {
     dev_t device;
     std::string path, folder;  // of one of its files
     std::uint64_t needed;
+    bool has_outputs, has_scratch;
   };
   std::vector<Disk> disks;
   for (const SizedOutput& file : files) {
     if (file.path.empty() || file.path == "-") continue;
-    const Target target = find_target(file.path);
-    if (target.is_direct) continue;
-    const auto same = [&](const Disk& disk) { return disk.device == target.folder_id.device; };
+    Disk found{0, file.path, file.path, 0, !file.is_scratch, file.is_scratch};
+    if (file.is_scratch) {
+      struct stat status {};
+      if (::stat(file.path.c_str(), &status) != 0) {
+        fail(file.path, "has no room for a scratch file: {}", system_reason(errno));
+      }
+      found.device = status.st_dev;
+    } else {
+      const Target target = find_target(file.path);
+      if (target.is_direct) continue;
+      found.device = target.folder_id.device;
+      found.folder = target.folder;
+    }
+    const auto same = [&](const Disk& disk) { return disk.device == found.device; };
     auto disk = std::find_if(disks.begin(), disks.end(), same);
-    if (disk == disks.end())
-      disk = disks.insert(disk, {target.folder_id.device, file.path, target.folder, 0});
+    if (disk == disks.end()) disk = disks.insert(disk, found);
     disk->needed += file.bytes;
+    disk->has_outputs |= found.has_outputs;
+    disk->has_scratch |= found.has_scratch;
   }
   for (const Disk& disk : disks) {
     const std::uint64_t room = free_bytes(disk.folder);
-    if (disk.needed > room) {
-      fail(disk.path, "the disk of '{}' has room for {}, but the outputs need {}", disk.folder,
+    if (disk.needed <= room) continue;
+    if (!disk.has_outputs) {
+      fail(disk.path, "has room for {}, but the scratch file needs {}; name another scratch folder",
            readable(room), readable(disk.needed));
     }
+    fail(disk.path, "the disk of '{}' has room for {}, but the outputs{} need {}", disk.folder,
+         readable(room), disk.has_scratch ? " and the scratch file" : "", readable(disk.needed));
   }
 }
 

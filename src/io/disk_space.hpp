@@ -11,8 +11,10 @@ namespace flaunay::io {
 struct SizedOutput {
   std::string path;
   std::uint64_t bytes;
+  bool is_scratch = false;  ///< a file without a name; the path is that of its folder
 };
-/// Throws Error(input) that names a file if a disk has no room for the files that go there.
+/// Throws Error(input) that names an output, or else the scratch folder, if a disk has no room for the files
+/// that go there.
 void check_disk_space(const std::vector<SizedOutput>& files);
 
 }  // namespace flaunay::io

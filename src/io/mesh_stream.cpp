@@ -36,7 +36,7 @@ void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t
     files.push_back({paths[static_cast<std::size_t>(array)], entries * bytes_of(type)});
   }
   // It may be on the same disk as an output.
-  files.push_back({scratch_folder(scratch) + "/scratch", n * kScratchBytesPerPoint});
+  files.push_back({scratch_folder(scratch), n * kScratchBytesPerPoint, true});
   check_disk_space(files);
 }
 

@@ -500,11 +500,10 @@ std::string tuning_by_name(const Target& target) {
   return "";
 }
 
-Tuning tuning_of_target(const Target& target) {
+Tuning tuning_of_target(const Target& target, const std::string& given) {
   const Tuning of_kind = column(target.is_cpu ? &Row::cpu : &Row::gpu, target);
   const Tuning own = tuning_named(tuning_by_name(target), target, of_kind);
-  const char* const given = std::getenv("FLAUNAY_TUNING");
-  return tuning_named(given != nullptr ? given : "", target, own);
+  return tuning_named(given, target, own);
 }
 
 // Reduces sizes to what kernels have local memory for.
@@ -526,15 +525,21 @@ std::string Tuning::build_options() const {
                      fixed_point != 0 ? " -DFIXED_POINT" : "");
 }
 
-Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units) {
-  // Simulators may be of several types.
-  const bool is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0 && (type & CL_DEVICE_TYPE_GPU) == 0;
-  return tuning_of_target({name, is_cpu, units});
+std::string tuning_in_environment() {
+  const char* const given = std::getenv("FLAUNAY_TUNING");
+  return given != nullptr ? given : "";
 }
 
-std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
+Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units,
+                      const std::string& given) {
+  // Simulators may be of several types.
+  const bool is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0 && (type & CL_DEVICE_TYPE_GPU) == 0;
+  return tuning_of_target({name, is_cpu, units}, given);
+}
+
+std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device, const std::string& given) {
   auto tuning =
-      std::make_shared<Tuning>(tuning_of_kind(device.name(), device.type(), device.compute_units()));
+      std::make_shared<Tuning>(tuning_of_kind(device.name(), device.type(), device.compute_units(), given));
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(*tuning, limits);
   fit_tiles(*tuning);
@@ -548,9 +553,9 @@ std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device) {
   return tuning;
 }
 
-std::shared_ptr<const Tuning> native_tuning() {
+std::shared_ptr<const Tuning> native_tuning(const std::string& given) {
   const Target host{host::kHostName, true, host::native_threads()};
-  auto tuning = std::make_shared<Tuning>(tuning_of_target(host));
+  auto tuning = std::make_shared<Tuning>(tuning_of_target(host, given));
   // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory,
   // on whole blocks.
   const Tuning compiled = column(&Row::cpu, host);

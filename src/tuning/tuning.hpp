@@ -116,18 +116,23 @@ struct Tuning : host::Sizes {
   std::string build_options() const override;
 };
 
-/// The sizes for a device, reduced to its limits. For tests and experiments, the environment variable
-/// FLAUNAY_TUNING overrides them: a kind ("cpu", "gpu", "gpu:N" with all work-groups of N work-items, 1 to
+/// The environment variable FLAUNAY_TUNING; empty if it is not set.
+std::string tuning_in_environment();
+
+/// The sizes for a device, reduced to its limits. For tests and experiments, `given` overrides them, which is
+/// as FLAUNAY_TUNING has it: a kind ("cpu", "gpu", "gpu:N" with all work-groups of N work-items, 1 to
 /// 1024, "small", "small-blocks"), or values by name ("block_group=64"), or both, separated by commas. Throws
-/// DeviceError, which says what is allowed, if FLAUNAY_TUNING is not valid.
-std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device);
+/// DeviceError, which says what is allowed, if it is not valid.
+std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device,
+                                         const std::string& given = tuning_in_environment());
 
 /// The sizes for a device of this name, type and number of compute units, not reduced to any limits.
-Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units);
+Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units,
+                      const std::string& given = tuning_in_environment());
 
-/// The sizes for kernels that run natively on the host. FLAUNAY_TUNING overrides them, too, except what the
-/// kernels are compiled for.
-std::shared_ptr<const Tuning> native_tuning();
+/// The sizes for kernels that run natively on the host. `given` overrides them, too, except what the kernels
+/// are compiled for.
+std::shared_ptr<const Tuning> native_tuning(const std::string& given = tuning_in_environment());
 
 /// The sizes of a runtime, which must be a Tuning.
 const Tuning& tuning_of(const host::Runtime& runtime);

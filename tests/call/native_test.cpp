@@ -327,5 +327,35 @@ TEST_F(SmallNative, CompilingIsAnnounced) {
   }
 }
 
+// Whether an engine is made with the triangulator or in its first call.
+TEST(SmallEnvironment, IsReadWhenATriangulatorIsMade) {
+  FixtureRandom random(21);
+  const Coordinates points = reals(3000, random);
+  const std::string device = device_under_test();
+  const ScopedEnvironment unnamed("FLAUNAY_DEVICE", nullptr), own("FLAUNAY_TUNING", nullptr);
+  for (const std::string& name : {std::string(), std::string("host"), device}) {
+    SCOPED_TRACE(name);
+    const auto rows = [&](Triangulator& by) { return by.triangulate(points.data(), 3000).triangles; };
+    Triangulator usual(name);
+    std::unique_ptr<Triangulator> small;
+    {
+      const ScopedEnvironment tuning("FLAUNAY_TUNING", "block_points=50");
+      small = std::make_unique<Triangulator>(name);
+    }
+    const ScopedEnvironment wrong("FLAUNAY_TUNING", "sideways");
+    const std::vector<std::int32_t> expected = rows(usual), found = rows(*small);
+    EXPECT_NE(found, expected) << "blocks decide on the order of rows";
+    EXPECT_EQ(found.size(), expected.size());
+    EXPECT_THROW(Triangulator{name}, Error);
+  }
+  // Also which device is opened later.
+  Triangulator free;
+  const ScopedEnvironment named("FLAUNAY_DEVICE", "no such device");
+  research::Options options;
+  options.mode = research::Mode::flattened;
+  EXPECT_EQ(research::triangulate(free, points.data(), 3000, options).hull,
+            free.triangulate(points.data(), 3000).hull);
+}
+
 }  // namespace
 }  // namespace flaunay::testing

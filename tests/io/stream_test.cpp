@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -326,6 +327,24 @@ TEST_F(PointStreamTest, ScratchThatCannotBeWritten) {
   expect_error(ErrorKind::input, folder_ + ": ",
                {"has room for", "the points of x", "another scratch folder"},
                [&] { scratch.require_room(std::uint64_t{1} << 62, "the points of x"); });
+}
+
+TEST_F(PointStreamTest, ScratchIsTheUsersAloneWhateverTheUmask) {
+  const mode_t before = umask(0);
+  const ScratchFile scratch(folder_);
+  umask(before);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "it has no name that others could open";
+  bool is_found = false;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code ignored;
+    const std::string target = std::filesystem::read_symlink(entry.path(), ignored);
+    if (target.compare(0, folder_.size(), folder_) != 0) continue;
+    struct stat status {};
+    ASSERT_EQ(stat(entry.path().c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, 0600U) << target;
+    is_found = true;
+  }
+  EXPECT_TRUE(is_found);
 }
 
 TEST_F(PointStreamTest, GeneratedPointsDoNotDependOnPieces) {

@@ -591,8 +591,9 @@ FLAUNAY_API const flaunay_device_info* flaunay_device_list_at(const flaunay_devi
 /// of a device's or platform's name in upper or lower case.
 /// A named device does all the work that it can do without fp64, if it has none; otherwise small sets are
 /// triangulated on the calling thread, and OpenCL is loaded when it is first needed. Using a device for the
-/// first time compiles kernels, so keep the triangulator for the next call. FLAUNAY_ERROR_DEVICE if there is
-/// no such device, or if its arithmetic fails the self test.
+/// first time compiles kernels, so keep the triangulator for the next call. FLAUNAY_DEVICE and FLAUNAY_TUNING
+/// are read here, once. FLAUNAY_ERROR_DEVICE if there is no such device, if its arithmetic fails the self
+/// test, or if FLAUNAY_TUNING is not valid.
 FLAUNAY_API flaunay_status flaunay_triangulator_create(const char* device,
                                                        flaunay_triangulator** triangulator);
 /// Makes a triangulator in the caller's context, which is retained. FLAUNAY_ERROR_USAGE if the device does

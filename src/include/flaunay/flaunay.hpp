@@ -233,8 +233,9 @@ class FLAUNAY_API Triangulator {
   /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
   /// (the k-th device of list_devices, from 0), a part of a device's or platform's name in upper or lower
   /// case, or "host" for the host without OpenCL. A named device does all the work, that of small sets too,
-  /// except what a device without fp64 leaves to the host. Throws Error(device) if there is no such device,
-  /// or if its arithmetic fails the self test.
+  /// except what a device without fp64 leaves to the host. The environment variables FLAUNAY_DEVICE and
+  /// FLAUNAY_TUNING are read here, once, also for devices that are opened later. Throws Error(device) if
+  /// there is no such device, if its arithmetic fails the self test, or if FLAUNAY_TUNING is not valid.
   explicit Triangulator(const std::string& device = "");
   /// Makes a triangulator in the caller's context, which is retained. Throws Error(usage) if the device does
   /// not belong to the context, and Error(device) if its arithmetic fails the self test.
