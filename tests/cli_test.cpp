@@ -20,6 +20,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -1591,10 +1592,43 @@ TEST_F(CommandConstraintsTest, ALetterIsWhatTriangleMakesOfIt) {
   EXPECT_NEAR(area(letter, {"--hole", "0.05,0.05"}), 0, 1e-12);
   EXPECT_EQ(read_text_points(path("p.txt")).size(), 30U);
   const Outcome outcome = run_well({"triangulate", letter, "--hole", "0.05,0.05"}, kNoPlatform);
-  EXPECT_NE(outcome.out.find("note: " + letter + ": the attributes of 1 region are not used"),
-            std::string::npos)
-      << outcome.out;
   EXPECT_NE(outcome.out.find("no triangles"), std::string::npos) << outcome.out;
+}
+
+TEST_F(CommandConstraintsTest, TrianglesHaveTheAttributesOfTheirRegionsAndMarkersAreKept) {
+  // Two squares side by side, and a segment across both, which is split at their common side. Of the regions
+  // one has none, one has two, of which the last counts; two places are on a segment and outside.
+  const std::string poly =
+      write("a.poly",
+            "6 2 0 1\n0 0 0 7\n1 4 0 0\n2 4 4 0\n3 0 4 0\n4 8 0 9\n5 8 4 0\n"
+            "8 1\n0 0 1 1\n1 1 2 20\n2 2 3 3\n3 3 0 4\n4 1 4 5\n5 4 5 6\n6 5 2\n7 0 5 10\n"
+            "0\n5\n0 2 3 1.5 0.1\n1 5 1 -2\n2 7 0.5 2.5\n3 4 1 9\n4 20 20 9\n");
+  const Outcome outcome =
+      run_well({"triangulate", poly, "--crossings", "split", "-o", path("b.ele")}, kNoPlatform);
+  EXPECT_EQ(outcome.out.find("note"), std::string::npos) << outcome.out;
+  std::istringstream ele(contents(path("b.ele"))), node(contents(path("b.node")));
+  std::size_t triangles = 0, columns = 0, attributes = 0, points = 0, dimensions = 0, markers = 0;
+  ele >> triangles >> columns >> attributes;
+  EXPECT_EQ(triangles, 6U);
+  EXPECT_EQ(attributes, 3U);
+  node >> points >> dimensions >> columns >> markers;
+  EXPECT_EQ(points, 7U);
+  ASSERT_EQ(markers, 1U);
+  std::vector<double> x(points), y(points);
+  std::vector<int> marks(points);
+  for (std::size_t i = 0, number = 0; i < points; ++i) node >> number >> x[i] >> y[i] >> marks[i];
+  EXPECT_EQ(marks, (std::vector<int>{7, 0, 0, 0, 9, 0, 20})) << "the common side has the smaller number";
+  for (std::size_t t = 0; t < triangles; ++t) {
+    std::size_t number = 0, a = 0, b = 0, c = 0;
+    double attribute = 0, region = 0, depth = 0;
+    ele >> number >> a >> b >> c >> attribute >> region >> depth;
+    const double middle_x = (x[a] + x[b] + x[c]) / 3, middle_y = (y[a] + y[b] + y[c]) / 3;
+    const bool is_above = middle_y > middle_x / 2;
+    EXPECT_EQ(attribute, middle_x < 4 ? (is_above ? 1.5 : 0) : is_above ? 0 : 2.5) << t;
+  }
+  const std::string segments = contents(path("b.poly"));
+  EXPECT_NE(segments.find(" 20\n"), std::string::npos) << segments;
+  EXPECT_NE(segments.find("\n5\n0 2 3 1.5 0.1\n1 5 1 -2\n"), std::string::npos) << segments;
 }
 
 TEST_F(CommandConstraintsTest, AMapHasItsPolygonsAndKnowsThem) {

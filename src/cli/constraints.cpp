@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "cli/chunks.hpp"
@@ -16,6 +17,7 @@
 #include "io/map.hpp"
 #include "io/mesh.hpp"
 #include "io/text.hpp"
+#include "verify/exact.hpp"
 
 namespace flaunay::cli {
 namespace {
@@ -157,6 +159,64 @@ std::vector<std::int32_t> sets_of(const Triangulation& mesh) {
   return sets;
 }
 
+/// The markers of points that splitting added are those of the first segments that have them.
+void add_markers(const ConstrainedTriangulation& mesh, io::Map& map) {
+  const auto given = static_cast<std::int32_t>(map.points.markers.size());
+  if (given == 0) return;
+  std::vector<std::int32_t> segments(mesh.added_points.size() / 2, -1);
+  for (std::size_t i = 0; i < mesh.constraint_edges.size(); ++i) {
+    const std::int32_t point = mesh.constraint_edges[i] - given, segment = mesh.edge_segments[i / 2];
+    if (point < 0) continue;
+    if (segments[point] < 0 || segment < segments[point]) segments[point] = segment;
+  }
+  for (const std::int32_t segment : segments) {
+    const bool has_marker = segment >= 0 && !map.segment_markers.empty();
+    map.points.markers.push_back(has_marker ? map.segment_markers[segment] : 0);
+  }
+}
+
+/// By triangle the attribute of its region in a .poly file, as Triangle gives it: 0 where there is none, and
+/// of several the last one. A place on a constraint is in no region.
+std::vector<double> attributes_of(const io::Map& map, const ConstrainedTriangulation& mesh) {
+  std::vector<double> attributes;
+  if (map.regions.empty() || mesh.regions.empty()) return attributes;
+  // By x.
+  std::vector<std::size_t> order(map.regions.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto x_of = [&map](std::size_t k) { return map.regions[k].place[0]; };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x_of(a) < x_of(b); });
+  std::vector<std::int32_t> found(order.size(), -1);
+  std::vector<char> barred(order.size(), 0);
+  ExactPredicates predicates;
+  for (std::size_t t = 0; t < mesh.regions.size(); ++t) {
+    const double* p[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = &map.points.coordinates[2 * static_cast<std::size_t>(mesh.triangles[3 * t + k])];
+    }
+    const auto [least, most] = std::minmax({p[0][0], p[1][0], p[2][0]});
+    auto next = std::lower_bound(order.begin(), order.end(), least,
+                                 [&](std::size_t k, double x) { return x_of(k) < x; });
+    for (; next != order.end() && x_of(*next) <= most; ++next) {
+      const double* const place = map.regions[*next].place;
+      int sides[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        sides[k] = predicates.orient2d(p[(k + 1) % 3], p[(k + 2) % 3], place);
+      }
+      if (std::min({sides[0], sides[1], sides[2]}) < 0) continue;
+      found[*next] = mesh.regions[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (sides[k] == 0 && mesh.constrained[3 * t + k] != 0) barred[*next] = 1;
+      }
+    }
+  }
+  std::vector<double> by_region(1 + static_cast<std::size_t>(std::ranges::max(mesh.regions)), 0);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k] >= 0 && barred[k] == 0) by_region[found[k]] = map.regions[k].attribute;
+  }
+  for (const std::int32_t region : mesh.regions) attributes.push_back(by_region[region]);
+  return attributes;
+}
+
 void announce_constraints(OutputFiles& outputs, const ConstraintRequest& request) {
   for (const std::string& path : request.arrays) outputs.add(path, ".npy");
   outputs.add(request.polygons, ".npy");
@@ -195,7 +255,7 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
   const io::IndexType index = index_type(work.index, map.points.size(), work.results);
   io::Outputs& files = outputs.files();
   if (!work.results.mesh.empty()) {
-    io::write_mesh(files, work.results.mesh, map.points, mesh, request.fill, map.holes);
+    io::write_mesh(files, work.results.mesh, map, mesh, request.fill, attributes_of(map, mesh));
   }
   write_arrays(work.results, mesh, outputs, index);
   for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
@@ -353,6 +413,7 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   facts.constraints = facts_of(map, request, mesh);
   map.points.coordinates.insert(map.points.coordinates.end(), mesh.added_points.begin(),
                                 mesh.added_points.end());
+  add_markers(mesh, map);
   write_results(work, request, map, mesh, facts, progress, outputs);
 
   if (!work.quiet) {

@@ -6,7 +6,6 @@
 #include "io/file.hpp"
 #include "io/geojson.hpp"
 #include "io/npy.hpp"
-#include "io/poly.hpp"
 #include "io/text.hpp"
 
 namespace flaunay::io {
@@ -39,10 +38,8 @@ Map map_of(PolyFile file) {
   map.points = std::move(file.points);
   map.segments = std::move(file.segments);
   map.holes = std::move(file.holes);
-  if (file.regions > 0) {
-    map.notes.push_back(fmt::format("{}: the attributes of {} region{} are not used", file.path, file.regions,
-                                    file.regions == 1 ? "" : "s"));
-  }
+  map.segment_markers = std::move(file.markers);
+  map.regions = std::move(file.regions);
   return map;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/points.hpp"
+#include "io/poly.hpp"
 
 namespace flaunay::io {
 
@@ -17,7 +18,9 @@ struct Map {
   std::vector<std::int32_t> segments;
   /// Further segments: those of lines beside polygons, which bound nothing.
   std::vector<std::int32_t> lines;
-  std::vector<double> holes;  ///< x and y per hole: a place inside of it
+  std::vector<double> holes;                  ///< x and y per hole: a place inside of it
+  std::vector<std::int32_t> segment_markers;  ///< of a .poly file that has some
+  std::vector<PolyRegion> regions;            ///< of a .poly file
   /// Ring r has segments [ring_offsets[r], ring_offsets[r + 1]), which begin at its points in their order.
   /// Part q has rings [part_offsets[q], part_offsets[q + 1]), its border and then its holes, and polygon p
   /// has rings [polygon_offsets[p], polygon_offsets[p + 1]).
@@ -33,7 +36,7 @@ bool is_map(const std::string& path);
 
 /// Reads a map from path, by its ending (any case):
 ///   .poly            Triangle's format: comments, attributes, boundary markers, first index 0 or 1; without
-///                    vertices, those of the .node file beside it; attributes of regions are left out
+///                    vertices, those of the .node file beside it
 ///   .geojson .json   GeoJSON (RFC 7946): any object; coordinates after the second are ignored, and rings
 ///                    that are not closed are read as closed
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document

@@ -39,7 +39,10 @@ std::size_t triangle_count(const Triangulation& mesh) { return mesh.triangles.si
 struct ConstraintParts {
   std::span<const std::int32_t> edges;            ///< 2 points each
   std::span<const std::int32_t> segments;         ///< one per edge: the segment that has it
+  std::span<const std::int32_t> markers;          ///< one per segment, or none
   std::span<const double> holes;                  ///< x and y each
+  std::span<const PolyRegion> places;             ///< in regions
+  std::span<const double> attributes;             ///< one per triangle, or none
   std::span<const std::int32_t> regions, depths;  ///< one per triangle, or none
   bool present = false;                           ///< whether the mesh has constraints, if only none of them
 
@@ -51,12 +54,19 @@ struct ConstraintParts {
 void write_poly(OutputFile& file, const ConstraintParts& constraints) {
   file.print("0 2 0 0\n{} 1\n", constraints.edge_count());
   for (std::size_t e = 0; e < constraints.edge_count(); ++e) {
+    const std::int32_t segment = constraints.segments[e];
     file.print("{} {} {} {}\n", e, constraints.edges[2 * e], constraints.edges[2 * e + 1],
-               constraints.segments[e] + 1LL);
+               constraints.markers.empty() ? segment + 1LL : constraints.markers[segment]);
   }
   file.print("{}\n", constraints.holes.size() / 2);
   for (std::size_t k = 0; 2 * k < constraints.holes.size(); ++k) {
     file.print("{} {} {}\n", k, constraints.holes[2 * k], constraints.holes[2 * k + 1]);
+  }
+  if (!constraints.places.empty()) file.print("{}\n", constraints.places.size());
+  for (std::size_t k = 0; k < constraints.places.size(); ++k) {
+    const PolyRegion& region = constraints.places[k];
+    file.print("{} {} {} {}{}\n", k, region.place[0], region.place[1], region.attribute,
+               region.area ? fmt::format(" {}", *region.area) : "");
   }
 }
 
@@ -65,10 +75,12 @@ void write_ele(Outputs& outputs, const std::string& path, const Points& points, 
   OutputFile& ele = outputs.open(path);
   print_node(outputs.open(path_beside(path, ".node")), points);
   if (constraints.present) write_poly(outputs.open(path_beside(path, ".poly")), constraints);
-  ele.print("{} 3 {}\n", triangle_count(mesh), constraints.has_labels() ? 2 : 0);
+  const bool has_attributes = !constraints.attributes.empty();
+  ele.print("{} 3 {}\n", triangle_count(mesh), (has_attributes ? 1 : 0) + (constraints.has_labels() ? 2 : 0));
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
     const std::int32_t* corner = &mesh.triangles[3 * t];
     ele.print("{} {} {} {}", t, corner[0], corner[1], corner[2]);
+    if (has_attributes) ele.print(" {}", constraints.attributes[t]);
     if (constraints.has_labels()) ele.print(" {} {}", constraints.regions[t], constraints.depths[t]);
     ele.print("\n");
   }
@@ -443,11 +455,13 @@ void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
   write_format(outputs, path, points, mesh, {});
 }
 
-void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
-                const ConstrainedTriangulation& mesh, FillRule fill_rule, const std::vector<double>& holes) {
-  if (output_format(path) == Format::svg) return write_svg(outputs, path, points, mesh, fill_rule);
-  write_format(outputs, path, points, mesh,
-               {mesh.constraint_edges, mesh.edge_segments, holes, mesh.regions, mesh.depths, true});
+void write_mesh(Outputs& outputs, const std::string& path, const Map& map,
+                const ConstrainedTriangulation& mesh, FillRule fill_rule,
+                const std::vector<double>& attributes) {
+  if (output_format(path) == Format::svg) return write_svg(outputs, path, map.points, mesh, fill_rule);
+  write_format(outputs, path, map.points, mesh,
+               {mesh.constraint_edges, mesh.edge_segments, map.segment_markers, map.holes, map.regions,
+                attributes, mesh.regions, mesh.depths, true});
 }
 
 std::vector<std::string> mesh_files(const std::string& path, bool with_constraints) {

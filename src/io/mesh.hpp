@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flaunay/constrained.hpp"
+#include "io/map.hpp"
 #include "io/output.hpp"
 #include "io/points.hpp"
 
@@ -17,15 +18,17 @@ namespace flaunay::io {
 /// Throws Error(input) naming path and the system's reason if it cannot be written.
 void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh);
 
-/// The same with constraints, as far as the format can have them. points: the added ones follow those of the
-/// input; fill_rule: what depths mean; holes: x and y each.
-///   .ele             region and depth as attributes, and beside it a .poly with the constraint edges, whose
-///                    markers are the numbers of their segments, from 1, and the holes
+/// The same with constraints, as far as the format can have them. Of the map, points: the added ones follow
+/// those of the input; fill_rule: what depths mean; attributes: of each triangle, or none.
+///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
+///                    edges, whose markers are those of their segments or, if these have none, the numbers of
+///                    their segments, from 1, and with the holes and regions
 ///   .obj .ply        the constraint edges, as lines and edges
 ///   .vtu .geojson    region and depth of each triangle
 ///   .svg             the constraint edges, and the inside in other colours than the outside
-void write_mesh(Outputs& outputs, const std::string& path, const Points& points,
-                const ConstrainedTriangulation& mesh, FillRule fill_rule, const std::vector<double>& holes);
+void write_mesh(Outputs& outputs, const std::string& path, const Map& map,
+                const ConstrainedTriangulation& mesh, FillRule fill_rule,
+                const std::vector<double>& attributes = {});
 
 /// The files that write_mesh writes for path: some formats have more than one.
 std::vector<std::string> mesh_files(const std::string& path, bool with_constraints);

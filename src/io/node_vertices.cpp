@@ -20,6 +20,16 @@ long long marker_count(Lines& lines) {
   return markers;
 }
 
+std::int32_t boundary_marker(const Lines& lines, std::string_view text) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  const long long marker = lines.whole_number(text, "a boundary marker");
+  if (marker < Limits::min() || marker > Limits::max()) {
+    lines.fail_field(text, "boundary marker {} is out of range; expected {} to {}", marker, Limits::min(),
+                     Limits::max());
+  }
+  return static_cast<std::int32_t>(marker);
+}
+
 void NodeVertices::read_header(Lines& lines) {
   const std::size_t fields = lines.count_fields();
   if (fields > 4) {
@@ -61,6 +71,7 @@ void NodeVertices::read_vertex(Lines& lines, std::vector<double>& coordinates) {
   const auto point = static_cast<std::size_t>(read_);
   coordinates.push_back(lines.coordinate(x, point));
   coordinates.push_back(lines.coordinate(y, point));
+  if (marked_ != nullptr && markers_ == 1) marked_->push_back(boundary_marker(lines, extra));
   ++read_;
 }
 

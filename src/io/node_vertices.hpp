@@ -13,8 +13,11 @@ namespace flaunay::io {
 /// Reads the lines one by one. Throws Error(input) that names the line.
 class NodeVertices {
  public:
-  /// indices: where the first attribute of each vertex goes, which must be an index; null for none.
-  explicit NodeVertices(std::vector<std::int32_t>* indices = nullptr) : indices_(indices) {}
+  /// indices: where the first attribute of each vertex goes, which must be an index; markers: where their
+  /// boundary markers go, if there are some. Null for none.
+  explicit NodeVertices(std::vector<std::int32_t>* indices = nullptr,
+                        std::vector<std::int32_t>* markers = nullptr)
+      : indices_(indices), marked_(markers) {}
 
   bool has_header() const { return header_line_ > 0; }
   void read_header(Lines& lines);
@@ -31,6 +34,7 @@ class NodeVertices {
 
  private:
   std::vector<std::int32_t>* indices_;
+  std::vector<std::int32_t>* marked_;
   std::size_t header_line_ = 0;  // 0: not read yet
   long long vertices_ = 0, attributes_ = 0, markers_ = 0;
   long long base_ = 0;
@@ -39,5 +43,7 @@ class NodeVertices {
 
 /// The number of boundary markers in a header of Triangle's formats, 0 or 1.
 long long marker_count(Lines& lines);
+/// A field of the line as a boundary marker.
+std::int32_t boundary_marker(const Lines& lines, std::string_view text);
 
 }  // namespace flaunay::io

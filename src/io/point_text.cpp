@@ -51,7 +51,8 @@ class PairText : public PointText {
 /// Triangle's format.
 class NodeText : public PointText {
  public:
-  NodeText(const std::string& path, std::vector<std::int32_t>* indices) : path_(path), vertices_(indices) {}
+  NodeText(const std::string& path, std::vector<std::int32_t>* indices, std::vector<std::int32_t>* markers)
+      : path_(path), vertices_(indices, markers) {}
 
   void parse(std::string_view text, std::vector<double>& coordinates) override {
     Lines lines(path_, text, Lines::Separator::blanks, lines_);
@@ -76,7 +77,7 @@ class NodeText : public PointText {
 }  // namespace
 
 std::unique_ptr<PointText> parse_points(const std::string& path) {
-  if (is_node(path)) return std::make_unique<NodeText>(path, nullptr);
+  if (is_node(path)) return std::make_unique<NodeText>(path, nullptr, nullptr);
   return std::make_unique<PairText>(path);
 }
 
@@ -87,7 +88,7 @@ std::string_view expected_text(const std::string& path) {
 NodeFile read_node(const std::string& path, bool with_indices) {
   const std::string text = read_file(path, expected_text(path));
   NodeFile file;
-  NodeText parser(path, with_indices ? &file.indices : nullptr);
+  NodeText parser(path, with_indices ? &file.indices : nullptr, &file.points.markers);
   parser.parse(text, file.points.coordinates);
   parser.finish();
   file.base = parser.base();

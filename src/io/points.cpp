@@ -20,7 +20,7 @@ constexpr std::string_view kPointInputEndings =
 constexpr std::string_view kPointOutputEndings =
     ".npy, .node, .xy, .txt, .csv, .bin, or \"-\" for standard output";
 /// The first line of a .node file.
-constexpr const char kNodeHeader[] = "{} 2 0 0\n";
+constexpr const char kNodeHeader[] = "{} 2 0 {}\n";
 
 PointFormat format_of(const std::string& path, std::string_view expected) {
   if (path == "-") return PointFormat::text;
@@ -76,8 +76,12 @@ void print_node_points(OutputFile& file, const double* coordinates, std::uint64_
 }
 
 void print_node(OutputFile& file, const Points& points) {
-  file.print(kNodeHeader, points.size());
-  print_node_points(file, points.coordinates.data(), 0, points.size());
+  file.print(kNodeHeader, points.size(), points.markers.empty() ? 0 : 1);
+  if (points.markers.empty()) return print_node_points(file, points.coordinates.data(), 0, points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    file.print("{} {} {} {}\n", i, points.coordinates[2 * i], points.coordinates[2 * i + 1],
+               points.markers[i]);
+  }
 }
 
 PointFormat point_format(const std::string& path) {
@@ -119,7 +123,7 @@ PointWriter::PointWriter(Outputs& outputs, const std::string& path, std::uint64_
     const std::string header = npy_header("<f8", n, 2);
     file_->write(header.data(), header.size());
   } else if (format_ == PointFormat::node) {
-    file_->print(kNodeHeader, n);
+    file_->print(kNodeHeader, n, 0);
   } else if (format_ == PointFormat::text) {
     // Every reader skips this line. With it, a file of no points can be read back.
     file_->print("{}", separator_ == ',' ? "x,y\n" : "# x y\n");
@@ -140,6 +144,9 @@ void PointWriter::write(const double* coordinates, std::size_t count) {
 }
 
 void write_points(Outputs& outputs, const std::string& path, const Points& points) {
+  if (!points.markers.empty() && point_output_format(path) == PointFormat::node) {
+    return print_node(outputs.open(path), points);
+  }
   PointWriter(outputs, path, points.size()).write(points.coordinates.data(), points.size());
 }
 

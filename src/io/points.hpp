@@ -13,6 +13,7 @@ namespace flaunay::io {
 /// Points as read: x0 y0 x1 y1 ...
 struct Points {
   std::vector<double> coordinates;
+  std::vector<std::int32_t> markers = {};  ///< of the vertices of .poly files that have some
   std::size_t size() const { return coordinates.size() / 2; }
 };
 

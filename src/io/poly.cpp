@@ -36,7 +36,7 @@ class PolyReader {
   };
 
   void read_vertices() {
-    NodeVertices vertices;
+    NodeVertices vertices(nullptr, &file_.points.markers);
     if (lines_.next()) vertices.read_header(lines_);
     if (vertices.has_header() && vertices.size() == 0) return take_vertices_of_node_file();
     while (vertices.left() > 0 && lines_.next()) vertices.read_vertex(lines_, file_.points.coordinates);
@@ -103,22 +103,21 @@ class PolyReader {
         file_.segments.push_back(
             checked_index(lines_, "vertex", lines_.integer("a vertex number"), base_, vertices_));
       }
+      if (std::string_view marker; has_markers) {
+        file_.markers.push_back(lines_.field(marker) ? boundary_marker(lines_, marker) : 0);
+      }
     }
   }
 
-  /// x and y of a hole or a region.
-  void read_place(std::string_view what, std::vector<double>& places) {
-    lines_.integer(fmt::format("a {} number", what));
-    for (int axis = 0; axis < 2; ++axis) {
-      std::string_view text;
-      lines_.field(text);
-      double value = 0;
-      if (parse_number(text, value) != ParsedNumber::fine || !std::isfinite(value)) {
-        lines_.fail_field(text, "expected a finite number (a coordinate of a {}), found {}", what,
-                          quoted(text));
-      }
-      places.push_back(value);
+  /// The next field, one that is there.
+  double read_number(std::string_view what) {
+    std::string_view text;
+    lines_.field(text);
+    double value = 0;
+    if (parse_number(text, value) != ParsedNumber::fine || !std::isfinite(value)) {
+      lines_.fail_field(text, "expected a finite number ({}), found {}", what, quoted(text));
     }
+    return value;
   }
 
   void read_holes() {
@@ -126,7 +125,8 @@ class PolyReader {
     for (long long k = 0; k < section.size; ++k) {
       next_row(section, k, "holes");
       check_fields(3, 3, "hole number, x, y");
-      read_place("hole", file_.holes);
+      lines_.integer("a hole number");
+      for (int axis = 0; axis < 2; ++axis) file_.holes.push_back(read_number("a coordinate of a hole"));
     }
   }
 
@@ -135,13 +135,17 @@ class PolyReader {
     const long long regions = lines_.integer("the number of regions");
     if (regions < 0) lines_.fail_line("{} regions; expected 0 or more", regions);
     const Section section = {regions, lines_.number()};
-    std::vector<double> places;
     for (long long k = 0; k < regions; ++k) {
       next_row(section, k, "regions");
       check_fields(4, 5, "region number, x, y, attribute, largest area");
-      read_place("region", places);
+      const bool has_area = lines_.count_fields() == 5;
+      lines_.integer("a region number");
+      PolyRegion region;
+      for (double& coordinate : region.place) coordinate = read_number("a coordinate of a region");
+      region.attribute = read_number("the attribute of a region");
+      if (has_area) region.area = read_number("the largest area of a region");
+      file_.regions.push_back(region);
     }
-    file_.regions = static_cast<std::size_t>(regions);
   }
 
   Lines lines_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,19 @@
 
 namespace flaunay::io {
 
+/// A place in a region, and what the file says about the region.
+struct PolyRegion {
+  double place[2], attribute;
+  std::optional<double> area;  ///< the largest one, for programs that add points
+};
+
 struct PolyFile {
   std::string path;
   Points points;                       ///< none if the vertices are in another file that was read before
   std::vector<std::int32_t> segments;  ///< 2 points each, counted from 0
   std::vector<double> holes;           ///< x and y each
-  std::size_t regions = 0;             ///< how many have attributes
+  std::vector<std::int32_t> markers;   ///< of the segments, if there are some
+  std::vector<PolyRegion> regions;
 };
 
 /// Reads a file. nodes: the vertices that one without its own refers to; null to read them from the .node

@@ -151,6 +151,10 @@ class Lines {
   long long integer(std::string_view what) {
     std::string_view text;
     if (!field(text)) fail_line("expected {}, found the end of the line", what);
+    return whole_number(text, what);
+  }
+  /// The same of a field of this line.
+  long long whole_number(std::string_view text, std::string_view what) const {
     long long value = 0;
     const std::size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
     const auto [stop, error] = std::from_chars(text.data() + skip, text.data() + text.size(), value);
@@ -273,7 +277,8 @@ struct NodeFile {
 };
 NodeFile read_node(const std::string& path, bool with_indices);
 
-/// Writes a .node file, numbered from 0, without attributes and markers. Defined in points.cpp.
+/// Writes a .node file, numbered from 0, without attributes, and with markers if there are some. Defined in
+/// points.cpp.
 void print_node(OutputFile& file, const Points& points);
 
 }  // namespace flaunay::io

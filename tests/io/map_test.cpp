@@ -70,8 +70,14 @@ TEST_F(MapTest, PolyFilesHaveAttributesMarkersHolesAndRegions) {
   EXPECT_EQ(map.holes, (Values{0.5, -1, 3, 3}));
   EXPECT_TRUE(map.lines.empty());
   EXPECT_EQ(map.polygon_count(), 0U);
-  ASSERT_EQ(map.notes.size(), 1U);
-  EXPECT_NE(map.notes[0].find("2 regions"), std::string::npos) << map.notes[0];
+  EXPECT_EQ(map.points.markers, (Indices{1, 1, 0, 1}));
+  EXPECT_EQ(map.segment_markers, (Indices{5, 5, 0}));
+  EXPECT_TRUE(map.notes.empty());
+  ASSERT_EQ(map.regions.size(), 2U);
+  EXPECT_EQ(map.regions[0].place[0], 1);
+  EXPECT_EQ(map.regions[0].attribute, 7);
+  EXPECT_EQ(map.regions[0].area, 0.5);
+  EXPECT_FALSE(map.regions[1].area.has_value());
 }
 
 TEST_F(MapTest, PolyFilesWithoutVerticesReferToANodeFile) {
@@ -104,6 +110,9 @@ TEST_F(MapTest, PolyFilesWithErrorsNameTheLine) {
   expect_bad_map("a.poly", triangle + "1 0\n0 0\n0\n", {"line 6", "3 fields", "found 2"});
   expect_bad_map("a.poly", triangle + "1 0\n0 0 1 1\n0\n", {"line 6", "3 fields", "found 4"});
   expect_bad_map("a.poly", triangle + "1 1\n0 0 x 1\n0\n", {"line 6, column 5", "'x'"});
+  expect_bad_map("a.poly", triangle + "1 1\n0 0 1 x\n0\n", {"line 6, column 7", "marker", "'x'"});
+  expect_bad_map("a.poly", "1 2 0 1\n0 0 0 2147483648\n", {"line 2, column 7", "2147483648", "out of range"});
+  expect_bad_map("a.poly", triangle + "0\n0\n1\n0 1 1 x\n", {"line 8, column 7", "attribute", "'x'"});
   expect_bad_map("a.poly", triangle + "0\n", {"ends before", "holes"});
   expect_bad_map("a.poly", triangle + "0\n1\n", {"line 6", "1 holes", "after 0"});
   expect_bad_map("a.poly", triangle + "0\n1\n0 1 inf\n", {"line 7, column 5", "finite", "'inf'"});
@@ -316,8 +325,15 @@ ConstrainedTriangulation square() {
 class ConstrainedMeshTest : public FolderTest {
  protected:
   std::string write_square(const std::string& name, const ConstrainedTriangulation& mesh) {
+    Map map;
+    map.points.coordinates = {0, 0, 2, 0, 2, 2, 0, 2};
+    map.holes = {0.5, 0.25};
+    return write_map(name, map, mesh);
+  }
+  std::string write_map(const std::string& name, const Map& map, const ConstrainedTriangulation& mesh,
+                        const Values& attributes = {}) {
     Outputs outputs;
-    write_mesh(outputs, path(name), {{0, 0, 2, 0, 2, 2, 0, 2}}, mesh, FillRule::nesting, {0.5, 0.25});
+    write_mesh(outputs, path(name), map, mesh, FillRule::nesting, attributes);
     outputs.commit();
     return read(path(name));
   }
@@ -334,6 +350,26 @@ TEST_F(ConstrainedMeshTest, TrianglesFormatHasLabelsAndEdges) {
   EXPECT_EQ(mesh_files(path("a.ele"), true),
             (std::vector<std::string>{path("a.ele"), path("a.node"), path("a.poly")}));
   EXPECT_EQ(mesh_files("a.ele", false), (std::vector<std::string>{"a.ele", "a.node"}));
+}
+
+TEST_F(ConstrainedMeshTest, MarkersAndAttributesAreWrittenThrough) {
+  Map map;
+  map.points = {{0, 0, 2, 0, 2, 2, 0, 2}, {3, -4, 0, 5}};
+  map.segment_markers = {1, 2, 3, 4, 5, 6, -7};
+  map.regions = {{{1.5, 0.5}, 0.25, 0.125}, {{0.5, 1.5}, 1e300, {}}};
+  EXPECT_EQ(write_map("a.ele", map, square(), {0.25, 1e300}),
+            "2 3 3\n0 0 1 2 0.25 0 0\n1 0 2 3 1e+300 1 1\n");
+  EXPECT_EQ(read(path("a.node")), "4 2 0 1\n0 0 0 3\n1 2 0 -4\n2 2 2 0\n3 0 2 5\n");
+  EXPECT_EQ(read(path("a.poly")), "0 2 0 0\n1 1\n0 0 2 -7\n0\n2\n0 1.5 0.5 0.25 0.125\n1 0.5 1.5 1e+300\n");
+  const Map again = read_map(path("a.poly"));
+  EXPECT_EQ(again.points.markers, map.points.markers);
+  EXPECT_EQ(again.segment_markers, (Indices{-7}));
+  EXPECT_EQ(again.regions.size(), 2U);
+  EXPECT_TRUE(read_points(path("a.node")).markers.empty()) << "of .poly files alone";
+  Outputs outputs;
+  write_points(outputs, path("p.node"), map.points);
+  outputs.commit();
+  EXPECT_EQ(read(path("p.node")), read(path("a.node")));
 }
 
 TEST_F(ConstrainedMeshTest, EdgesAreInObjAndPly) {
