@@ -5,7 +5,7 @@
 #     threads        6 minutes   calls at once, chunks and failing allocations under the thread sanitizer
 #     segments       5 minutes   random segments under the sanitizers of addresses and undefined behaviour
 #     tunings       10 minutes   sets of up to 100,000 points, with sizes of GPUs and in both arithmetics
-#     files          2 minutes   files of all formats in chunks, compared with runs in memory
+#     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
 # Fails if an attack found something, and says what.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -41,7 +41,9 @@ tunings() {
 }
 
 files() {
-  build release flaunay_cli && python3 tests/chunk_files.py build/release/flaunay --seconds 120 --seed "$RANDOM"
+  cmake --preset release -DFLAUNAY_MPI=ON && build release flaunay_cli flaunay_mpi_cli || return
+  FLAUNAY_DEVICE=host python3 tests/chunk_files.py build/release/flaunay --seconds 180 --seed "$RANDOM" \
+    --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
 all=(allocations threads segments tunings files)
