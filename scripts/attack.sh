@@ -4,8 +4,8 @@
 #     allocations    2 minutes   each allocation of many calls fails, one after the other, in the release build
 #     threads        6 minutes   calls at once, chunks and failing allocations under the thread sanitizer
 #     segments       5 minutes   random segments under the sanitizers of addresses and undefined behaviour
-#     large         10 minutes   sets of 5,000 to 100,000 points, with sizes of GPUs and in both arithmetics
-#     files          2 minutes   files of all formats in chunks, compared with runs in memory
+#     tunings       10 minutes   sets of up to 100,000 points, with sizes of GPUs and in both arithmetics
+#     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
 # Fails if an attack found something, and says what.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -36,15 +36,17 @@ segments() {
   ASAN_OPTIONS=detect_leaks=0 build/asan/tests/fuzz_constrained --seconds 300 --seed "$RANDOM"
 }
 
-large() {
-  build release fuzz_triangulations && build/release/tests/fuzz_triangulations --large --seconds 600 --seed "$RANDOM"
+tunings() {
+  build release fuzz_triangulations && build/release/tests/fuzz_triangulations --tunings --seconds 600 --seed "$RANDOM"
 }
 
 files() {
-  build release flaunay_cli && python3 tests/chunk_files.py build/release/flaunay --seconds 120 --seed "$RANDOM"
+  cmake --preset release -DFLAUNAY_MPI=ON && build release flaunay_cli flaunay_mpi_cli || return
+  FLAUNAY_DEVICE=host python3 tests/chunk_files.py build/release/flaunay --seconds 180 --seed "$RANDOM" \
+    --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
-all=(allocations threads segments large files)
+all=(allocations threads segments tunings files)
 attacks=("$@")
 if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
 for attack in "${attacks[@]}"; do

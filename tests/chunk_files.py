@@ -3,7 +3,9 @@
 widths of indices. What is written is compared with a run in memory: hulls and duplicates byte by byte, triangles with
 their neighbours as sets, since the order of rows depends on chunks; and between formats byte by byte.
 
-    chunk_files.py FLAUNAY [--seconds N] [--seed S]
+    chunk_files.py FLAUNAY [--seconds N] [--seed S] [--mpi COMMAND]
+
+COMMAND: such as "mpirun -n 3 build/release/flaunay-mpi", whose results are compared as well.
 """
 import argparse
 import io
@@ -58,15 +60,17 @@ def write_all(folder, integers):
     lines = [f"{x!r} {y!r}" for x, y in points.tolist()]
     (folder / "p.xy").write_text("\n".join(lines) + "\n")
     (folder / "p.csv").write_text("x,y\n" + "\n".join(line.replace(" ", ",") for line in lines) + "\n")
-    (folder / "p.node").write_text("\n".join([f"{len(lines)} 2 0 0"] + [f"{k} {xy}" for k, xy in enumerate(lines)]) + "\n")
+    numbered = [f"{len(lines)} 2 0 0"] + [f"{k} {line}" for k, line in enumerate(lines)]
+    (folder / "p.node").write_text("\n".join(numbered) + "\n")
 
 
 OUTPUTS = ("triangles", "neighbors", "hull", "duplicates")
 
 
-def run(flaunay, folder, name, arguments):
+def run(program, folder, name, arguments):
+    """program: the command and its arguments before the subcommand."""
     out = {array: folder / f"{array}.npy" for array in OUTPUTS}
-    command = [flaunay, "triangulate", folder / name, "--quiet", *arguments]
+    command = [*program, "triangulate", folder / name, "--quiet", *arguments]
     for array, path in out.items():
         path.unlink(missing_ok=True)
         command += [f"--{array}", path]
@@ -96,6 +100,7 @@ def main():
     parser.add_argument("flaunay")
     parser.add_argument("--seconds", type=float, default=5)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--mpi", type=str.split)
     options = parser.parse_args()
     end = time.monotonic() + options.seconds
     case = 0
@@ -115,21 +120,31 @@ def main():
             def fail(message):
                 sys.exit(f"seed {options.seed}, case {case}: {n} points, {' '.join(chunks)}: {message}")
 
-            code, whole = run(options.flaunay, folder, "p.npy", ["--device", "host"])
+            code, whole = run([options.flaunay], folder, "p.npy", ["--device", "host"])
             if code != 0:
                 fail(f"in memory: {whole}")
+
+            def expect_same(name, found):
+                for array in ("hull", "duplicates"):
+                    if not np.array_equal(values(found[array]), values(whole[array])):
+                        fail(f"{name}: another array of {array}")
+                if not np.array_equal(rows(found), rows(whole)):
+                    fail(f"{name}: other triangles or neighbours")
+
+            for file in ("p.npy", "p.bin") if options.mpi else ():
+                size = ["--round-points", str(int(rng.integers(max(1, n // 20), n + 2)))]
+                code, found = run(options.mpi, folder, file, size)
+                if code != 0:
+                    fail(f"{file} with MPI, {size}: {found}")
+                expect_same(f"{file} with MPI, {size}", found)
             first = None
             for file in ("p.npy", "p.bin", "p.las", "p.xy", "p.csv", "p.node"):
-                code, found = run(options.flaunay, folder, file, chunks)
+                code, found = run([options.flaunay], folder, file, chunks)
                 if code != 0:
                     fail(f"{file}: {found}")
                 if first is None:
                     first = found
-                    for array in ("hull", "duplicates"):
-                        if not np.array_equal(values(found[array]), values(whole[array])):
-                            fail(f"{file}: another array of {array}")
-                    if not np.array_equal(rows(found), rows(whole)):
-                        fail(f"{file}: other triangles or neighbours")
+                    expect_same(file, found)
                 elif found != first:
                     fail(f"{file}: other bytes than from p.npy")
             left = sorted(path.name for path in folder.iterdir())

@@ -72,6 +72,21 @@ TEST_F(CommandFaultsTest, SignalsLeaveNothingBehind) {
   }
 }
 
+TEST_F(CommandFaultsTest, WorksWithoutThreads) {
+  run_well({"generate", "uniform", "20000", "-o", path("points.npy")}, kNoPlatform);
+  const Arguments all = {"triangulate", path("points.npy"), "--device", "host", "--triangles", path("t.npy")};
+  run_well(all, kNoPlatform);
+  const std::string expected = contents(path("t.npy"));
+  write("t.npy", "");
+  run_well(all, with("no-threads"));
+  EXPECT_EQ(contents(path("t.npy")), expected);
+  run_well({"verify", path("points.npy"), path("t.npy")}, with("no-threads"));
+  Arguments in_chunks = all;
+  in_chunks.insert(in_chunks.end(), {"--chunk-points", "5000"});
+  expect_error(kDevice, {"no thread"}, in_chunks, with("no-threads"));
+  EXPECT_EQ(contents(path("t.npy")), expected);
+}
+
 TEST_F(CommandFaultsTest, ASignalThatCannotBeCaughtLeavesNothingBehind) {
   if (!has_unnamed_files()) GTEST_SKIP() << "no files without names here";
   write("t.npy", "precious");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <system_error>
 
 namespace flaunay::cli {
 
@@ -45,7 +46,12 @@ void write_to_terminal(const std::string& text) {
 }  // namespace
 
 Progress::Progress(bool wanted) {
-  if (wanted && on_terminal()) drawer_ = std::thread([this] { draw_until_finished(); });
+  if (!wanted || !on_terminal()) return;
+  try {
+    drawer_ = std::thread([this] { draw_until_finished(); });
+  } catch (const std::system_error&) {
+    // If the system refuses the thread, nothing is drawn.
+  }
 }
 
 Progress::~Progress() { finish(); }

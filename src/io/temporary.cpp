@@ -76,7 +76,12 @@ void clean_up_when_interrupted() {
   // A thread that waits may do what a signal handler may not, such as listing a folder. All other threads
   // inherit the blocked signals.
   pthread_sigmask(SIG_BLOCK, &awaited, nullptr);
-  std::thread([awaited] { wait_and_clean_up(awaited); }).detach();
+  try {
+    std::thread([awaited] { wait_and_clean_up(awaited); }).detach();
+  } catch (const std::system_error&) {
+    // If the system refuses the thread, signals end the process at once, and what is not complete stays.
+    pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
+  }
 }
 
 Uninterrupted::Uninterrupted() : lock_(registry().mutex) {}

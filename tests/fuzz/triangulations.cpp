@@ -2,11 +2,10 @@
 // check and, for small sets, with the reference in GMP. Stops at the first wrong result, shrinks its points
 // and prints them.
 //
-//   fuzz_triangulations [--large] [--seconds N] [--seed S] [--first CASE]
+//   fuzz_triangulations [--tunings] [--seconds N] [--seed S] [--first CASE]
 //
-// With --large, single sets of 5,000 to 100,000 points, in mode blocks alone, with sizes of GPUs and in both
-// arithmetics.
-// Each case depends on the seed and its number alone, so --first repeats one.
+// With --tunings, mode blocks alone, with sizes of GPUs and in both arithmetics: batches, and single sets of
+// 5,000 to 100,000 points.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -204,9 +203,9 @@ Verdict judge(const Batch& batch, const std::vector<Execution>& executions) {
 
 /// Mode blocks with many sizes: natively, so that no compiler of a driver is between, and on the first
 /// device.
-class LargeTriangulators {
+class ManyTunings {
  public:
-  LargeTriangulators() {
+  ManyTunings() {
     for (const char* const tuning : {"", "gpu", "gpu:32", "small", "small-blocks", "gpu,round_points=64"})
       add(native_, "host", tuning);
     for (const char* const tuning :
@@ -249,6 +248,10 @@ class LargeTriangulators {
 
   std::vector<Tuned> native_, on_device_;
 };
+
+Batch batch_or_large_set(testing::FixtureRandom& random) {
+  return random.integer(0, 1) == 0 ? degenerate_batch(random) : large_set(random);
+}
 
 template <typename Triangulators, Batch (*MakeBatch)(testing::FixtureRandom&)>
 class Triangulations : public Fuzzer {
@@ -298,11 +301,11 @@ int main(int argc, char** argv) {
   using namespace flaunay::fuzz;
   constexpr const char* kDescription =
       "Triangulates degenerate point sets in all modes until a result is wrong or the time is over.";
-  if (argc < 2 || std::string(argv[1]) != "--large") {
-    using Small = Triangulations<Triangulators, degenerate_batch>;
-    return run_fuzzer<Small>(argc, argv, "fuzz_triangulations", kDescription);
+  if (argc < 2 || std::string(argv[1]) != "--tunings") {
+    using AllModes = Triangulations<Triangulators, degenerate_batch>;
+    return run_fuzzer<AllModes>(argc, argv, "fuzz_triangulations", kDescription);
   }
   std::swap(argv[0], argv[1]);
-  using Large = Triangulations<LargeTriangulators, large_set>;
-  return run_fuzzer<Large>(argc - 1, argv + 1, "fuzz_triangulations --large", kDescription);
+  using Tuned = Triangulations<ManyTunings, batch_or_large_set>;
+  return run_fuzzer<Tuned>(argc - 1, argv + 1, "fuzz_triangulations --tunings", kDescription);
 }

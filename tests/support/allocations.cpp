@@ -58,11 +58,25 @@ using flaunay::testing::allocate;
 using flaunay::testing::allocate_object;
 using flaunay::testing::fails;
 using flaunay::testing::free_object;
+using flaunay::testing::live;
 
 void* operator new(std::size_t bytes) { return allocate_object(bytes, alignof(std::max_align_t)); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return allocate_object(bytes, static_cast<std::size_t>(alignment));
 }
+// Those of the standard library call the ones above, but those of a sanitizer do not.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  void* const memory = allocate(bytes, alignof(std::max_align_t));
+  if (memory != nullptr) ++live;
+  return memory;
+}
+void* operator new[](std::size_t bytes) { return operator new(bytes); }
+void* operator new[](std::size_t bytes, const std::nothrow_t& mark) noexcept {
+  return operator new(bytes, mark);
+}
+void operator delete[](void* memory) noexcept { free_object(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { free_object(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { free_object(memory); }
 void operator delete(void* memory) noexcept { free_object(memory); }
 void operator delete(void* memory, std::size_t) noexcept { free_object(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { free_object(memory); }

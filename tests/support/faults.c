@@ -3,6 +3,7 @@
    no-exchange            no renameat2
    no-links               no hard links
    ignore-case            names in upper case are those in lower case
+   no-threads             none can be made
    full-at-sync           fsync finds that the disk is full
    end-at-sync=N          fsync and syncfs send this signal, and wait until it takes effect
    fail-renames-to=PATH   renames to paths that end so fail
@@ -13,6 +14,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -131,6 +133,12 @@ int renameat2(int from_folder, const char* from, int to_folder, const char* to, 
 int link(const char* from, const char* to) {
   REAL("link", (const char*, const char*))
   return is_listed("no-links") ? refuse(EPERM) : real(from, to);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*work)(void*),
+                   void* argument) {
+  REAL("pthread_create", (pthread_t*, const pthread_attr_t*, void* (*)(void*), void*))
+  return is_listed("no-threads") ? EAGAIN : real(thread, attributes, work, argument);
 }
 
 static void end_at_sync(void) {
