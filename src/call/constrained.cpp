@@ -107,11 +107,11 @@ namespace {
 ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
                                          const std::vector<std::size_t>& offsets,
                                          const Constraints& constraints, const ConstrainedOptions& options) {
-  // What splitting and triangulating take for each place at which segments cross.
-  constexpr std::size_t kBytesPerCrossing = 640;
+  // What splitting and triangulating take for each piece; there are two for a segment and a place on it.
+  constexpr std::size_t kBytesPerPiece = 320;
   const double begin = host::now();
   constrained::SplitLimits limits;
-  limits.places = std::min(limits.places, host::memory_left().bytes / kBytesPerCrossing);
+  limits.pieces = std::min(limits.pieces, host::memory_left().bytes / kBytesPerPiece);
   constrained::Split split = constrained::split(coordinates, offsets, checked_segments(constraints), limits);
   ConstrainedOptions without = options;
   without.crossings = Crossings::error;

@@ -128,6 +128,11 @@ bool round_certainly(double a, double b, const Double2& ratio, double unit, doub
          sum.x + (sum.y - error) == sum.x;
 }
 
+bool is_multiple(double value, double unit) {
+  const double quotient = value / unit;
+  return quotient == std::rint(quotient);
+}
+
 bool is_on(const Line& line, Point p) { return kernel::orient_sign(line.a, line.b, p, ORIENT_BOUND) == 0; }
 
 }  // namespace
@@ -164,7 +169,11 @@ Point round_crossing(const Line& first, const Line& second, double unit) {
                                 denominator.error / std::fabs(denominator.value.x))};
     const bool is_certain = round_certainly(first.a.x, first.b.x, ratio, unit, rounded.x) &
                             round_certainly(first.a.y, first.b.y, ratio, unit, rounded.y);
-    if (is_certain || (is_on(first, rounded) && is_on(second, rounded))) return rounded;
+    if (is_certain) return rounded;
+    if (is_multiple(rounded.x, unit) && is_multiple(rounded.y, unit) && is_on(first, rounded) &&
+        is_on(second, rounded)) {
+      return rounded;
+    }
   }
   const ExactCrossing exact(first, second);
   return {exact.round(false, unit), exact.round(true, unit)};

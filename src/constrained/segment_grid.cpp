@@ -14,7 +14,7 @@ constexpr std::size_t kInOneCell = 96;
 // If there are no more pairs than so many for each segment in a cell, all are compared.
 constexpr std::size_t kPairsPerEntry = 24;
 // Otherwise they are compared as long as one in so many crosses, but for so many for each segment in a cell.
-constexpr std::size_t kPairsPerCrossing = 16;
+constexpr std::size_t kPairsPerCrossing = 32;
 constexpr std::size_t kFirstPairsPerEntry = 4;
 
 // Whether what is between two x and two y has no common point with what is between others.
@@ -90,12 +90,15 @@ void SegmentGrid::visit_cells(const Line& line, const Visit& visit) const {
   }
 }
 
-// Whether two segments certainly cross in another cell. Unless they are nearly parallel, the place is wrong
-// by less than the padding, so the other cell has both.
+// Whether two segments cross in another cell. Their place is wrong by less than the padding, so both are in
+// its cell.
 bool SegmentGrid::is_elsewhere(const Line& p, const Line& q, std::size_t cell) const {
+  if (cells() == 1) return false;
   const double px = p.b.x - p.a.x, py = p.b.y - p.a.y, qx = q.b.x - q.a.x, qy = q.b.y - q.a.y;
   const double left = px * qy, right = py * qx, cross = left - right;
-  if (cells() == 1 || 64 * std::fabs(cross) < std::fabs(left) + std::fabs(right)) return false;
+  const bool are_nearly_parallel = 64 * std::fabs(cross) < std::fabs(left) + std::fabs(right);
+  if (are_nearly_parallel)
+    return cell_of(round_crossing(p, q, std::ldexp(1.0, kernel::LOWEST_EXPONENT))) != cell;
   const double part = ((q.a.x - p.a.x) * qy - (q.a.y - p.a.y) * qx) / cross;
   return cell_of({p.a.x + part * px, p.a.y + part * py}) != cell;
 }
@@ -119,8 +122,8 @@ bool SegmentGrid::find_crossings(const Predicates& predicates, const FoundPair& 
       for (std::uint32_t j = begin; j < k; ++j) {
         const Line& other = here[j - begin];
         if (are_boxes_apart(line, other) || !cross(predicates, line, other)) continue;
-        most += kPairsPerCrossing;
         if (is_elsewhere(line, other, c)) continue;
+        most += kPairsPerCrossing;
         if (!found(segments_[j], segments_[k])) return true;
       }
       here.push_back(line);

@@ -17,9 +17,9 @@ class SegmentGrid {
   /// lines: each with its lexicographically smaller end first.
   explicit SegmentGrid(const std::vector<Line>& lines);
 
-  /// Calls `found` with all pairs of segments that cross, some of them several times, until it says no, and
-  /// returns true. Returns false before all are found if too many pairs in cells do not cross: it takes O(s +
-  /// k) for k pairs that are found.
+  /// Calls `found` once with each pair of segments that cross, until it says no, and returns true. Returns
+  /// false before all are found if too many pairs in cells do not cross: it takes O(s + k) for k pairs that
+  /// are found.
   bool find_crossings(const Predicates& predicates, const FoundPair& found) const;
 
   /// Calls `found` with all pairs of a segment and a point whose distance is at most `distance` in both

@@ -1,5 +1,7 @@
 #include "constrained/snap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,6 +9,7 @@
 
 #include "constrained/crossing.hpp"
 #include "constrained/point_tree.hpp"
+#include "flaunay/flaunay.hpp"
 #include "shared/planar.h"
 
 namespace flaunay::constrained {
@@ -60,7 +63,7 @@ class Snapping {
            double unit)
       : predicates_(predicates), points_(points), edges_(edges), unit_(unit) {}
 
-  Chains run() {
+  Chains run(std::size_t most_vertices) {
     double largest = 0;
     for (const Point p : points_) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
     // Nothing is rounded by more than this, in each coordinate.
@@ -79,6 +82,7 @@ class Snapping {
       });
       add_chain(edge, chains.vertices);
       chains.offsets.push_back(chains.vertices.size());
+      if (chains.vertices.size() > most_vertices) throw_too_many_pieces(most_vertices);
     }
     return chains;
   }
@@ -188,8 +192,16 @@ class Snapping {
 }  // namespace
 
 Chains snap(const Predicates& predicates, const std::vector<Point>& points, const std::vector<Piece>& edges,
-            double unit) {
-  return Snapping(predicates, points, edges, unit).run();
+            double unit, std::size_t most) {
+  return Snapping(predicates, points, edges, unit).run(most);
+}
+
+void throw_too_many_pieces(std::size_t most) {
+  throw Error(
+      ErrorKind::input,
+      fmt::format("splitting segments makes more than {} pieces, for which memory or 32-bit indices do "
+                  "not suffice",
+                  most));
 }
 
 }  // namespace flaunay::constrained

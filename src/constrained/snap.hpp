@@ -21,8 +21,14 @@ struct Chains {
 /// points: all are vertices, and multiples of the unit, as for round_crossing. edges: the lexicographically
 /// smaller end first; all places where they cross, rounded, must be vertices.
 ///
-/// O((e + m) log e) for v vertices near edges in m pairs, if few boxes of vertices are met; O(e v) otherwise.
+/// Throws Error(input) if chains have more than `most` vertices. Let m be the number of pairs of an edge and
+/// a vertex within a unit in the last place of it. O(v log v + m log v) for v vertices, if few boxes of
+/// vertices are met beside those, and O(e v) otherwise; a chain that turns around k vertices takes O(k) times
+/// as long at worst.
 Chains snap(const Predicates& predicates, const std::vector<Point>& points, const std::vector<Piece>& edges,
-            double unit);
+            double unit, std::size_t most);
+
+/// Throws the error about more pieces than there may be.
+[[noreturn]] void throw_too_many_pieces(std::size_t most);
 
 }  // namespace flaunay::constrained

@@ -28,18 +28,11 @@ using Ids = std::vector<std::int32_t>;
 
 constexpr std::size_t kMostIndices = std::numeric_limits<std::int32_t>::max();
 
-[[noreturn]] void throw_too_many(const char* what, std::size_t count, std::size_t most) {
+[[noreturn]] void throw_too_many_points(std::size_t count) {
   throw Error(ErrorKind::input,
-              fmt::format("splitting segments makes {} {}, which are too many for 32-bit indices: at "
+              fmt::format("splitting segments makes {} points, which are too many for 32-bit indices: at "
                           "most {} are possible",
-                          count, what, most));
-}
-
-[[noreturn]] void throw_too_many_places(std::size_t most) {
-  throw Error(
-      ErrorKind::input,
-      fmt::format("segments cross at more than {} places, for which memory or 32-bit indices do not suffice",
-                  most));
+                          count, kMostIndices));
 }
 
 // Points of one set, scaled so that the largest exponent is that of the predicates' range: then all of the
@@ -168,7 +161,6 @@ class Crossings {
         if (e >= 0 && (next[e] == ends[e] || ranks[next[e] - 1] != rank)) ranks[next[e]++] = rank;
       }
     }
-    if (places.size() > most_) throw_too_many_places(most_);
     all_ = {};
     const Ids vertex_of = vertices.find_or_add(places);
 
@@ -205,7 +197,7 @@ class Crossings {
   // So many pairs of edges make a place a hub, if they cross there exactly and come soon after each other.
   static constexpr std::uint32_t kPairsOfHub = 64;
   static constexpr std::size_t kRecent = 256;
-  // Edges are cut at hubs, and searched again, if hubs have more pairs than these.
+  // Edges are cut at hubs, and searched again, if hubs have more pairs than these, edges and places together.
   static constexpr std::size_t kFirstPairs = 10000;
   static constexpr std::size_t kFirstMerge = 1 << 22;
 
@@ -288,7 +280,7 @@ class Crossings {
       }
       ++places_;
     }
-    if (places_ > most_) throw_too_many_places(most_);
+    if (merged.size() > most_) throw_too_many_pieces(most_);
     all_.swap(merged);
     merge_at_ = std::max(kFirstMerge, 2 * all_.size());
   }
@@ -325,12 +317,12 @@ class SetSplitter {
   void run(const SplitLimits& limits) {
     for (std::size_t patience = 1;; patience *= 2) {
       cut();
-      Crossings crossings(vertices_, predicates_, edges_.edges, limits.places, patience);
+      Crossings crossings(vertices_, predicates_, edges_.edges, limits.pieces, patience);
       bool is_complete = true;
       find_all_crossings(edges_.edges,
                          [&](std::int32_t e, std::int32_t f) { return is_complete = crossings.add(e, f); });
       if (is_complete) {
-        if (vertices_.points.size() > vertices_.given || !crossings.empty()) lead_through(crossings);
+        if (vertices_.points.size() > vertices_.given || !crossings.empty()) lead_through(crossings, limits);
         return;
       }
       vertices_.find_or_add(crossings.hubs());
@@ -401,27 +393,32 @@ class SetSplitter {
     find_near();
   }
 
-  // Finds the vertices near edges. Returns whether it is certain that none is on one.
+  // Finds the vertices near edges, unless one is on an edge. Returns whether it is certain that none is.
   bool find_near() {
     constexpr std::size_t kMostNear = 4;
-    constexpr double kDistance = 4 * kHalfSpacing;
     const std::size_t most = kMostNear * (edges_.edges.size() + vertices_.points.size());
+    const std::vector<Line> all = lines(edges_.edges);
+    double largest = 0;
+    for (const auto& [a, b] : all) {
+      largest = std::max({largest, std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
+    }
+    // Crossings move by at most a quarter of this.
+    const double distance = 0x1p-51 * largest;
     near_.clear();
-    bool is_any_on = false;
+    bool is_over = false;
     const FoundPair add = [&](std::int32_t e, std::int32_t v) {
       const Piece edge = edges_.edges[e];
       if (v == edge.from || v == edge.to) return true;
-      if (is_inside(edge, v)) {
-        is_any_on = true;
-      } else {
-        near_.emplace_back(e, v);
-      }
-      return near_.size() < most;
+      near_.emplace_back(e, v);
+      is_over = near_.size() > most || is_inside(edge, v);
+      return !is_over;
     };
-    const std::vector<Line> all = lines(edges_.edges);
-    near_is_complete_ =
-        SegmentGrid(all).find_near(vertices_.points, kDistance, add) || find_near_by_tree(kDistance, add);
-    return near_is_complete_ && !is_any_on;
+    near_is_complete_ = SegmentGrid(all).find_near(vertices_.points, distance, add);
+    if (!near_is_complete_ && !is_over) {
+      near_.clear();
+      near_is_complete_ = find_near_by_tree(all, distance, add);
+    }
+    return near_is_complete_;
   }
 
   // Whether a vertex is on an edge; not at its ends.
@@ -431,19 +428,19 @@ class SetSplitter {
     return kernel::comes_before(a, p) && kernel::comes_before(p, b) && predicates_.orient(a, b, p) == 0;
   }
 
-  bool find_near_by_tree(double distance, const FoundPair& found) const {
+  bool find_near_by_tree(const std::vector<Line>& all, double distance, const FoundPair& found) const {
     // A long edge meets O(sqrt(n)) boxes. Where boxes do not tell points apart, it takes less to look for
     // what crosses.
     const double most = 64.0 * (edges_.edges.size() + vertices_.points.size()) +
                         16.0 * edges_.edges.size() * std::sqrt(vertices_.points.size());
-    Ids all(vertices_.points.size());
-    std::iota(all.begin(), all.end(), 0);
-    const PointTree tree(points(), std::move(all), kLargest);
+    Ids ids(vertices_.points.size());
+    std::iota(ids.begin(), ids.end(), 0);
+    const PointTree tree(points(), std::move(ids), kLargest);
     std::size_t boxes = 0;
     bool is_complete = true;
-    for (std::size_t e = 0; e < edges_.edges.size() && is_complete; ++e) {
-      boxes += tree.visit_near(line(edges_.edges[e]), distance, [&](std::int32_t v) {
-        is_complete &= found(static_cast<std::int32_t>(e), v);
+    for (std::size_t e = 0; e < all.size() && is_complete; ++e) {
+      boxes += tree.visit_near(all[e], distance, [&](std::int32_t v) {
+        is_complete = is_complete && found(static_cast<std::int32_t>(e), v);
       });
       is_complete &= static_cast<double>(boxes) <= most;
     }
@@ -458,12 +455,12 @@ class SetSplitter {
 
   // Leads edges through the places of their crossings; and if parts of them cross then, through all vertices
   // whose cells they meet.
-  void lead_through(Crossings& crossings) {
+  void lead_through(Crossings& crossings, const SplitLimits& limits) {
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
     if ((are_apart && points_are_apart()) || !parts_cross()) return;
     is_snapped_ = true;
-    chains_ = snap(predicates_, vertices_.points, edges_.edges, vertices_.unit);
+    chains_ = snap(predicates_, vertices_.points, edges_.edges, vertices_.unit, limits.pieces);
   }
 
   // Whether no point is so near to an edge, one of them having moved, that it may be on its other side now.
@@ -602,7 +599,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
       // The index of each vertex; those of added ones are in lexicographic order.
       std::size_t next = offsets.back() + result.added_points.size() / 2;
       const std::size_t all = next + vertices.points.size() - vertices.given;
-      if (all > kMostIndices) throw_too_many("points", all, kMostIndices);
+      if (all > kMostIndices) throw_too_many_points(all);
       Ids index(vertices.points.size());
       for (const std::int32_t v : vertices.sorted) {
         if (vertices.is_added(v)) {
@@ -616,7 +613,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
         const auto s = static_cast<std::size_t>(by_set[set][k]);
         place[s] = ends.size();
         splitter.list_pieces(k, ends);
-        if (ends.size() > kMostIndices) throw_too_many("pieces", ends.size() / 2, kMostIndices / 2);
+        if (ends.size() / 2 > limits.pieces) throw_too_many_pieces(limits.pieces);
         counts[s] = (ends.size() - place[s]) / 2;
         for (std::size_t e = place[s]; e < ends.size(); ++e) ends[e] = index[ends[e]];
       }

@@ -10,7 +10,7 @@ namespace flaunay::constrained {
 
 /// What splitting may take.
 struct SplitLimits {
-  std::size_t places = 1'000'000'000;  ///< segments of a set may cross at so many places
+  std::size_t pieces = 1'000'000'000;  ///< of all segments; at most 2^30 - 1
 };
 
 struct Split {
@@ -39,7 +39,7 @@ struct Split {
 /// segment.
 ///
 /// Throws Error(usage) for wrong segments as constrain() does; Error(input) as Triangulator::triangulate does
-/// for points, and if segments cross at more places than the limit or than 32-bit indices allow.
+/// for points, and if there are more pieces than the limit, or more points than 32-bit indices allow.
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets,
             const std::vector<std::int32_t>& segments, const SplitLimits& limits = {});
 
