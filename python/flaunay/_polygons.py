@@ -263,7 +263,8 @@ def _rings_of(given: Any) -> _Rings:
     # A table of geopandas describes itself, too, but slowly.
     described = None if hasattr(given, "__array__") else _geojson_of(given)
     if described is not None:
-        return _of_lists([{"type": "MultiPolygon", "coordinates": parts} for parts in _rows_of_geojson(described)])
+        several = _rows_of_geojson(described)
+        return _of_lists([{"type": "MultiPolygon", "coordinates": parts} for parts in several])
     rows = _rows_of(given)
     if any(map(_is_shapely, rows)) and all(row is None or _is_shapely(row) for row in rows):
         geometries = np.empty(len(rows), object)

@@ -276,7 +276,8 @@ def test_rings_may_have_any_direction(random, fill_rule, options):
     options = {"fill_rule": fill_rule, "labels": True, **options}
     for directions in itertools.product([True, False], repeat=3):
         turned = in_directions(polygon, directions)
-        for given in turned, shapely.geometry.mapping(turned), [turned], [shapely.geometry.mapping(turned)]:
+        described = shapely.geometry.mapping(turned)
+        for given in turned, described, [turned], [described]:
             mesh = flaunay.polygons(given, **options)
             assert exact_mesh_area(mesh) == exact_area(polygon) and set(mesh.depths) == {1}
         # Parts unite, also in opposite directions.
