@@ -117,6 +117,22 @@ SegmentSet any_nasty(FixtureRandom& random) {
   return {std::move(input.points), std::move(input.segments)};
 }
 
+/// Segments between points that are rounded onto few lines, so that they cross where little tells them apart.
+SegmentSet on_rounded_lines(FixtureRandom& random) {
+  SegmentSet set;
+  const auto count = random.integer(4, 24);
+  const auto lines = random.integer(1, 3);
+  const double step = once_in(random, 3) ? 1e-13 : 1 / static_cast<double>(random.integer(1, 9));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto line = static_cast<double>(random.integer(1, lines));
+    const double x = step * static_cast<double>(random.integer(0, 2 * count));
+    set.points.insert(set.points.end(), {x, line * x / 3});
+  }
+  set.segments = testing::random_segments(random, static_cast<std::size_t>(count),
+                                          static_cast<std::size_t>(random.integer(2, count)));
+  return set;
+}
+
 /// Equal points, segments in another order, or points moved.
 void change(FixtureRandom& random, SegmentSet& set) {
   if (once_in(random, 6)) {
@@ -137,7 +153,9 @@ void change(FixtureRandom& random, SegmentSet& set) {
 SegmentBatch degenerate_segments(FixtureRandom& random) {
   SegmentBatch batch;
   if (once_in(random, 5)) {
-    for (auto left = random.integer(1, 4); left > 0; --left) batch.push_back(any_nasty(random));
+    for (auto left = random.integer(1, 4); left > 0; --left) {
+      batch.push_back(once_in(random, 3) ? on_rounded_lines(random) : any_nasty(random));
+    }
   } else {
     for (const Coordinates& points : degenerate_batch(random)) {
       batch.push_back({points, any_segments(random, points)});
