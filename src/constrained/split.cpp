@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "constrained/constrained.hpp"
-#include "constrained/crossing.hpp"
+#include "constrained/crossing_places.hpp"
 #include "constrained/lines.hpp"
 #include "constrained/point_tree.hpp"
 #include "constrained/segment_grid.hpp"
@@ -24,8 +23,6 @@
 namespace flaunay::constrained {
 namespace {
 
-using Ids = std::vector<std::int32_t>;
-
 constexpr std::size_t kMostIndices = std::numeric_limits<std::int32_t>::max();
 
 [[noreturn]] void throw_too_many_points(std::size_t count) {
@@ -34,275 +31,6 @@ constexpr std::size_t kMostIndices = std::numeric_limits<std::int32_t>::max();
                           "most {} are possible",
                           count, kMostIndices));
 }
-
-// Points of one set, scaled so that the largest exponent is that of the predicates' range: then all of the
-// range is below it.
-struct Vertices {
-  Vertices(const double* coordinates, const PointSets& sets, std::size_t set) {
-    const auto begin = static_cast<std::size_t>(sets.set_offsets[set]);
-    const auto end = static_cast<std::size_t>(sets.set_offsets[set + 1]);
-    int largest = std::numeric_limits<int>::min();
-    for (std::size_t i = begin; i < end; ++i) {
-      for (const int k : {0, 1}) {
-        const double c = coordinates[2 * static_cast<std::size_t>(sets.source[i]) + k];
-        if (c != 0) largest = std::max(largest, std::ilogb(c));
-      }
-    }
-    if (largest == std::numeric_limits<int>::min()) largest = 0;
-    shift = kernel::LARGEST_EXPONENT - largest;
-    // The exponent of the lowest bit of a double.
-    constexpr int kLowest = std::numeric_limits<double>::min_exponent - std::numeric_limits<double>::digits;
-    unit = std::ldexp(1.0, std::max<int>(kernel::LOWEST_EXPONENT, kLowest + shift));
-    for (std::size_t i = begin; i < end; ++i) {
-      const double* from = coordinates + 2 * static_cast<std::size_t>(sets.source[i]);
-      points.push_back({std::ldexp(from[0], shift) + 0.0, std::ldexp(from[1], shift) + 0.0});
-    }
-    given = points.size();
-    sorted.resize(points.size());
-    std::iota(sorted.begin(), sorted.end(), 0);
-  }
-
-  Point unscaled(Point p) const { return {std::ldexp(p.x, -shift), std::ldexp(p.y, -shift)}; }
-  bool is_added(std::int32_t v) const { return static_cast<std::size_t>(v) >= given; }
-
-  // Returns the vertices at these distinct places, in lexicographic order, which are added where there are
-  // none.
-  Ids find_or_add(const std::vector<Point>& places) {
-    Ids result;
-    result.reserve(places.size());
-    const std::size_t before = points.size();
-    auto next = sorted.begin();
-    for (const Point place : places) {
-      while (next != sorted.end() && kernel::comes_before(points[*next], place)) ++next;
-      const bool is_known = next != sorted.end() && points[*next] == place;
-      result.push_back(is_known ? *next : static_cast<std::int32_t>(points.size()));
-      if (!is_known) points.push_back(place);
-    }
-    sorted.resize(points.size());
-    const auto added = sorted.begin() + static_cast<std::ptrdiff_t>(before);
-    std::iota(added, sorted.end(), static_cast<std::int32_t>(before));
-    std::inplace_merge(sorted.begin(), added, sorted.end(), [this](std::int32_t u, std::int32_t v) {
-      return kernel::comes_before(points[u], points[v]) != 0;
-    });
-    return result;
-  }
-
-  std::vector<Point> points;
-  Ids sorted;             // all, in lexicographic order
-  std::size_t given = 0;  // so many points are the caller's
-  int shift = 0;
-  double unit = 0;
-};
-
-// Scaled coordinates are below the first of these. The second is half the distance of the largest ones:
-// rounding moves no place by more than that, in each coordinate.
-constexpr double kLargest = 0x1p250;
-constexpr double kHalfSpacing = 0x1p-54 * kLargest;
-static_assert(kernel::LARGEST_EXPONENT == 249);
-
-// Crossings of edges, merged where they are rounded to one place.
-class Crossings {
- public:
-  // patience: hubs may have so many times as many pairs.
-  Crossings(const Vertices& vertices, const Predicates& predicates, const std::vector<Piece>& edges,
-            std::size_t most, std::size_t patience)
-      : vertices_(vertices), predicates_(predicates), edges_(edges), most_(most), patience_(patience) {}
-
-  // Adds two edges that cross. Returns whether to go on: not if many pairs cross at places that are hubs.
-  bool add(std::int32_t e, std::int32_t f) {
-    const Line p = line(e), q = line(f);
-    const Point at = round_crossing(p, q, vertices_.unit);
-    all_.push_back({at, reach(p, q), e, f});
-    if (all_.size() >= merge_at_) merge();
-    Recent& recent = recent_[hash(at) % kRecent];
-    if (!(recent.at == at)) recent = {at, 0, false};
-    if (++recent.pairs == kPairsOfHub && are_exactly_there(p, q, at)) {
-      recent.is_hub = true;
-      hubs_.push_back(at);
-    }
-    if (recent.is_hub) ++pairs_of_hubs_;
-    return pairs_of_hubs_ <= patience_ * (kFirstPairs + edges_.size() + places_);
-  }
-
-  bool empty() const { return all_.empty(); }
-
-  // Places at which many edges cross exactly, in lexicographic order.
-  std::vector<Point> hubs() const {
-    std::vector<Point> hubs = hubs_;
-    std::sort(hubs.begin(), hubs.end(), [](Point p, Point q) { return kernel::comes_before(p, q) != 0; });
-    hubs.erase(std::unique(hubs.begin(), hubs.end(), [](Point p, Point q) { return p == q; }), hubs.end());
-    return hubs;
-  }
-
-  // Makes vertices of the places. Rounding keeps the order of each coordinate. So along an edge, x does not
-  // decrease after rounding, and where it is equal, y is still in its order. are_apart: whether no two
-  // vertices that follow each other are so near that something else may be between them.
-  Chains chains(Vertices& vertices, bool& are_apart) {
-    std::vector<std::size_t> ends(edges_.size() + 1, 0);
-    for (const Crossing& crossing : all_) {
-      ++ends[crossing.e + 1];
-      if (crossing.f >= 0) ++ends[crossing.f + 1];
-    }
-    std::partial_sum(ends.begin(), ends.end(), ends.begin());
-    // Places in lexicographic order, so that they come to each edge in that order.
-    Ids ranks(ends.back());
-    std::vector<std::size_t> next(ends.begin(), ends.end() - 1);
-    std::vector<Point> places;
-    std::vector<double> reaches;
-    for (const Keyed& k : sorted()) {
-      const Crossing& crossing = all_[k.index];
-      if (places.empty() || !(places.back() == crossing.at)) {
-        places.push_back(crossing.at);
-        reaches.push_back(0);
-      }
-      reaches.back() = std::max(reaches.back(), crossing.reach);
-      const auto rank = static_cast<std::int32_t>(places.size()) - 1;
-      for (const std::int32_t e : {crossing.e, crossing.f}) {
-        if (e >= 0 && (next[e] == ends[e] || ranks[next[e] - 1] != rank)) ranks[next[e]++] = rank;
-      }
-    }
-    all_ = {};
-    const Ids vertex_of = vertices.find_or_add(places);
-
-    Chains chains;
-    chains.offsets.reserve(edges_.size() + 1);
-    chains.offsets.push_back(0);
-    are_apart = true;
-    std::size_t kept = 0;
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      const Point from = vertices.points[edges_[e].from], to = vertices.points[edges_[e].to];
-      const auto begin = ranks.begin() + static_cast<std::ptrdiff_t>(ends[e]),
-                 end = ranks.begin() + static_cast<std::ptrdiff_t>(next[e]);
-      if (to.y < from.y) turn_equal_x(places, begin, end);
-      Point last = from;
-      double reach = 0;
-      const auto measure = [&](Point p, double reach_of_p) {
-        are_apart &= std::max(std::fabs(p.x - last.x), std::fabs(p.y - last.y)) > std::max(reach, reach_of_p);
-        last = p;
-        reach = reach_of_p;
-      };
-      for (auto r = begin; r != end; ++r) {
-        measure(places[*r], reaches[*r]);
-        ranks[kept++] = vertex_of[*r];
-      }
-      if (begin != end) measure(to, 0);
-      chains.offsets.push_back(kept);
-    }
-    ranks.resize(kept);
-    chains.vertices = std::move(ranks);
-    return chains;
-  }
-
- private:
-  // So many pairs of edges make a place a hub, if they cross there exactly and come soon after each other.
-  static constexpr std::uint32_t kPairsOfHub = 64;
-  static constexpr std::size_t kRecent = 256;
-  // Edges are cut at hubs, and searched again, if hubs have more pairs than these, edges and places together.
-  static constexpr std::size_t kFirstPairs = 10000;
-  static constexpr std::size_t kFirstMerge = 1 << 22;
-
-  // Edges that meet a place. The second is -1 if an odd number does.
-  struct Crossing {
-    Point at;
-    double reach;  // see reach()
-    std::int32_t e, f;
-  };
-  struct Recent {
-    Point at;
-    std::uint32_t pairs;
-    bool is_hub;
-  };
-
-  Line line(std::int32_t e) const {
-    return {vertices_.points[edges_[e].from], vertices_.points[edges_[e].to]};
-  }
-
-  bool are_exactly_there(const Line& p, const Line& q, Point at) const {
-    return predicates_.orient(p.a, p.b, at) == 0 && predicates_.orient(q.a, q.b, at) == 0;
-  }
-
-  // If nothing else is so near to a crossing on its edges, then nothing that its edges do not meet is within
-  // 2 kHalfSpacing of it: see docs/constrained.md. A line at that distance meets one of the edges within 2
-  // sqrt(2) kHalfSpacing / sin(angle / 2).
-  static double reach(const Line& p, const Line& q) {
-    const double px = p.b.x - p.a.x, py = p.b.y - p.a.y, qx = q.b.x - q.a.x, qy = q.b.y - q.a.y;
-    const double left = px * qy, right = py * qx;
-    const double cross = std::fabs(left - right) - 0x1p-50 * (std::fabs(left) + std::fabs(right));
-    if (cross <= 0) return HUGE_VAL;
-    return 32 * kHalfSpacing * ((std::fabs(px) + std::fabs(py)) * ((std::fabs(qx) + std::fabs(qy)) / cross));
-  }
-
-  static std::uint64_t hash(Point p) {
-    std::uint64_t x, y;
-    std::memcpy(&x, &p.x, sizeof x);
-    std::memcpy(&y, &p.y, sizeof y);
-    // By large odd numbers; the upper bits of a product depend on all bits.
-    return (x * 0x9e3779b97f4a7c15 + y * 0xc2b2ae3d27d4eb4f) >> 32;
-  }
-
-  // In lexicographic order of places.
-  std::vector<Keyed> sorted() const {
-    std::vector<Keyed> order;
-    order.reserve(all_.size());
-    for (std::size_t k = 0; k < all_.size(); ++k) {
-      order.push_back({sort_key(all_[k].at.x), static_cast<std::int32_t>(k)});
-    }
-    sort_by_key(order);
-    for (auto begin = order.begin(), end = begin; begin != order.end(); begin = end) {
-      while (end != order.end() && end->key == begin->key) ++end;
-      if (end - begin == 1) continue;
-      std::sort(begin, end,
-                [this](const Keyed& p, const Keyed& q) { return all_[p.index].at.y < all_[q.index].at.y; });
-    }
-    return order;
-  }
-
-  // An edge meets a place only once, however many it crosses there.
-  void merge() {
-    std::vector<Crossing> merged;
-    const std::vector<Keyed> order = sorted();
-    places_ = 0;
-    Ids here;
-    for (auto begin = order.begin(), end = begin; begin != order.end(); begin = end) {
-      const Point at = all_[begin->index].at;
-      double reach = 0;
-      here.clear();
-      for (; end != order.end() && all_[end->index].at == at; ++end) {
-        const Crossing& crossing = all_[end->index];
-        reach = std::max(reach, crossing.reach);
-        here.push_back(crossing.e);
-        if (crossing.f >= 0) here.push_back(crossing.f);
-      }
-      std::sort(here.begin(), here.end());
-      here.erase(std::unique(here.begin(), here.end()), here.end());
-      for (std::size_t k = 0; k < here.size(); k += 2) {
-        merged.push_back({at, reach, here[k], k + 1 < here.size() ? here[k + 1] : -1});
-      }
-      ++places_;
-    }
-    if (merged.size() > most_) throw_too_many_pieces(most_);
-    all_.swap(merged);
-    merge_at_ = std::max(kFirstMerge, 2 * all_.size());
-  }
-
-  static void turn_equal_x(const std::vector<Point>& places, Ids::iterator first, Ids::iterator last) {
-    for (auto begin = first, end = first; begin != last; begin = end) {
-      while (end != last && places[*end].x == places[*begin].x) ++end;
-      std::reverse(begin, end);
-    }
-  }
-
-  const Vertices& vertices_;
-  const Predicates& predicates_;
-  const std::vector<Piece>& edges_;
-  std::size_t most_, patience_;
-  std::vector<Crossing> all_;
-  std::size_t merge_at_ = kFirstMerge;
-  std::size_t places_ = 0;  // as of the last merge
-  std::vector<Recent> recent_ = std::vector<Recent>(kRecent);
-  std::vector<Point> hubs_;
-  std::size_t pairs_of_hubs_ = 0;
-};
 
 // Splits the segments of one set.
 class SetSplitter {
@@ -317,7 +45,7 @@ class SetSplitter {
   void run(const SplitLimits& limits) {
     for (std::size_t patience = 1;; patience *= 2) {
       cut();
-      Crossings crossings(vertices_, predicates_, edges_.edges, limits.pieces, patience);
+      CrossingPlaces crossings(vertices_, predicates_, edges_.edges, limits.pieces, patience);
       bool is_complete = true;
       find_all_crossings(edges_.edges,
                          [&](std::int32_t e, std::int32_t f) { return is_complete = crossings.add(e, f); });
@@ -455,7 +183,7 @@ class SetSplitter {
 
   // Leads edges through the places of their crossings; and if parts of them cross then, through all vertices
   // whose cells they meet.
-  void lead_through(Crossings& crossings, const SplitLimits& limits) {
+  void lead_through(CrossingPlaces& crossings, const SplitLimits& limits) {
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
     if ((are_apart && points_are_apart()) || !parts_cross()) return;
