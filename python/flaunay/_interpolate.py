@@ -116,14 +116,14 @@ class _Interpolator(Fixed):
     @values.setter
     def values(self, values: npt.ArrayLike) -> None:
         check_memory(values, "values")
-        array = self._as_values(values)
+        # A copy, as the caller may go on writing to an array of its own.
+        array = frozen(np.array(self._as_values(values), order="C"))
         if array.ndim == 0 or len(array) != self.tri.npoints:
             raise UsageError(
                 f"values must have the shape ({self.tri.npoints}, ...), not {array.shape}: "
                 "one row for each point"
             )
-        # A view, as the caller may go on writing to an array of its own.
-        self._data = (frozen(array.view()), *self._prepared(array))
+        self._data = (array, *self._prepared(array))
 
     def _prepared(self, values: npt.NDArray[Any]) -> tuple[Any, Any]:
         """What is computed from values, once for all calls."""
@@ -386,7 +386,7 @@ class CloughTocherInterpolator(_Columns):
         n = self.tri.npoints
         rows = given.reshape(n, -1, 2) if given.size else np.empty((n, 0, 2))
         if values.dtype.kind != "c" or values.size == 0:
-            return np.ascontiguousarray(rows)
+            return np.array(rows, order="C")
         return np.concatenate([rows.real, rows.imag, np.zeros((n, 1, 2))], axis=1)
 
     @property

@@ -251,6 +251,18 @@ def test_values_can_be_assigned(scattered, kind, first, second):
 
 
 @pytest.mark.parametrize("kind", INTERPOLATORS)
+def test_arrays_may_change_after_they_were_given(scattered, kind):
+    points, values, queries = (array.copy() for array in scattered)
+    gradients = np.ones((len(points), 2))
+    given = [{}, {"gradients": gradients}] if kind is flaunay.CloughTocherInterpolator else [{}]
+    interpolators = [kind(points, values, **options) for options in given]
+    before = [interpolator(queries).tobytes() for interpolator in interpolators]
+    for array in points, values, gradients:
+        array[:] = 1e300
+    assert [interpolator(queries).tobytes() for interpolator in interpolators] == before
+
+
+@pytest.mark.parametrize("kind", INTERPOLATORS)
 def test_what_cannot_be_assigned_is_refused(kind):
     interpolator = kind(CORNERS, [1, 2, 3])
     for wrong in [1, 2], 1, np.ma.masked_array([1, 2, 3], mask=[0, 1, 0]):
