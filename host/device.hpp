@@ -34,9 +34,9 @@ bool may_have_gpu(const std::string& folder = "/dev");
 /// DeviceError if there is none.
 boost::compute::device best_device();
 
-/// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else that of
-/// best_device), "#k" (the k-th of all_devices), or a part of a device's
-/// or platform's name in upper or lower case. Throws DeviceError, which lists the devices, if none matches.
+/// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else that of best_device),
+/// "#k" (the k-th of all_devices), or a part of a device's or platform's name in upper or lower case. Throws
+/// DeviceError, which lists the devices, if none matches.
 boost::compute::device find_device(const std::string& wanted);
 
 bool has_fp64(const boost::compute::device& device);

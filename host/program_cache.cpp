@@ -133,14 +133,12 @@ ProgramCache::ProgramCache(std::string folder, std::size_t most_bytes)
 int ProgramCache::opened() const {
   const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   struct stat status {};
-  if (folder < 0 || ::fstat(folder, &status) != 0) {
-    if (errno != ENOENT) make_note(folder_, std::strerror(errno));
-    return folder;
-  }
-  const std::string reason = who_else_writes(status);
+  const bool is_there = folder >= 0 && ::fstat(folder, &status) == 0;
+  if (!is_there && errno == ENOENT) return -1;
+  const std::string reason = is_there ? who_else_writes(status) : std::strerror(errno);
   if (reason.empty()) return folder;
   make_note(folder_, reason);
-  ::close(folder);
+  if (folder >= 0) ::close(folder);
   return -1;
 }
 

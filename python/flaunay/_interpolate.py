@@ -249,8 +249,6 @@ class LinearInterpolator(_Columns):
 
     Notes
     -----
-    Values of float64 are not copied: do not change an array that an interpolator has.
-
     Queries are located exactly, and at a point the result is exactly its value. A query that is not
     finite is outside. Points on one line have no triangles, so that all queries are outside; SciPy
     raises an exception for them.

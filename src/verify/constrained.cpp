@@ -360,6 +360,7 @@ class ConstrainedChecker : public Checker {
     for (std::size_t i = 0; i < pieces.order.size(); ++i) steps[pieces.order[i]] = sum += changes[i];
     return steps;
   }
+
   /// A step over a piece, from its right to its left or back, into a face that was not reached before, or out
   /// of it again.
   struct Move {
