@@ -118,11 +118,10 @@ void make_note(const std::string& folder, const std::string& reason) {
 
 }  // namespace
 
-void add_cache_note(std::string& note) {
-  Note& made = the_note();
-  const std::lock_guard<std::mutex> lock(made.mutex);
-  if (made.text.empty()) return;
-  note += (note.empty() ? "" : "; ") + std::exchange(made.text, "");
+std::string take_cache_note() {
+  Note& note = the_note();
+  const std::lock_guard<std::mutex> lock(note.mutex);
+  return std::exchange(note.text, "");
 }
 
 ProgramCache::ProgramCache(std::string folder, std::size_t most_bytes)

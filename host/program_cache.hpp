@@ -12,7 +12,7 @@ namespace flaunay::host {
 /// damaged are as if they were not there.
 ///
 /// Drivers execute programs and are no match for damaged ones. So the folder must belong to the user, and
-/// nobody else may be able to write to it or to a file that is read; see add_cache_note.
+/// nobody else may be able to write to it or to a file that is read; see take_cache_note.
 class ProgramCache {
  public:
   /// folder: made when a program is stored, for the user alone; empty: nothing is kept. most_bytes: when
@@ -34,8 +34,8 @@ class ProgramCache {
   std::size_t most_bytes_;
 };
 
-/// Appends to a note for the user why a folder is not used, once per process.
-void add_cache_note(std::string& note);
+/// Why a folder is not used, for the user, once per process; empty otherwise.
+std::string take_cache_note();
 
 /// The folder of the cache: the environment variable FLAUNAY_CACHE_DIR if it is set ("" for no cache), else
 /// flaunay in XDG_CACHE_HOME or in ~/.cache; empty if none of them is set.

@@ -6,6 +6,7 @@
 #include "call/on_host.hpp"
 #include "constrained/device.hpp"
 #include "geometry/magnitudes.hpp"
+#include "statistics/note.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -20,6 +21,7 @@ void add(const Statistics& step, Statistics& all) {
   all.bytes_to_device += step.bytes_to_device;
   all.bytes_to_host += step.bytes_to_host;
   all.device_allocations += step.device_allocations;
+  statistics::append_note(all.note, step.note);
   all.device_bytes_peak = std::max(all.device_bytes_peak, step.device_bytes_peak);
   for (const KernelStatistics& kernel : step.kernels) {
     const auto same = std::find_if(all.kernels.begin(), all.kernels.end(),
@@ -48,9 +50,7 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
   constrained::Result result =
       constrained::constrain(engine.runtime, coordinates, offsets, delaunay, segments, options.halfedges);
   Statistics step;
-  step.note = std::move(delaunay.statistics.note);
   engine.write_accounts(step);
-  delaunay.statistics.note = std::move(step.note);
   add(step, delaunay.statistics);
   return result;
 }

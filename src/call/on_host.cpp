@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "statistics/note.hpp"
+
 namespace flaunay::call {
 
 void add_note(const Engine& asked, const Engine& used, const std::string& what, const std::string& done,
               Statistics& statistics) {
   if (&asked == &used || !used.runtime.is_native()) return;
   statistics.host_points = statistics.points;
-  statistics.note += fmt::format("{}{} has no double precision (fp64) for {}: {} on the host",
-                                 statistics.note.empty() ? "" : "; ", asked.runtime.name(), what, done);
+  statistics::append_note(statistics.note,
+                          fmt::format("{} has no double precision (fp64) for {}: {} on the host",
+                                      asked.runtime.name(), what, done));
 }
 
 WithDoubles with_doubles(Implementation& self, const Enqueue& enqueue) {
