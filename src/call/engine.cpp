@@ -10,10 +10,10 @@
 #include "call/device_info.hpp"
 #include "call/self_test.hpp"
 #include "host/device.hpp"
+#include "host/note.hpp"
 #include "host/program_cache.hpp"
 #include "shared/limits.h"
 #include "shared/records.h"
-#include "statistics/note.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
@@ -167,7 +167,7 @@ void Engine::write_accounts(Statistics& statistics) {
   statistics.bytes_to_host = runtime.bytes_to_host();
   statistics.device_allocations = allocations() - allocations_before_;
   statistics.build_seconds = runtime.build_seconds();
-  statistics::append_note(statistics.note, host::take_cache_note());
+  host::append_note(statistics.note, host::take_cache_note());
   for (const auto& [name, time] : runtime.kernel_times()) {
     statistics.kernels.push_back({name, time.launches, time.seconds});
   }

@@ -6,7 +6,7 @@
 #include "call/on_host.hpp"
 #include "constrained/device.hpp"
 #include "geometry/magnitudes.hpp"
-#include "statistics/note.hpp"
+#include "host/note.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -21,7 +21,7 @@ void add(const Statistics& step, Statistics& all) {
   all.bytes_to_device += step.bytes_to_device;
   all.bytes_to_host += step.bytes_to_host;
   all.device_allocations += step.device_allocations;
-  statistics::append_note(all.note, step.note);
+  host::append_note(all.note, step.note);
   all.device_bytes_peak = std::max(all.device_bytes_peak, step.device_bytes_peak);
   for (const KernelStatistics& kernel : step.kernels) {
     const auto same = std::find_if(all.kernels.begin(), all.kernels.end(),

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "statistics/note.hpp"
+#include "host/note.hpp"
 
 namespace flaunay::call {
 
@@ -10,9 +10,8 @@ void add_note(const Engine& asked, const Engine& used, const std::string& what, 
               Statistics& statistics) {
   if (&asked == &used || !used.runtime.is_native()) return;
   statistics.host_points = statistics.points;
-  statistics::append_note(statistics.note,
-                          fmt::format("{} has no double precision (fp64) for {}: {} on the host",
-                                      asked.runtime.name(), what, done));
+  host::append_note(statistics.note, fmt::format("{} has no double precision (fp64) for {}: {} on the host",
+                                                 asked.runtime.name(), what, done));
 }
 
 WithDoubles with_doubles(Implementation& self, const Enqueue& enqueue) {

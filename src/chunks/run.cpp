@@ -18,7 +18,7 @@
 #include "chunks/finish.hpp"
 #include "geometry/euler.hpp"
 #include "host/clock.hpp"
-#include "statistics/note.hpp"
+#include "host/note.hpp"
 
 namespace flaunay::chunks {
 namespace {
@@ -315,7 +315,7 @@ class Round {
     statistics_.duplicates += made.duplicates;
     statistics_.undecided += made.undecided;
     const bool is_known = made.host_points > 0 && statistics_.host_points > 0;
-    if (!is_known) statistics::append_note(statistics_.note, made.note);
+    if (!is_known) host::append_note(statistics_.note, made.note);
     statistics_.host_points += made.host_points;
     statistics_.device_points[solver] += chunk.points().size();
     result_.points += chunk.points().size();

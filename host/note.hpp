@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace flaunay::statistics {
+namespace flaunay::host {
 
 /// Adds a further note, unless it is empty.
 inline void append_note(std::string& note, const std::string& further) {
@@ -11,4 +11,4 @@ inline void append_note(std::string& note, const std::string& further) {
   note += further;
 }
 
-}  // namespace flaunay::statistics
+}  // namespace flaunay::host
