@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "constrained/constrained.hpp"
-#include "constrained/map.hpp"
+#include "constrained/domains/map.hpp"
+#include "constrained/insertion/constrained.hpp"
 #include "flaunay/constrained.hpp"
 
 namespace flaunay::call {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "constrained/domain_on_host.hpp"
+#include "constrained/domains/domain_on_host.hpp"
 
 namespace flaunay::call {
 

@@ -4,7 +4,7 @@
 
 #include "call/device_mesh.hpp"
 #include "call/on_host.hpp"
-#include "constrained/device.hpp"
+#include "constrained/insertion/device.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/note.hpp"
 #include "statistics/phases.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "constrained/constrained.hpp"
+#include "constrained/insertion/constrained.hpp"
 
 namespace flaunay::call {
 

@@ -6,9 +6,9 @@
 
 #include "call/constrained.hpp"
 #include "call/device_mesh.hpp"
-#include "constrained/crossing_error.hpp"
-#include "constrained/domain_on_host.hpp"
-#include "constrained/map.hpp"
+#include "constrained/crossings/crossing_error.hpp"
+#include "constrained/domains/domain_on_host.hpp"
+#include "constrained/domains/map.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
 

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/constrained.hpp"
-#include "constrained/split.hpp"
+#include "constrained/crossings/split.hpp"
+#include "constrained/insertion/constrained.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/segments.hpp"

@@ -2,7 +2,7 @@
 // chains that are made to be hard.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "constrained/chains.hpp"
+#include "constrained/insertion/chains.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/mesh.hpp"
-#include "constrained/polygon.hpp"
+#include "constrained/insertion/mesh.hpp"
+#include "constrained/insertion/polygon.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
 #include "tests/support/device.hpp"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/constrained.hpp"
+#include "constrained/insertion/constrained.hpp"
 #include "flaunay/research.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"

@@ -1,5 +1,5 @@
 // The constrained triangulation on the host: everything against its definition, and the errors.
-#include "constrained/constrained.hpp"
+#include "constrained/insertion/constrained.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "constrained/polygon.hpp"
+#include "constrained/insertion/polygon.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"

@@ -1,7 +1,7 @@
 // All segments at once, on a device or natively: the same bytes and the same errors as one after the other.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "constrained/device.hpp"
+#include "constrained/insertion/device.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "call/constrained.hpp"
-#include "constrained/constrained.hpp"
-#include "constrained/domain_on_host.hpp"
+#include "constrained/domains/domain_on_host.hpp"
+#include "constrained/insertion/constrained.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"

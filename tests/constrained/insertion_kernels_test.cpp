@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/device.hpp"
+#include "constrained/insertion/device.hpp"
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"

@@ -1,6 +1,6 @@
 // Pairs of pieces that cross, and vertices inside of pieces, against all pairs; and the rounding of
 // crossings.
-#include "constrained/pairs.hpp"
+#include "constrained/crossings/pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <set>
 #include <vector>
 
-#include "constrained/lines.hpp"
-#include "constrained/point_tree.hpp"
-#include "constrained/segment_grid.hpp"
+#include "constrained/crossings/lines.hpp"
+#include "constrained/crossings/point_tree.hpp"
+#include "constrained/crossings/segment_grid.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/fixtures.hpp"
 

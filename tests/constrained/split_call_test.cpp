@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "constrained/split.hpp"
+#include "constrained/crossings/split.hpp"
 #include "flaunay/constrained.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/segments.hpp"

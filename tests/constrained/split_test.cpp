@@ -1,6 +1,6 @@
 // Splitting segments where they cross: everything against the definition in rational numbers, without any
 // shared code.
-#include "constrained/split.hpp"
+#include "constrained/crossings/split.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 // result, shrinks it and prints it as a test.
 //
 //   fuzz_constrained [--seconds N] [--seed S] [--first CASE]
-#include "constrained/constrained.hpp"
+#include "constrained/insertion/constrained.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest-spi.h>
@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/split.hpp"
+#include "constrained/crossings/split.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.hpp"
 #include "tests/constrained/check.hpp"

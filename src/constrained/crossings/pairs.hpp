@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/crossing.hpp"
+#include "constrained/crossings/crossing.hpp"
 #include "geometry/predicates.hpp"
 
 namespace flaunay::constrained {

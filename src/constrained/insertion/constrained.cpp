@@ -1,4 +1,4 @@
-#include "constrained/constrained.hpp"
+#include "constrained/insertion/constrained.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <tuple>
 #include <utility>
 
-#include "constrained/constraints.hpp"
-#include "constrained/crossing.hpp"
-#include "constrained/crossing_error.hpp"
-#include "constrained/mesh.hpp"
+#include "constrained/crossings/crossing.hpp"
+#include "constrained/crossings/crossing_error.hpp"
+#include "constrained/insertion/constraints.hpp"
+#include "constrained/insertion/mesh.hpp"
 #include "geometry/magnitudes.hpp"
 #include "shared/barycentric.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/pairs.hpp"
+#include "constrained/crossings/pairs.hpp"
 
 namespace flaunay::constrained {
 

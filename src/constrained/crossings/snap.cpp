@@ -1,4 +1,4 @@
-#include "constrained/snap.hpp"
+#include "constrained/crossings/snap.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "constrained/crossing.hpp"
-#include "constrained/point_tree.hpp"
+#include "constrained/crossings/crossing.hpp"
+#include "constrained/crossings/point_tree.hpp"
 #include "flaunay/flaunay.hpp"
 #include "shared/planar.h"
 

@@ -1,4 +1,4 @@
-#include "constrained/polygon.hpp"
+#include "constrained/insertion/polygon.hpp"
 
 #include <algorithm>
 #include <numeric>

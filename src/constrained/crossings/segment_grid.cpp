@@ -1,10 +1,10 @@
-#include "constrained/segment_grid.hpp"
+#include "constrained/crossings/segment_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "constrained/crossing.hpp"
+#include "constrained/crossings/crossing.hpp"
 
 namespace flaunay::constrained {
 namespace {

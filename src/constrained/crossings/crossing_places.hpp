@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/crossing.hpp"
-#include "constrained/pairs.hpp"
-#include "constrained/snap.hpp"
+#include "constrained/crossings/crossing.hpp"
+#include "constrained/crossings/pairs.hpp"
+#include "constrained/crossings/snap.hpp"
 #include "geometry/point_sets.hpp"
 #include "geometry/sort.hpp"
 

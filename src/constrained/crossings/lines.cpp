@@ -1,4 +1,4 @@
-#include "constrained/lines.hpp"
+#include "constrained/crossings/lines.hpp"
 
 #include <algorithm>
 

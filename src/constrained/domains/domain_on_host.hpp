@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/domain.hpp"
+#include "constrained/domains/domain.hpp"
 
 namespace flaunay::constrained {
 

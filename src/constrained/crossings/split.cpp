@@ -1,4 +1,4 @@
-#include "constrained/split.hpp"
+#include "constrained/crossings/split.hpp"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,12 @@
 #include <tuple>
 #include <utility>
 
-#include "constrained/constrained.hpp"
-#include "constrained/crossing_places.hpp"
-#include "constrained/lines.hpp"
-#include "constrained/point_tree.hpp"
-#include "constrained/segment_grid.hpp"
-#include "constrained/snap.hpp"
+#include "constrained/crossings/crossing_places.hpp"
+#include "constrained/crossings/lines.hpp"
+#include "constrained/crossings/point_tree.hpp"
+#include "constrained/crossings/segment_grid.hpp"
+#include "constrained/crossings/snap.hpp"
+#include "constrained/insertion/constrained.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/point_sets.hpp"

@@ -1,4 +1,4 @@
-#include "constrained/map.hpp"
+#include "constrained/domains/map.hpp"
 
 #include <fmt/format.h>
 

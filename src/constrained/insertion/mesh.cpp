@@ -1,4 +1,4 @@
-#include "constrained/mesh.hpp"
+#include "constrained/insertion/mesh.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "constrained/crossing.hpp"
+#include "constrained/crossings/crossing.hpp"
 
 #include <algorithm>
 #include <cmath>

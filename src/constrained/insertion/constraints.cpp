@@ -1,4 +1,4 @@
-#include "constrained/constraints.hpp"
+#include "constrained/insertion/constraints.hpp"
 
 #include <algorithm>
 #include <utility>

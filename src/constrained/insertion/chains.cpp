@@ -1,4 +1,4 @@
-#include "constrained/chains.hpp"
+#include "constrained/insertion/chains.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -10,13 +10,13 @@
 // Before that, wherever a horizontal or vertical line separates pieces but for a few, the pieces on its sides
 // are looked at separately: then short pieces do not meet the chains of those that are far above and below. A
 // crossing is on one of the sides, with both of its pieces.
-#include "constrained/pairs.hpp"
+#include "constrained/crossings/pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "constrained/crossing.hpp"
+#include "constrained/crossings/crossing.hpp"
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {

@@ -1,11 +1,11 @@
-#include "constrained/domain_on_host.hpp"
+#include "constrained/domains/domain_on_host.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
 
-#include "constrained/borders.hpp"
+#include "constrained/domains/borders.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/predicates.hpp"
 

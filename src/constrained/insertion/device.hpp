@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "constrained/constrained.hpp"
+#include "constrained/insertion/constrained.hpp"
 #include "points/device_mesh.hpp"
 
 namespace flaunay::constrained {

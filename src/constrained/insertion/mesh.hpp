@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/polygon.hpp"
+#include "constrained/insertion/polygon.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/predicates.hpp"

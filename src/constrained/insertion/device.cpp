@@ -1,9 +1,9 @@
-#include "constrained/device.hpp"
+#include "constrained/insertion/device.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "constrained/chains.hpp"
+#include "constrained/insertion/chains.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/vector_operations.hpp"

@@ -1,4 +1,4 @@
-#include "constrained/crossing_places.hpp"
+#include "constrained/crossings/crossing_places.hpp"
 
 #include <algorithm>
 #include <cmath>

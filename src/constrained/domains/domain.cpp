@@ -1,4 +1,4 @@
-#include "constrained/domain.hpp"
+#include "constrained/domains/domain.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "constrained/borders.hpp"
+#include "constrained/domains/borders.hpp"
 #include "host/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
 #include "launchers/constrained/holes.cl.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/crossing.hpp"
+#include "constrained/crossings/crossing.hpp"
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {

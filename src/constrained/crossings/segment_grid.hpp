@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/pairs.hpp"
+#include "constrained/crossings/pairs.hpp"
 
 namespace flaunay::constrained {
 
