@@ -8,9 +8,9 @@
 #include <fstream>
 #include <thread>
 
+#include "app/command/errors.hpp"
 #include "calls.hpp"
-#include "cli/errors.hpp"
-#include "io/output.hpp"
+#include "files/output.hpp"
 
 namespace flaunay::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "io/generate.hpp"
+#include "app/files/generate.hpp"
 
 namespace flaunay::bench {
 namespace {

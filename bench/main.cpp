@@ -5,7 +5,7 @@
 #include <exception>
 #include <string>
 
-#include "cli/errors.hpp"
+#include "app/command/errors.hpp"
 #include "command.hpp"
 
 namespace flaunay::bench {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <string_view>
 
+#include "app/files/points.hpp"
 #include "command.hpp"
+#include "files/output.hpp"
 #include "inputs.hpp"
-#include "io/output.hpp"
-#include "io/points.hpp"
 #include "program.hpp"
 #include "timing.hpp"
 

@@ -8,10 +8,10 @@
 #include <optional>
 #include <sstream>
 
+#include "app/files/points.hpp"
 #include "command.hpp"
+#include "files/output.hpp"
 #include "inputs.hpp"
-#include "io/output.hpp"
-#include "io/points.hpp"
 #include "program.hpp"
 #include "timing.hpp"
 

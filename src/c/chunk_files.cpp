@@ -9,9 +9,9 @@
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
-#include "chunks/array_sink.hpp"
-#include "io/mesh_stream.hpp"
-#include "io/output.hpp"
+#include "files/mesh_stream.hpp"
+#include "files/output.hpp"
+#include "large/chunks/array_sink.hpp"
 
 namespace flaunay::c {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "call/errors.hpp"
 #include "call/implementation.hpp"
-#include "chunks/array_sink.hpp"
-#include "chunks/run.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/system_memory.hpp"
+#include "large/chunks/array_sink.hpp"
+#include "large/chunks/run.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay {

@@ -5,7 +5,7 @@
 #include "call/errors.hpp"
 #include "call/handles.hpp"
 #include "call/on_host.hpp"
-#include "voronoi/clip.hpp"
+#include "derived/voronoi/clip.hpp"
 
 namespace flaunay {
 

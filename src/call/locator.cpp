@@ -1,5 +1,5 @@
 // The public class Locator.
-#include "locate/locator.hpp"
+#include "derived/locate/locator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 #include "call/errors.hpp"
 #include "call/handles.hpp"
 #include "call/on_host.hpp"
+#include "derived/interpolate/interpolate.hpp"
+#include "derived/interpolate/natural.hpp"
+#include "derived/locate/read_back.hpp"
 #include "geometry/magnitudes.hpp"
-#include "interpolate/interpolate.hpp"
-#include "interpolate/natural.hpp"
-#include "locate/read_back.hpp"
 
 namespace flaunay {
 
@@ -222,7 +222,7 @@ struct Locator::Implementation {
     return {are_given, std::move(given), options.tolerance, options.iterations};
   }
 
-  /// queries: as the functions in interpolate/interpolate.hpp take them.
+  /// queries: as the functions in derived/interpolate/interpolate.hpp take them.
   template <typename... Queries>
   void interpolate(host::Runtime& runtime, locate::Locator& locator, const InterpolationOptions& options,
                    const Buffer<cl_double>& values, const flaunay::interpolate::Gradients& gradients,

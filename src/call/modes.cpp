@@ -7,9 +7,9 @@
 
 #include "blocks/stages.hpp"
 #include "call/host_modes.hpp"
-#include "dwyer/run.hpp"
-#include "partition/regions.hpp"
-#include "recursive/run.hpp"
+#include "modes/dwyer/run.hpp"
+#include "modes/partition/regions.hpp"
+#include "modes/recursive/run.hpp"
 
 namespace flaunay {
 namespace call {

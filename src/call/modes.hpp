@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "call/host_call.hpp"
-#include "flattened/run.hpp"
 #include "flaunay/research.hpp"
+#include "modes/flattened/run.hpp"
 
 namespace flaunay::call {
 

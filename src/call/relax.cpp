@@ -6,8 +6,8 @@
 #include "call/errors.hpp"
 #include "call/handles.hpp"
 #include "call/on_host.hpp"
+#include "derived/voronoi/clip.hpp"
 #include "geometry/magnitudes.hpp"
-#include "voronoi/clip.hpp"
 
 namespace flaunay {
 

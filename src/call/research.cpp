@@ -6,8 +6,8 @@
 #include "call/errors.hpp"
 #include "call/implementation.hpp"
 #include "call/modes.hpp"
-#include "flattened/run.hpp"
 #include "geometry/magnitudes.hpp"
+#include "modes/flattened/run.hpp"
 
 namespace flaunay::research {
 namespace {

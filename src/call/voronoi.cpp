@@ -1,5 +1,5 @@
 // The public calls for Voronoi diagrams.
-#include "voronoi/voronoi.hpp"
+#include "derived/voronoi/voronoi.hpp"
 
 #include <utility>
 

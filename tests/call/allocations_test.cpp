@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/verify.hpp"
 #include "flaunay/chunks.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.h"
@@ -21,7 +22,6 @@
 #include "tests/constrained/nasty.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"
-#include "verify/verify.hpp"
 
 namespace flaunay::testing {
 namespace {

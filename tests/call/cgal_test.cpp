@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "flaunay/flaunay.hpp"
-#include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"

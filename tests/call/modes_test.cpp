@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
-#include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/shared_triangulator.hpp"

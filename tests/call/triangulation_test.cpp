@@ -14,17 +14,17 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/generate.hpp"
+#include "app/files/points.hpp"
+#include "app/verify/exact.hpp"
+#include "app/verify/verify.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
 #include "host/clock.hpp"
-#include "io/generate.hpp"
-#include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"
-#include "verify/exact.hpp"
-#include "verify/verify.hpp"
 
 namespace flaunay::testing {
 namespace {

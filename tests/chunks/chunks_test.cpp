@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "chunks/run.hpp"
+#include "large/chunks/run.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/stalling.hpp"
 

@@ -1,5 +1,5 @@
 // Trees of cuts between chunks: every point has one leaf, in whose rectangle it lies.
-#include "chunks/tree.hpp"
+#include "large/chunks/tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "chunks/scratch.hpp"
+#include "large/chunks/scratch.hpp"
 #include "tests/support/fixtures.hpp"
 
 namespace flaunay::chunks {

@@ -21,7 +21,7 @@
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/constrained.hpp"
+#include "app/verify/constrained.hpp"
 
 namespace flaunay::testing {
 namespace {

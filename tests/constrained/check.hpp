@@ -18,7 +18,7 @@
 #include "flaunay/research.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/exact.hpp"
+#include "app/verify/exact.hpp"
 
 namespace flaunay::testing {
 

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/fixtures.hpp"
-#include "verify/exact.hpp"
 
 namespace flaunay::testing {
 

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/constrained.hpp"
 #include "flaunay/constrained.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/shared_triangulator.hpp"
-#include "verify/constrained.hpp"
 
 namespace flaunay::testing {
 namespace {

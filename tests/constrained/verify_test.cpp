@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/constrained.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/constrained.hpp"
 
 namespace flaunay::testing {
 namespace {

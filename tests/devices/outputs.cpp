@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
-#include "io/points.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/paths.hpp"
 

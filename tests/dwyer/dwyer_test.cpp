@@ -1,6 +1,6 @@
 // Dwyer's algorithm on the host: against the brute-force reference where n allows, else against the exact
 // checker; its work by hand.
-#include "dwyer/dwyer.hpp"
+#include "modes/dwyer/dwyer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/verify.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/sort.hpp"
 #include "statistics/costs.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/verify.hpp"
 
 namespace flaunay::testing {
 namespace {

@@ -2,7 +2,7 @@
 // for twins across borders.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "flattened/regions.hpp"
+#include "modes/flattened/regions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "call/modes.hpp"
-#include "dwyer/dwyer.hpp"
-#include "flattened/levels.hpp"
-#include "flattened/partition.hpp"
-#include "partition/regions.hpp"
+#include "modes/dwyer/dwyer.hpp"
+#include "modes/flattened/levels.hpp"
+#include "modes/flattened/partition.hpp"
+#include "modes/partition/regions.hpp"
 #include "tests/flattened/support.hpp"
 #include "tests/support/neighbors_twin.hpp"
 

@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "flattened/stages.hpp"
 #include "host/device.hpp"
+#include "modes/flattened/stages.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/exact_points.hpp"
 #include "tests/support/fixtures.hpp"

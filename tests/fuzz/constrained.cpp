@@ -28,7 +28,7 @@
 #include "tests/fuzz/run.hpp"
 #include "tests/fuzz/segments.hpp"
 #include "tests/support/environment.hpp"
-#include "verify/constrained.hpp"
+#include "app/verify/constrained.hpp"
 
 namespace flaunay::fuzz {
 namespace {

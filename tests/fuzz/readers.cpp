@@ -19,12 +19,12 @@
 #include <string_view>
 #include <vector>
 
+#include "app/files/map.hpp"
+#include "app/files/mesh.hpp"
+#include "app/files/points.hpp"
+#include "app/files/region.hpp"
+#include "files/output.hpp"
 #include "flaunay/flaunay.hpp"
-#include "io/map.hpp"
-#include "io/mesh.hpp"
-#include "io/output.hpp"
-#include "io/points.hpp"
-#include "io/region.hpp"
 
 namespace flaunay::fuzz {
 namespace {

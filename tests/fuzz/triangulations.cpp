@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/verify.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
 #include "tests/fuzz/degenerate.hpp"
@@ -23,7 +24,6 @@
 #include "tests/fuzz/run.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/verify.hpp"
 
 namespace flaunay::fuzz {
 namespace {

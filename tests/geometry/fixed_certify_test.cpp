@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "app/files/generate.hpp"
 #include "flaunay/research.hpp"
-#include "io/generate.hpp"
 #include "tests/support/fixed_cases.hpp"
 #include "tests/support/fixed_point.hpp"
 #include "tests/support/rounding.hpp"

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "locate/query_range.hpp"
+#include "points/query_range.hpp"
 #include "shared/nearness.h"
 #include "tests/support/bounds.hpp"
 #include "tests/support/device.hpp"

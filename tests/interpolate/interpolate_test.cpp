@@ -1,7 +1,7 @@
 // Interpolation by every method, several columns at once, against sequential twins.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "interpolate/interpolate.hpp"
+#include "derived/interpolate/interpolate.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct Located {
     locator = make_locator(runtime, own, upload_mesh(runtime, input));
   }
 
-  /// method(runtime, locator, table, queries...) is one of interpolate/interpolate.hpp.
+  /// method(runtime, locator, table, queries...) is one of derived/interpolate/interpolate.hpp.
   template <typename Method>
   std::vector<double> values_by(const Method& method, const std::vector<double>& values,
                                 std::size_t columns) {

@@ -2,7 +2,7 @@
 // plane by bisectors alone.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "interpolate/natural.hpp"
+#include "derived/interpolate/natural.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "io/generate.hpp"
+#include "app/files/generate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -21,15 +21,15 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/generate.hpp"
+#include "app/files/mesh.hpp"
+#include "app/files/points.hpp"
+#include "app/files/region.hpp"
+#include "app/files/svg.hpp"
+#include "files/output.hpp"
+#include "files/printable.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
-#include "io/generate.hpp"
-#include "io/mesh.hpp"
-#include "io/output.hpp"
-#include "io/points.hpp"
-#include "io/printable.hpp"
-#include "io/region.hpp"
-#include "io/svg.hpp"
 #include "tests/io/folder.hpp"
 #include "tests/support/paths.hpp"
 

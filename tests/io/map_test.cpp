@@ -1,5 +1,5 @@
 // Maps and segments: what readers take from files, and what they say about files with errors.
-#include "io/map.hpp"
+#include "app/files/map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "app/files/mesh.hpp"
+#include "app/files/points.hpp"
+#include "files/output.hpp"
 #include "flaunay/constrained.hpp"
-#include "io/mesh.hpp"
-#include "io/output.hpp"
-#include "io/points.hpp"
 #include "tests/io/folder.hpp"
 #include "tests/support/paths.hpp"
 

@@ -12,14 +12,14 @@
 #include <numeric>
 #include <tuple>
 
-#include "io/generate.hpp"
-#include "io/mesh.hpp"
-#include "io/mesh_stream.hpp"
-#include "io/npy.hpp"
-#include "io/output.hpp"
-#include "io/point_stream.hpp"
-#include "io/points.hpp"
-#include "io/scratch.hpp"
+#include "app/files/generate.hpp"
+#include "app/files/mesh.hpp"
+#include "app/files/npy.hpp"
+#include "app/files/point_stream.hpp"
+#include "app/files/points.hpp"
+#include "files/mesh_stream.hpp"
+#include "files/output.hpp"
+#include "files/scratch.hpp"
 #include "tests/io/folder.hpp"
 
 namespace flaunay::io {

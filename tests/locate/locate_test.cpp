@@ -19,9 +19,9 @@
 #include <utility>
 #include <vector>
 
-#include "interpolate/interpolate.hpp"
-#include "locate/levels.hpp"
-#include "locate/locator.hpp"
+#include "derived/interpolate/interpolate.hpp"
+#include "derived/locate/levels.hpp"
+#include "derived/locate/locator.hpp"
 #include "shared/nearest_search.h"
 #include "shared/off_grid.h"
 #include "tests/locate/support.hpp"

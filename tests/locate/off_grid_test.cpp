@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "locate/read_back.hpp"
+#include "derived/locate/read_back.hpp"
 #include "tests/locate/support.hpp"
 #include "tests/support/test_kernels.hpp"
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "chunks/tree.hpp"
+#include "large/chunks/tree.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/stalling.hpp"
 

@@ -1,6 +1,6 @@
 // Regions of partitions that are made here, from triangulations: solved, solved otherwise, solved wrongly,
 // and put together again.
-#include "partition/regions.hpp"
+#include "modes/partition/regions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "dwyer/dwyer.hpp"
+#include "app/verify/verify.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/point_sets.hpp"
+#include "modes/dwyer/dwyer.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/verify.hpp"
 
 namespace flaunay::testing {
 namespace {

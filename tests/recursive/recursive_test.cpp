@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "dwyer/dwyer.hpp"
+#include "app/files/generate.hpp"
 #include "geometry/mesh.hpp"
-#include "io/generate.hpp"
-#include "partition/regions.hpp"
-#include "recursive/lower_hull.hpp"
-#include "recursive/run.hpp"
+#include "modes/dwyer/dwyer.hpp"
+#include "modes/partition/regions.hpp"
+#include "modes/recursive/lower_hull.hpp"
+#include "modes/recursive/run.hpp"
 #include "tests/support/bounds.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"

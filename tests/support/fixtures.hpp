@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/generate.hpp"
-#include "io/points.hpp"
+#include "app/files/generate.hpp"
+#include "app/files/points.hpp"
 
 namespace flaunay::testing {
 

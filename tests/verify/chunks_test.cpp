@@ -1,5 +1,5 @@
 // The check in chunks must agree with the one in memory, however small its windows and ranges are.
-#include "verify/chunks.hpp"
+#include "app/verify/chunks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@
 #include <set>
 #include <string>
 
+#include "app/files/generate.hpp"
+#include "app/verify/external_sort.hpp"
+#include "app/verify/vertex_index.hpp"
 #include "flaunay/research.hpp"
-#include "io/generate.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/external_sort.hpp"
-#include "verify/vertex_index.hpp"
 
 namespace flaunay {
 namespace {

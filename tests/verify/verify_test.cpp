@@ -1,5 +1,5 @@
 // The checker must accept every right triangulation and reject every wrong one: all other tests rely on it.
-#include "verify/verify.hpp"
+#include "app/verify/verify.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <random>
 #include <string>
 
+#include "app/verify/exact.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
-#include "verify/exact.hpp"
 
 namespace flaunay {
 namespace {

@@ -2,7 +2,7 @@
 // the polygon cut by the bisectors with all other points.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "voronoi/clip.hpp"
+#include "derived/voronoi/clip.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Voronoi diagrams against twins in exact arithmetic.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "voronoi/voronoi.hpp"
+#include "derived/voronoi/voronoi.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -11,8 +11,8 @@
 #include "host/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
 #include "launchers/constrained/holes.cl.hpp"
-#include "locate/query_range.hpp"
 #include "points/device_mesh.hpp"
+#include "points/query_range.hpp"
 #include "shared/domains.h"
 #include "tuning/tuning.hpp"
 

@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command/commands.hpp"
+#include "app/command/options.hpp"
+#include "app/command/output.hpp"
+#include "app/command/partition_folder.hpp"
+#include "app/command/progress.hpp"
+#include "app/command/report.hpp"
+#include "app/command/results.hpp"
+#include "app/files/mesh.hpp"
+#include "app/files/points.hpp"
+#include "flaunay/research.hpp"
+#include "host/each_index.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+using Solutions = std::vector<std::vector<std::int32_t>>;
+
+struct AssembleRequest {
+  std::string input;
+  std::string folder;
+  ResultPaths results;
+  bool solve = false;
+  int threads = 0;
+  bool quiet = false;
+};
+
+// The path of each region's solution; empty if the region is to be solved here.
+std::vector<std::string> find_solutions(const PartitionReader& reader, bool solve) {
+  std::vector<std::string> paths;
+  for (std::size_t r = 0; r < reader.regions(); ++r) paths.push_back(reader.solution_path(r));
+  const auto missing = static_cast<std::size_t>(std::count(paths.begin(), paths.end(), ""));
+  if (missing > 0 && !solve) {
+    const auto first = static_cast<std::size_t>(std::find(paths.begin(), paths.end(), "") - paths.begin());
+    throw Error(ErrorKind::input,
+                fmt::format("{}.npy: is missing, and so are .ele and .1.ele; {} of {} regions have no "
+                            "solution (--solve computes what is missing)",
+                            reader.stem(first), missing, paths.size()));
+  }
+  return paths;
+}
+
+std::vector<std::int32_t> solve_region(const io::Points& points, const research::Region& region) {
+  std::vector<double> own;
+  for (const std::int32_t index : region.points) {
+    const double* point = &points.coordinates[2 * static_cast<std::size_t>(index)];
+    own.insert(own.end(), point, point + 2);
+  }
+  research::Options options;
+  options.mode = Mode::dwyer;
+  options.neighbors = false;
+  return research::triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
+}
+
+Solutions read_solutions(const std::vector<std::string>& paths) {
+  Solutions solutions;
+  for (const std::string& path : paths) {
+    solutions.push_back(path.empty() ? std::vector<std::int32_t>() : io::read_triangles(path));
+  }
+  return solutions;
+}
+
+void solve_missing(const io::Points& points, const research::Partition& partition,
+                   const std::vector<std::string>& paths, int threads, Solutions& solutions) {
+  std::vector<std::size_t> unsolved;
+  for (std::size_t r = 0; r < paths.size(); ++r) {
+    if (paths[r].empty()) unsolved.push_back(r);
+  }
+  host::for_each_index(unsolved.size(), threads, [&](std::size_t k) {
+    solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
+  });
+}
+
+// The library's messages name a region by its number or speak of "the parts"; here the file is named too.
+[[noreturn]] void fail_with_file(const Error& error, const PartitionReader& reader,
+                                 const std::vector<std::string>& paths) {
+  const std::string message = error.what();
+  for (std::size_t r = 0; r < paths.size(); ++r) {
+    if (message.rfind(fmt::format("region {}: ", r), 0) != 0) continue;
+    const std::string file = paths[r].empty() ? reader.stem(r) + ".node" : paths[r];
+    throw Error(error.kind(), fmt::format("{}: {}", file, message));
+  }
+  const bool of_parts = message.rfind("the parts ", 0) == 0;
+  throw Error(error.kind(), of_parts ? fmt::format("{}: {}", reader.description_path(), message) : message);
+}
+
+Triangulation put_together(const io::Points& points, const research::Partition& partition,
+                           const Solutions& solutions, const PartitionReader& reader,
+                           const std::vector<std::string>& paths, const Options& options) {
+  try {
+    return research::assemble(points.coordinates.data(), points.size(), partition, solutions, options);
+  } catch (const Error& error) {
+    fail_with_file(error, reader, paths);
+  }
+}
+
+int assemble(const AssembleRequest& request) {
+  io::check_points_ending(request.input);
+  for (const std::string& path : request.results.all()) check_no_partition_file(request.folder, path);
+  OutputFiles outputs(request.input);
+  announce(outputs, request.results);
+  const PartitionReader reader(request.folder);
+  const std::vector<std::string> paths = find_solutions(reader, request.solve);
+
+  RunFacts facts;
+  facts.input = request.input;
+  facts.mode = "assemble";
+  facts.what_was_done = "assembled";
+  Progress progress(!request.quiet);
+  Stopwatch stopwatch;
+  progress.update("reading");
+  const io::Points points = io::read_points(request.input);
+  const research::Partition partition = reader.read(request.input, points);
+  Solutions solutions = read_solutions(paths);
+  facts.reading_seconds = stopwatch.restart();
+
+  progress.update("solving");
+  solve_missing(points, partition, paths, request.threads, solutions);
+  facts.solving_seconds = stopwatch.seconds();
+
+  Options options;
+  ask_for(request.results, options);
+  options.progress = [&progress](const std::string& stage, int level, double done) {
+    progress.update(stage, level, done);
+  };
+  research::Triangulation mesh;
+  static_cast<Triangulation&>(mesh) = put_together(points, partition, solutions, reader, paths, options);
+
+  write_results(request.results, points, mesh, facts, progress, outputs);
+
+  if (!request.quiet) print(degenerate_note(mesh.statistics) + summary(mesh.statistics, facts));
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_assemble(CLI::App& app, Action& action) {
+  auto request = std::make_shared<AssembleRequest>();
+  CLI::App* command = app.add_subcommand(
+      "assemble", "Join the solved regions of a partition to the triangulation of all points");
+  add_input(command, request->input);
+  command->add_option("partition", request->folder, "The folder that flaunay partition wrote")->required();
+  add_results(command, request->results);
+  CLI::Option* solve =
+      command->add_flag("--solve", request->solve, "Solve the regions that have no solution");
+  add_threads(command, request->threads, "Threads for --solve; default: one per core")->needs(solve);
+  add_quiet(command, request->quiet);
+  command->footer(
+      "A region's solution is any Delaunay triangulation of the points of region-00000.node, up to their "
+      "convex hull, in a file beside it: region-00000.npy (int32, 3 positions per row), region-00000.ele or "
+      "region-00000.1.ele (the format of Triangle).");
+  command->callback([request, &action] { action = [request] { return assemble(*request); }; });
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,77 @@
+// Triangulations with constraints: the options of `flaunay triangulate` for them, and the work.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "app/command/results.hpp"
+#include "app/files/map.hpp"
+#include "flaunay/constrained.hpp"
+
+namespace flaunay::cli {
+
+/// An array that only triangulations with constraints have, written to a .npy file of indices.
+struct ConstraintArrayFile {
+  const char* option;
+  const char* description;
+  std::vector<std::int32_t> ConstrainedTriangulation::*values;
+  std::size_t columns;  ///< 0: an array of one dimension
+  bool needs_labels;
+};
+constexpr std::array<ConstraintArrayFile, 4> kConstraintArrayFiles = {{
+    {"--constraint-edges", "Constraint edges: .npy, 2 point indices per row",
+     &ConstrainedTriangulation::constraint_edges, 2, false},
+    {"--edge-segments", "For each constraint edge the smallest number of a segment that has it: .npy",
+     &ConstrainedTriangulation::edge_segments, 0, false},
+    {"--depths", "For each triangle its depth by --fill: .npy", &ConstrainedTriangulation::depths, 0, true},
+    {"--regions", "For each triangle the number of its region: .npy", &ConstrainedTriangulation::regions, 0,
+     true},
+}};
+
+struct ConstraintRequest {
+  std::string segments;  ///< a file; empty if the input has the segments
+  Crossings crossings = Crossings::error;
+  Outside outside = Outside::keep;
+  FillRule fill = FillRule::nesting;
+  std::vector<std::string> holes;  ///< "X,Y" each
+  bool separate = false;
+  Overlaps overlaps = Overlaps::first;
+  std::array<std::string, kConstraintArrayFiles.size()> arrays;  ///< paths, one per row of the table
+  std::string points;                                            ///< the file for input and added points
+  std::string polygons;  ///< the file with the polygon of each triangle
+  // Whether the user chose these; otherwise the input decides.
+  bool chose_outside = false, chose_fill = false, chose_overlaps = false;
+};
+
+/// What a triangulation with constraints needs besides a ConstraintRequest.
+struct ConstrainedWork {
+  std::string input;
+  ResultPaths results;
+  std::string device;
+  std::string index;  ///< "auto", "32" or "64"
+  bool profile = false;
+  bool quiet = false;
+};
+
+void add_constraint_options(CLI::App* command, ConstraintRequest& request);
+/// Those of them that say what the segments are and what they bound: --constraints, --outside, --fill,
+/// --hole.
+void add_domain_options(CLI::App* command, ConstraintRequest& request);
+/// Checks the options of add_domain_options for an input with segments. Throws Error(usage).
+void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request);
+
+/// Reads points, segments and holes, and decides what is outside unless the user has.
+io::Map read_domain(const std::string& input, ConstraintRequest& request);
+/// The map's segments, and after them its lines.
+std::vector<std::int32_t> all_segments(const io::Map& map);
+/// The rings of the map's polygons, unless it has neither polygons nor lines, or the rule is nesting.
+Rings rings_of(const io::Map& map, FillRule fill);
+
+/// Whether the triangulation has constraints. Throws Error(usage) for options that do not go together.
+bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request);
+
+/// Reads, triangulates and writes. Returns the exit code.
+int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRequest& request);
+
+}  // namespace flaunay::cli

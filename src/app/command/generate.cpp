@@ -1,0 +1,92 @@
+#include "app/files/generate.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/command/commands.hpp"
+#include "app/command/options.hpp"
+#include "app/command/output.hpp"
+#include "app/files/points.hpp"
+#include "files/disk_space.hpp"
+#include "files/file.hpp"
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+struct GenerateRequest {
+  std::string distribution;
+  std::size_t count = 0;
+  std::uint64_t seed = 1;
+  std::string output;
+};
+
+// The least bytes that n points take in a file: those of two doubles, or of "0 0" and the end of the line.
+std::uint64_t least_bytes(const std::string& path, std::uint64_t n) {
+  const std::string ending = io::ending_of(path);
+  const std::uint64_t point = ending == ".npy" || ending == ".bin" ? 2 * sizeof(double) : 4;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  return n > kMost / point ? kMost : n * point;
+}
+
+int generate(const GenerateRequest& request) {
+  if (request.output == "-") {
+    // As in every filter, a closed pipe ends the program without a message.
+    std::signal(SIGPIPE, SIG_DFL);
+  }
+  OutputFiles outputs("-");
+  outputs.add_points(request.output);
+  io::check_disk_space({{request.output, least_bytes(request.output, request.count)}});
+  io::PointWriter writer(outputs.files(), request.output, request.count);
+  io::generate(request.distribution, request.count, request.seed,
+               [&writer](const double* coordinates, std::size_t count) { writer.write(coordinates, count); });
+  outputs.files().commit();
+  return kSuccess;
+}
+
+std::string distribution_table() {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const io::Distribution& distribution : io::distributions()) {
+    rows.emplace_back(distribution.name, distribution.description);
+  }
+  return help_table("Distributions", rows);
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Action& action) {
+  auto request = std::make_shared<GenerateRequest>();
+  CLI::App* command = app.add_subcommand("generate", "Write points of a known distribution");
+  command->add_option("distribution", request->distribution, "One of those listed below")->required();
+  // CLI11 itself would turn negative numbers into large ones and cap numbers that are too large.
+  const CLI::Validator whole_number(
+      [](std::string& text) -> std::string {
+        constexpr std::size_t kMostDigits = std::numeric_limits<std::uint64_t>::digits10;
+        const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
+        if (digits && !text.empty() && text.size() <= kMostDigits) return "";
+        return fmt::format("expected a whole number of at most {} digits, not '{}'", kMostDigits, text);
+      },
+      "");
+  command->add_option("count", request->count, "How many points")->required()->check(whole_number);
+  command
+      ->add_option("--seed", request->seed,
+                   "Seed of the random numbers; the same seed gives the same points on every machine")
+      ->check(whole_number)
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", request->output,
+                   "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text on standard output")
+      ->required();
+  command->footer(distribution_table());
+  command->callback([request, &action] { action = [request] { return generate(*request); }; });
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,83 @@
+#include "app/command/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace flaunay::cli {
+
+void add_input(CLI::App* command, std::string& path) {
+  command
+      ->add_option("input", path,
+                   "Points: .npy, .node, .xy, .txt, .csv, .bin, .las, or - for text from standard input; or "
+                   "a map: .poly, "
+                   ".geojson")
+      ->required();
+}
+
+CLI::Option* add_path(CLI::App* command, const std::string& option, std::string& path,
+                      const std::string& description) {
+  const CLI::Validator not_empty(
+      [](std::string& text) { return text.empty() ? std::string("the path is empty") : std::string(); },
+      "PATH");
+  return command->add_option(option, path, description)->check(not_empty);
+}
+
+std::string help_table(const std::string& title,
+                       const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::size_t width = 0;
+  for (const auto& row : rows) width = std::max(width, row.first.size());
+  std::string table = title + ":\n";
+  for (const auto& [name, meaning] : rows) {
+    fmt::format_to(std::back_inserter(table), "  {:<{}}  {}\n", name, width, meaning);
+  }
+  return table;
+}
+
+void add_cut(CLI::App* command, Cut& cut) {
+  add_choice<Cut>(command, "--cut", cut,
+                  "How regions are cut: across the longer interquartile range, or in x and y in turn",
+                  {Cut::interquartile, Cut::alternate});
+}
+
+void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>& variants,
+                      const std::string& description) {
+  add_choice(command, "--hull-variant", variant, description, variants);
+}
+
+CLI::Option* add_device(CLI::App* command, std::string& device) {
+  return command->add_option(
+      "--device", device, "OpenCL device: a part of its name, or #k for the k-th that flaunay devices lists");
+}
+
+CLI::Option* add_threads(CLI::App* command, int& threads, const std::string& description) {
+  constexpr int kMostThreads = 1024;
+  return command->add_option("--threads", threads, description)->check(CLI::Range(1, kMostThreads));
+}
+
+CLI::Option* add_memory(CLI::App* command, std::uint64_t& bytes, const std::string& description) {
+  constexpr std::uint64_t kLeast = 1;
+  CLI::Validator size =
+      CLI::AsSizeValue(false) & CLI::Range(kLeast, std::numeric_limits<std::uint64_t>::max());
+  // CLI11 itself would turn negative numbers into large ones.
+  const CLI::Validator not_negative(
+      [](std::string& text) {
+        return text.find('-') == std::string::npos ? "" : fmt::format("{} is below 1", text);
+      },
+      "");
+  return command->add_option("--memory", bytes, description)
+      ->transform(size.description("SIZE"))
+      ->transform(not_negative);  // CLI11 calls the last one first
+}
+
+void add_quiet(CLI::App* command, bool& quiet) {
+  command->add_flag("--quiet", quiet, "No progress, no tables and no final line");
+}
+
+void refuse(const CLI::App& command, const std::string& option, const std::string& reason) {
+  if (command.count(option) > 0) throw Error(ErrorKind::usage, fmt::format("{}: {}", option, reason));
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,292 @@
+#include "app/command/partition_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+
+#include "app/command/options.hpp"
+#include "app/files/mesh.hpp"
+#include "app/files/npy.hpp"
+#include "app/files/region.hpp"
+#include "files/file.hpp"
+#include "files/output.hpp"
+
+namespace flaunay::cli {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kDescription = "partition.json";
+constexpr const char* kFinished = "finished.npy";
+constexpr std::string_view kRegionPrefix = "region-";
+
+std::string inside(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
+std::string region_stem(const std::string& folder, std::size_t r) {
+  return inside(folder, fmt::format("{}{:05}", kRegionPrefix, r));
+}
+
+bool is_partition_name(const std::string& name) {
+  return name == kDescription || name == kFinished || name.rfind(kRegionPrefix, 0) == 0;
+}
+
+std::vector<fs::path> partition_files(const std::string& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_partition_name(entry->path().filename().string())) files.push_back(entry->path());
+  }
+  if (error) io::fail(folder, "cannot be listed: {}", error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// A file of the old partition may only be replaced if --force was given and it is neither the input nor a
+// folder.
+void check_in_the_way(const fs::path& file, const std::string& input, bool force) {
+  std::error_code error;
+  if (input != "-" && fs::equivalent(file, input, error)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: the partition would overwrite the input; choose another folder", input));
+  }
+  if (!force) {
+    throw Error(ErrorKind::usage, fmt::format("{}: is in the way: the folder holds a partition; choose "
+                                              "another, or replace it with --force",
+                                              file.string()));
+  }
+  if (fs::is_directory(file, error)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: is a folder, and in the way", file.string()));
+  }
+}
+
+io::Temporary make_folder(const std::string& folder) {
+  const io::Uninterrupted made;
+  std::error_code error;
+  const bool is_new = fs::create_directory(folder, error);
+  if (error) io::fail(folder, "cannot be made: {}", error.message());
+  return is_new ? io::Temporary(folder) : io::Temporary();
+}
+
+io::Temporary make_aside(const std::string& folder) {
+  const io::Uninterrupted made;
+  std::string path = inside(folder, ".flaunay-XXXXXX");
+  if (::mkdtemp(path.data()) == nullptr) {
+    io::fail(folder, "cannot be written: {}", io::system_reason(errno));
+  }
+  return io::Temporary(path, io::Temporary::Contents::all);
+}
+
+// Waits until everything that was written there is on the disk: once, because there may be thousands of
+// files.
+void write_to_disk(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool is_written = descriptor >= 0 && ::syncfs(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!is_written) io::fail(folder, "cannot be written: {}", io::system_reason(reason));
+}
+
+std::string description(const research::Partition& partition, const PartitionFacts& facts) {
+  Json json;
+  json["flaunay"] = version();
+  json["device"] = partition.statistics.device;
+  json["input"] = facts.input;
+  json["points"] = partition.statistics.points;
+  json["duplicates"] = partition.statistics.duplicates;
+  json["levels"] = facts.levels;
+  json["cut"] = to_string(facts.cut);
+  json["hull_variant"] = to_string(facts.dividing_paths);
+  json["finished_triangles"] = partition.triangles.size() / 3;
+  json["number_of_regions"] = partition.regions.size();
+  json["regions"] = Json::array();
+  for (const research::Region& region : partition.regions) {
+    json["regions"].push_back({{"points", region.points.size()}, {"border_edges", region.border.size() / 2}});
+  }
+  // JSON must be UTF-8, but names of files need not be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json parse(const std::string& path) {
+  const std::string text = io::read_file(path, "the description of a partition, as flaunay partition writes");
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    io::fail(path, "is no valid JSON (at byte {})", error.byte);
+  }
+}
+
+// The value of a key that holds a number of things.
+std::size_t count_of(const std::string& path, const Json& object, const char* key) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  if (found == object.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() > kMost) {
+    io::fail(path, "expected '{}' to be a number from 0 to {}", key, kMost);
+  }
+  return found->get<std::size_t>();
+}
+
+// Compares the region's points with those of the input, because the indices alone do not show that the input
+// is another file.
+void check_points(const std::string& path, const io::StoredRegion& stored, const std::string& input,
+                  const io::Points& points) {
+  for (std::size_t k = 0; k < stored.points.size(); ++k) {
+    const auto index = static_cast<std::size_t>(stored.region.points[k]);
+    if (index >= points.size()) {
+      io::fail(path, "vertex {} is point {}, but {} has {}", k, index, input, points.size());
+    }
+    const double* here = &stored.points.coordinates[2 * k];
+    const double* there = &points.coordinates[2 * index];
+    if (here[0] != there[0] || here[1] != there[1]) {
+      io::fail(path,
+               "vertex {} is ({}, {}), but point {} of {} is ({}, {}): is the partition of other input?", k,
+               here[0], here[1], index, input, there[0], there[1]);
+    }
+  }
+}
+
+}  // namespace
+
+PartitionWriter::PartitionWriter(const std::string& folder, const std::string& input, bool force)
+    : folder_(folder), made_folder_(make_folder(folder)) {
+  for (const fs::path& file : partition_files(folder)) check_in_the_way(file, input, force);
+  aside_ = make_aside(folder);
+}
+
+PartitionWriter::~PartitionWriter() { take_back(); }
+
+void PartitionWriter::write(const io::Points& points, const research::Partition& partition,
+                            const PartitionFacts& facts) {
+  const std::string& aside = aside_.path();
+  for (std::size_t r = 0; r < partition.regions.size(); ++r) {
+    io::Outputs region;
+    io::write_region(region, region_stem(aside, r), points, partition.regions[r]);
+    region.commit_without_waiting();
+  }
+  io::Outputs others;
+  io::write_npy_indices(others, inside(aside, kFinished), partition.triangles, 3);
+  others.open(inside(aside, kDescription)).print("{}", description(partition, facts));
+  others.commit_without_waiting();
+  write_to_disk(aside);
+}
+
+void PartitionWriter::place() {
+  try {
+    place_files();
+  } catch (const Error& error) {
+    throw Error(error.kind(), fmt::format("{}; {}", error.what(), take_back()));
+  }
+}
+
+void PartitionWriter::place_files() {
+  const std::string replaced = inside(aside_.path(), "replaced");
+  std::error_code error;
+  fs::create_directory(replaced, error);
+  if (error) io::fail(replaced, "cannot be made: {}", error.message());
+  for (const fs::path& file : partition_files(folder_)) {
+    move(file.string(), inside(replaced, file.filename().string()));
+  }
+  for (const fs::path& file : partition_files(aside_.path())) {
+    move(file.string(), inside(folder_, file.filename().string()));
+  }
+}
+
+void PartitionWriter::keep() {
+  moves_.clear();
+  made_folder_.release();
+}
+
+void PartitionWriter::move(const std::string& from, const std::string& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) io::fail(to, "cannot be put in place: {}", error.message());
+  moves_.push_back({from, to});
+}
+
+std::string PartitionWriter::take_back() {
+  std::string left;
+  for (; !moves_.empty(); moves_.pop_back()) {
+    std::error_code error;
+    fs::rename(moves_.back().to, moves_.back().from, error);
+    if (error) left = aside_.path();
+  }
+  if (left.empty()) return "the folder is as it was";
+  aside_.release();
+  return fmt::format("files are left in {}: the old ones in its folder 'replaced'", left);
+}
+
+PartitionReader::PartitionReader(const std::string& folder) : folder_(folder) {
+  const std::string path = description_path();
+  const Json json = parse(path);
+  input_points_ = count_of(path, json, "points");
+  finished_triangles_ = count_of(path, json, "finished_triangles");
+  const auto regions = json.find("regions");
+  if (regions == json.end() || !regions->is_array()) io::fail(path, "expected 'regions' to be an array");
+  for (const Json& region : *regions) {
+    sizes_.push_back({count_of(path, region, "points"), count_of(path, region, "border_edges")});
+  }
+}
+
+std::string PartitionReader::description_path() const { return inside(folder_, kDescription); }
+
+std::string PartitionReader::stem(std::size_t r) const { return region_stem(folder_, r); }
+
+std::string PartitionReader::solution_path(std::size_t r) const {
+  for (const char* ending : {".npy", ".ele", ".1.ele"}) {
+    std::error_code error;
+    const std::string path = stem(r) + ending;
+    if (fs::exists(path, error)) return path;
+  }
+  return "";
+}
+
+research::Partition PartitionReader::read(const std::string& input, const io::Points& points) const {
+  if (points.size() != input_points_) {
+    io::fail(input, "has {} points, but the partition in {} is of {}", points.size(), folder_, input_points_);
+  }
+  research::Partition partition;
+  const std::string finished = inside(folder_, kFinished);
+  partition.triangles = io::read_npy_triangles(finished);
+  const std::size_t triangles = partition.triangles.size() / 3;
+  if (triangles != finished_triangles_) {
+    io::fail(finished, "has {} triangles; expected {}", triangles, finished_triangles_);
+  }
+  for (std::size_t r = 0; r < regions(); ++r) partition.regions.push_back(read_region(r, input, points));
+  return partition;
+}
+
+research::Region PartitionReader::read_region(std::size_t r, const std::string& input,
+                                              const io::Points& points) const {
+  const io::StoredRegion stored = io::read_region(stem(r), sizes_[r].points, sizes_[r].border_edges);
+  check_points(stem(r) + ".node", stored, input, points);
+  return stored.region;
+}
+
+void check_no_partition_file(const std::string& folder, const std::string& path) {
+  if (path.empty()) return;
+  const io::Target target = io::find_target(path);
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0 || !(target.folder_id == io::file_id(status))) return;
+  // A file may have the name of another one in different case.
+  const std::vector<fs::path> files = partition_files(folder);
+  const auto is_target = [&](const fs::path& file) {
+    return target.exists && ::stat(file.c_str(), &status) == 0 && target.id == io::file_id(status);
+  };
+  if (is_partition_name(target.name) || std::any_of(files.begin(), files.end(), is_target)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the partition", path));
+  }
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,254 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/command/chunks.hpp"
+#include "app/command/commands.hpp"
+#include "app/command/compiling.hpp"
+#include "app/command/constraints.hpp"
+#include "app/command/options.hpp"
+#include "app/command/output.hpp"
+#include "app/command/progress.hpp"
+#include "app/command/report.hpp"
+#include "app/command/results.hpp"
+#include "app/files/point_stream.hpp"
+#include "app/files/points.hpp"
+#include "flaunay/research.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+struct TriangulateRequest {
+  std::string input;
+  ResultPaths results;
+  Mode mode = Mode::blocks;
+  Cut cut = Cut::interquartile;
+  Hull dividing_paths = Hull::prune;
+  Finish finish = Finish::blocks;
+  int partition_levels = 0;
+  int threads = 0;
+  bool count = false;
+  std::string device;
+  bool profile = false;
+  bool quiet = false;
+  bool in_chunks = false;  ///< the options ask for it
+  ChunkRequest chunks;     ///< without what the other members say, too
+  bool has_constraints = false;
+  ConstraintRequest constraints;
+};
+
+const research::ModeInfo& info_of(Mode mode) {
+  const std::vector<research::ModeInfo>& modes = research::list_modes();
+  return *std::find_if(modes.begin(), modes.end(), [mode](const auto& info) { return info.mode == mode; });
+}
+
+// Refuses options that the chosen mode would ignore or cannot honour.
+void check_combination(const CLI::App& command, const TriangulateRequest& request) {
+  const research::ModeInfo& mode = info_of(request.mode);
+  if (mode.on_host) {
+    for (const char* option : {"--device", "--profile"}) {
+      refuse(command, option, fmt::format("mode {} runs on the host, without a device", mode.name));
+    }
+  } else if (request.dividing_paths == Hull::monotone_chain) {
+    refuse(command, "--hull-variant",
+           fmt::format("monotone-chain needs --mode recursive, not {}", mode.name));
+  }
+  if (!mode.cuts_regions) {
+    for (const char* option : {"--cut", "--hull-variant"}) {
+      refuse(command, option, fmt::format("mode {} has no such choice; take --mode flattened", mode.name));
+    }
+  }
+  if (!mode.counts) {
+    refuse(command, "--count", fmt::format("mode {} does not count; take --mode flattened", mode.name));
+  }
+  if (request.mode != Mode::flattened) {
+    refuse(command, "--finish", fmt::format("needs --mode flattened, not {}", mode.name));
+  } else if (request.count && request.finish == Finish::blocks) {
+    refuse(command, "--finish", "--count needs --finish levels");
+  }
+  if (request.mode != Mode::partition) {
+    for (const char* option : {"--partition-levels", "--threads"}) {
+      refuse(command, option, fmt::format("needs --mode partition, not {}", mode.name));
+    }
+  }
+}
+
+// With what the other members of the request say.
+ChunkRequest chunk_request(const TriangulateRequest& request) {
+  ChunkRequest chunks = request.chunks;
+  chunks.input = request.input;
+  chunks.results = request.results;
+  chunks.devices = devices_of(request.device);
+  chunks.quiet = request.quiet;
+  return chunks;
+}
+
+// Opens the device before the points are read if there are so many that they may not fit. Returns whether
+// they do not.
+bool do_not_fit(const TriangulateRequest& request, std::uint64_t points, Progress& progress,
+                std::unique_ptr<Triangulator>& triangulator) {
+  if (request.mode != Mode::blocks || points < kMayBeTooMany) return false;
+  progress.update_slow("preparing the device", kCompiling);
+  triangulator = std::make_unique<Triangulator>(request.device);
+  return are_too_many(points, *triangulator);
+}
+
+int triangulate_too_many(const TriangulateRequest& request, std::uint64_t points,
+                         std::unique_ptr<Triangulator> triangulator) {
+  const std::string reason =
+      fmt::format("about {} points are too many at once: {}", points, what_would_fit(*triangulator));
+  if (!request.results.mesh.empty() || request.profile) {
+    throw Error(
+        ErrorKind::device,
+        fmt::format("{}: {}; without {}, they are triangulated in chunks", request.input, reason,
+                    request.profile ? "--profile" : "--output (but with --triangles and --neighbors)"));
+  }
+  triangulator.reset();
+  return triangulate_in_chunks(chunk_request(request), fmt::format("note: {}\n", reason));
+}
+
+RunFacts facts_of(const TriangulateRequest& request) {
+  RunFacts facts;
+  facts.input = request.input;
+  facts.mode = to_string(request.mode);
+  facts.counted = request.count;
+  if (info_of(request.mode).cuts_regions) {
+    facts.cut = to_string(request.cut);
+    facts.dividing_paths = to_string(request.dividing_paths);
+  }
+  return facts;
+}
+
+research::Options options_of(const TriangulateRequest& request, Progress& progress) {
+  research::Options options;
+  options.mode = request.mode;
+  options.cut = request.cut;
+  options.hull = request.dividing_paths;
+  options.finish = request.finish;
+  ask_for(request.results, options);
+  options.profile = request.profile;
+  options.count = request.count;
+  options.partition_levels = request.partition_levels;
+  options.threads = request.threads;
+  options.progress = [&progress](const std::string& stage, int level, double done) {
+    progress.update(stage, level, done);
+  };
+  return options;
+}
+
+int triangulate(const TriangulateRequest& request) {
+  // The request is checked before any work begins, and the input before a device is opened.
+  io::check_points_ending(request.input);
+  if (request.in_chunks) return triangulate_in_chunks(chunk_request(request), "");
+  if (request.has_constraints) {
+    return triangulate_with_constraints({request.input, request.results, request.device, request.chunks.index,
+                                         request.profile, request.quiet},
+                                        request.constraints);
+  }
+  OutputFiles outputs(request.input);
+  announce(outputs, request.results);
+  const std::uint64_t about = io::estimate_points(request.input);
+
+  RunFacts facts = facts_of(request);
+  Progress progress(!request.quiet);
+  Stopwatch stopwatch;
+  std::unique_ptr<Triangulator> triangulator;
+  if (do_not_fit(request, about, progress, triangulator)) {
+    progress.finish();
+    return triangulate_too_many(request, about, std::move(triangulator));
+  }
+  facts.opening_seconds = stopwatch.restart();
+
+  progress.update("reading");
+  const io::Points points = io::read_points(request.input);
+  facts.reading_seconds = stopwatch.restart();
+  const io::IndexType index = index_type(request.chunks.index, points.size(), request.results);
+
+  const research::Options options = options_of(request, progress);
+  research::Triangulation mesh;
+  if (info_of(request.mode).on_host) {
+    mesh = research::triangulate_on_host(points.coordinates.data(), {0, points.size()}, options);
+  } else {
+    progress.update_slow("preparing the device", kCompiling);
+    if (triangulator == nullptr) triangulator = std::make_unique<Triangulator>(request.device);
+    facts.opening_seconds += stopwatch.restart();
+    research::Options silent = options;
+    silent.progress = nullptr;
+    facts.compiling_seconds = compile_kernels(points.size(), request.mode, [&](std::size_t n) {
+      note_compiling(research::triangulate(*triangulator, points.coordinates.data(), n, silent), facts);
+    });
+    mesh = research::triangulate(*triangulator, points.coordinates.data(), points.size(), options);
+  }
+
+  write_results(request.results, points, mesh, facts, progress, outputs, index);
+
+  if (!request.quiet) {
+    print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
+          degenerate_note(mesh.statistics) + host_note(facts.compiling_note) +
+          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
+  }
+  return kSuccess;
+}
+
+std::vector<Mode> all_modes() {
+  std::vector<Mode> modes;
+  for (const research::ModeInfo& info : research::list_modes()) modes.push_back(info.mode);
+  return modes;
+}
+
+std::string mode_table() {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const research::ModeInfo& info : research::list_modes())
+    rows.emplace_back(info.name, info.description);
+  return help_table("Modes", rows);
+}
+
+}  // namespace
+
+void add_triangulate(CLI::App& app, Action& action) {
+  auto request = std::make_shared<TriangulateRequest>();
+  CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
+  add_input(command, request->input);
+  add_results(command, request->results);
+  add_choice<Mode>(command, "--mode", request->mode,
+                   "How to divide and conquer (see below); the triangles do not depend on it", all_modes());
+  add_cut(command, request->cut);
+  add_hull_variant(command, request->dividing_paths,
+                   {Hull::prune, Hull::quickhull, Hull::balanced, Hull::monotone_chain},
+                   "How dividing paths are computed; the triangles do not depend on it. monotone-chain: mode "
+                   "recursive only");
+  add_choice<Finish>(command, "--finish", request->finish,
+                     "Mode flattened: where its levels end, at regions as small as blocks or without points",
+                     {Finish::blocks, Finish::levels});
+  command
+      ->add_option("--partition-levels", request->partition_levels,
+                   "Mode partition: number of levels on the device; default: enough for the threads")
+      ->check(CLI::Range(1, kMostPartitionLevels));
+  add_threads(command, request->threads, "Mode partition: number of host threads; default: one per core");
+  add_device(command, request->device)
+      ->description(
+          "Device: a part of its name, or #k for the k-th that flaunay devices lists; several with commas "
+          "between them, or all: triangulates in chunks, on each of them");
+  add_constraint_options(command, request->constraints);
+  add_chunk_options(command, request->chunks);
+  command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
+  command->add_flag("--count", request->count, "Count operations, for a table and for the statistics (slow)");
+  add_quiet(command, request->quiet);
+  command->footer(mode_table());
+  command->callback([request, command, &action] {
+    check_combination(*command, *request);
+    request->has_constraints = has_constraints(*command, request->input, request->constraints);
+    request->in_chunks = asks_for_chunks(*command, request->device);
+    if (request->in_chunks && request->has_constraints)
+      refuse(*command, "--device", "constraints need one device");
+    if (request->in_chunks) check_chunk_options(*command, to_string(request->mode));
+    action = [request] { return triangulate(*request); };
+  });
+}
+
+}  // namespace flaunay::cli

@@ -1,0 +1,218 @@
+#include "app/verify/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "app/command/commands.hpp"
+#include "app/command/constraints.hpp"
+#include "app/command/errors.hpp"
+#include "app/command/options.hpp"
+#include "app/command/output.hpp"
+#include "app/command/progress.hpp"
+#include "app/files/map.hpp"
+#include "app/files/mesh.hpp"
+#include "app/files/npy.hpp"
+#include "app/files/point_stream.hpp"
+#include "app/files/points.hpp"
+#include "app/files/rows.hpp"
+#include "app/verify/chunks.hpp"
+#include "app/verify/constrained.hpp"
+#include "files/file.hpp"
+#include "host/system_memory.hpp"
+
+namespace flaunay::cli {
+
+namespace {
+
+struct VerifyRequest {
+  std::string points;
+  std::string triangles;
+  std::string neighbors;
+  std::uint64_t memory_bytes = 0;  // 0: as much as there is
+  std::string scratch;
+  bool has_constraints = false;
+  bool quiet = false;
+  ConstraintRequest constraints;
+  std::string constraint_edges;
+};
+
+/// 0 if it is no regular file.
+std::uint64_t size_of_file(const std::string& path) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+/// The memory within which to check in chunks; 0: hold everything. Files that cannot be read in pieces are
+/// held if no limit was asked for.
+std::uint64_t memory_for_chunks(const VerifyRequest& request) {
+  const bool is_asked_for = request.memory_bytes > 0;
+  for (const std::string& path : {request.triangles, request.neighbors}) {
+    if (path.empty() || io::ending_of(path) == ".npy") continue;
+    if (!is_asked_for) return 0;
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: --memory needs an .npy file, which can be read in pieces", path));
+  }
+  if (is_asked_for) return request.memory_bytes;
+  // What the check in memory holds at most, with the points and int32 rows themselves.
+  constexpr std::uint64_t kPointBytes = 64, kRowBytes = 84, kRowBytesOfFile = 3 * sizeof(std::int32_t);
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;  // rows that always fit
+  const std::uint64_t rows = size_of_file(request.triangles) / kRowBytesOfFile;
+  if (rows < kSmall) return 0;
+  const std::uint64_t needed = kPointBytes * io::estimate_points(request.points) + kRowBytes * rows;
+  const std::uint64_t left = host::memory_left().bytes;
+  return needed > left ? left / 2 : 0;
+}
+
+/// The report, and what to add to the final line.
+struct Checked {
+  VerifyReport report;
+  double seconds = 0;
+  std::string how;
+};
+
+Checked verify_in_memory(const VerifyRequest& request, Progress& progress) {
+  const io::Points points = io::read_points(request.points);
+  const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
+  std::vector<std::int32_t> neighbors;
+  if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);
+  progress.update("verifying");
+  const Stopwatch stopwatch;
+  const VerifyReport report =
+      request.neighbors.empty()
+          ? flaunay::verify(points.coordinates.data(), points.size(), triangles)
+          : flaunay::verify(points.coordinates.data(), points.size(), triangles, neighbors);
+  return {report, stopwatch.seconds(), ""};
+}
+
+Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Progress& progress) {
+  const auto points = io::open_point_stream(request.points, request.scratch);
+  const auto triangles = io::open_npy_rows(request.triangles);
+  const auto neighbors = request.neighbors.empty() ? nullptr : io::open_npy_rows(request.neighbors);
+  const VerifySizes sizes = verify_sizes(memory, points->size(), triangles->size(), 0);
+  VerifyChunksOptions options;
+  options.scratch = request.scratch;
+  options.progress = [&](const std::string& stage, double done) { progress.update(stage, -1, done); };
+  const Stopwatch stopwatch;
+  const VerifyChunksReport report =
+      naming_files({{"point ", request.points}, {"triangle ", request.triangles}},
+                   [&] { return verify_chunks(*points, *triangles, neighbors.get(), sizes, options); });
+  const std::string how = fmt::format(
+      "; in chunks within {}: {} windows of rows, {} edges across, {} of scratch", host::mebibytes(memory),
+      report.windows, report.edges_across, host::mebibytes(report.scratch_bytes));
+  return {report, stopwatch.seconds(), how};
+}
+
+Checked verify_with_constraints(const VerifyRequest& request, Progress& progress) {
+  ConstraintRequest asked = request.constraints;
+  const io::Map map = read_domain(request.points, asked);
+  const std::vector<std::int32_t> segments = all_segments(map);
+  const Rings rings = rings_of(map, asked.fill);
+  const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
+  std::vector<std::int32_t> neighbors, edges;
+  if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);
+  VerifyConstraints constraints;
+  constraints.segments = &segments;
+  if (!rings.segment_offsets.empty()) constraints.rings = &rings;
+  constraints.outside = asked.outside;
+  constraints.fill_rule = asked.fill;
+  if (!map.holes.empty()) constraints.holes = &map.holes;
+  if (!request.constraint_edges.empty()) {
+    edges = io::read_npy_segments(request.constraint_edges, map.points.size());
+    constraints.edges = &edges;
+  }
+  progress.update("verifying");
+  const Stopwatch stopwatch;
+  const VerifyReport report =
+      verify_constrained(map.points.coordinates.data(), map.points.size(), triangles,
+                         request.neighbors.empty() ? nullptr : &neighbors, constraints);
+  return {report, stopwatch.seconds(), fmt::format("; {} constraint edges", report.constraint_edges)};
+}
+
+Checked check(const VerifyRequest& request, Progress& progress) {
+  if (request.has_constraints) return verify_with_constraints(request, progress);
+  const std::uint64_t memory = memory_for_chunks(request);
+  return memory > 0 ? verify_in_chunks(request, memory, progress) : verify_in_memory(request, progress);
+}
+
+int verify(const VerifyRequest& request) {
+  if (!io::is_map(request.points)) io::check_points_ending(request.points);
+  Progress progress(!request.quiet);
+  progress.update("reading");
+  const auto [report, seconds, how] = check(request, progress);
+  progress.finish();
+
+  // The problem goes to standard error first, because standard output may be closed.
+  if (!report.ok) {
+    report_error("flaunay", kFailure, fmt::format("{}: {}", request.triangles, report.problem));
+  }
+  if (!request.quiet) {
+    print(
+        fmt::format("{}: {} points, {} distinct, {} triangles, {} hull vertices, {} cocircular edges; "
+                    "{} exact evaluations, {:.3f} s{}\n",
+                    report.ok ? "right" : "wrong", report.points, report.distinct_points, report.triangles,
+                    report.hull_vertices, report.cocircular_edges, report.exact_evaluations, seconds, how));
+  }
+  return report.ok ? kSuccess : kFailure;
+}
+
+/// Whether segments are given. Throws Error(usage) for options that do not go together.
+bool has_constraints(const CLI::App& command, VerifyRequest& request) {
+  if (!io::is_map(request.points) && request.constraints.segments.empty()) {
+    for (const char* option : {"--outside", "--fill", "--hole", "--constraint-edges"}) {
+      refuse(command, option, "needs segments: --constraints, or a .poly or .geojson file with the points");
+    }
+    return false;
+  }
+  check_domain_options(command, request.points, request.constraints);
+  for (const char* option : {"--memory", "--scratch"}) {
+    refuse(command, option, "constraints are checked in memory, not in chunks");
+  }
+  if (!request.constraint_edges.empty() && io::ending_of(request.constraint_edges) != ".npy") {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: --constraint-edges needs an .npy file", request.constraint_edges));
+  }
+  return true;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Action& action) {
+  auto request = std::make_shared<VerifyRequest>();
+  CLI::App* command =
+      app.add_subcommand("verify",
+                         "Check with exact arithmetic that triangles are a Delaunay triangulation, or a "
+                         "constrained one");
+  command->add_option("points", request->points, "The points, in any format that triangulate reads")
+      ->required();
+  command->add_option("triangles", request->triangles, "The triangles: .npy, .ele, .off, .obj or .ply")
+      ->required();
+  command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
+  add_domain_options(command, request->constraints);
+  add_path(command, "--constraint-edges", request->constraint_edges,
+           "Constraint edges to check too, as triangulate writes them: .npy");
+  add_memory(command, request->memory_bytes,
+             "Check in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024; needs .npy "
+             "triangles. Default: hold everything if it fits");
+  add_path(
+      command, "--scratch", request->scratch,
+      "Chunks: the folder for about 24 bytes per point, in files without names; default: TMPDIR, or /tmp")
+      ->check(CLI::ExistingDirectory);
+  add_quiet(command, request->quiet);
+  command->callback([request, command, &action] {
+    request->has_constraints = has_constraints(*command, *request);
+    action = [request] { return verify(*request); };
+  });
+  command->footer(
+      "The exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not. With segments, "
+      "they must be "
+      "the canonical constrained Delaunay triangulation.");
+}
+
+}  // namespace flaunay::cli

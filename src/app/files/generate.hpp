@@ -1,0 +1,32 @@
+// Point sets for demonstrations, tests and benchmarks; the same on every machine for the same seed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/files/points.hpp"
+
+namespace flaunay::io {
+
+struct Distribution {
+  std::string name;
+  std::string description;
+};
+
+/// The known distributions, each with a line of description; the first four are those of the paper.
+const std::vector<Distribution>& distributions();
+
+/// Makes n points of the named distribution. Throws Error(usage) with the known names if there is no such
+/// one.
+Points generate(const std::string& distribution, std::size_t n, std::uint64_t seed);
+
+/// Takes the next `count` points: x0 y0 x1 y1 ...
+using PointConsumer = std::function<void(const double* coordinates, std::size_t count)>;
+/// The same points in pieces; most distributions hold no more of them.
+void generate(const std::string& distribution, std::size_t n, std::uint64_t seed,
+              const PointConsumer& consume);
+
+}  // namespace flaunay::io

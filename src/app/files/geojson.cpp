@@ -1,0 +1,227 @@
+#include "app/files/geojson.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "app/files/text.hpp"
+#include "files/file.hpp"
+
+namespace flaunay::io {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The path of a value in the document, such as features[2].geometry. It becomes text only for a message.
+class Place {
+ public:
+  Place() = default;
+  Place(const Place& parent, const char* key) : parent_(&parent), key_(key) {}
+  Place(const Place& parent, std::size_t index) : parent_(&parent), index_(index) {}
+
+  std::string text() const {
+    if (parent_ == nullptr) return "the document";
+    const std::string before = parent_->parent_ == nullptr ? "" : parent_->text();
+    if (key_ == nullptr) return fmt::format("{}[{}]", before, index_);
+    return before.empty() ? key_ : before + "." + key_;
+  }
+  std::size_t depth() const { return parent_ == nullptr ? 0 : parent_->depth() + 1; }
+
+ private:
+  const Place* parent_ = nullptr;
+  const char* key_ = nullptr;
+  std::size_t index_ = 0;
+};
+
+/// "line 3, column 7" of the first place where the text has a number, which stands in quotes in the message.
+std::string place_of_number(std::string_view text, std::string_view message) {
+  const std::size_t begin = message.find('\'') + 1;
+  const std::string_view number = message.substr(begin, message.rfind('\'') - begin);
+  const std::string_view before = text.substr(0, text.find(number));
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const std::size_t line_end = before.rfind('\n');
+  return fmt::format("line {}, column {}", line,
+                     before.size() - (line_end == std::string_view::npos ? 0 : line_end + 1) + 1);
+}
+
+Json parse_json(const std::string& path, const std::string& text) {
+  // The messages begin with the exception's name in brackets.
+  const auto message_of = [](const Json::exception& error) {
+    const std::string_view message = error.what();
+    return message.substr(std::min(message.find("] ") + 2, message.size()));
+  };
+  try {
+    return Json::parse(text);
+  } catch (const Json::out_of_range& error) {
+    const std::string_view message = message_of(error);
+    fail(path, "{}: {}; expected finite numbers", place_of_number(text, message), message);
+  } catch (const Json::exception& error) {
+    fail(path, "is no valid JSON: {}", message_of(error));
+  }
+}
+
+class GeoJsonReader {
+ public:
+  explicit GeoJsonReader(const std::string& path) : path_(path) {}
+
+  Map read() {
+    const Json document = parse_json(path_, read_file(path_, "GeoJSON"));
+    read_object(document, Place());
+    if (unclosed_ > 0) {
+      map_.notes.push_back(
+          fmt::format("{}: {} not closed: the last position should be the first one again", path_,
+                      unclosed_ == 1 ? "a ring is" : std::to_string(unclosed_) + " rings are"));
+    }
+    return std::move(map_);
+  }
+
+ private:
+  template <typename... Arguments>
+  [[noreturn]] void fail_at(const Place& at, fmt::format_string<Arguments...> format,
+                            Arguments&&... arguments) const {
+    fail(path_, "{} {}", at.text(), fmt::format(format, std::forward<Arguments>(arguments)...));
+  }
+
+  /// A value for messages. Nothing here may recurse into values: arrays may lie in each other to any depth,
+  /// and the library's parser and destructor do not recurse, but its serializer does.
+  static std::string shown(const Json& value) {
+    if (value.is_object()) return "an object";
+    const auto is_structured = [](const Json& element) { return element.is_structured(); };
+    if (value.is_array() && (value.size() > 4 || std::any_of(value.begin(), value.end(), is_structured))) {
+      return fmt::format("an array of {} value{}", value.size(), value.size() == 1 ? "" : "s");
+    }
+    const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    constexpr std::size_t kLongest = 60;
+    return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+  }
+
+  const Json& member(const Json& object, const char* key, const Place& at) const {
+    const auto found = object.find(key);
+    if (found == object.end()) fail_at(at, "has no member \"{}\"", key);
+    return *found;
+  }
+  const Json& array(const Json& object, const char* key, const Place& at) const {
+    const Json& value = member(object, key, at);
+    check_array(value, Place(at, key));
+    return value;
+  }
+  void check_array(const Json& value, const Place& at) const {
+    if (!value.is_array()) fail_at(at, "is {}; expected an array", shown(value));
+  }
+
+  /// Calls `read` with each element of an array and its place.
+  template <typename Read>
+  void for_each(const Json& values, const Place& at, const Read& read) {
+    check_array(values, at);
+    for (std::size_t k = 0; k < values.size(); ++k) read(values[k], Place(at, k));
+  }
+
+  void read_object(const Json& object, const Place& at) {
+    constexpr std::size_t kDeepest = 100;
+    if (at.depth() > kDeepest) fail(path_, "has collections inside of collections, too deep to be meant");
+    if (!object.is_object()) fail_at(at, "is {}; expected a GeoJSON object", shown(object));
+    const Json& type = member(object, "type", at);
+    const auto read_this = [this](const Json& value, const Place& place) { read_object(value, place); };
+    if (type == "FeatureCollection") {
+      for_each(array(object, "features", at), Place(at, "features"), read_this);
+    } else if (type == "Feature") {
+      const Json& geometry = member(object, "geometry", at);
+      if (!geometry.is_null()) read_object(geometry, Place(at, "geometry"));
+    } else if (type == "GeometryCollection") {
+      for_each(array(object, "geometries", at), Place(at, "geometries"), read_this);
+    } else {
+      read_geometry(type, object, at);
+    }
+  }
+
+  void read_geometry(const Json& type, const Json& object, const Place& at) {
+    const auto rings = [this](const Json& value, const Place& place) { read_rings(value, place); };
+    const auto line = [this](const Json& value, const Place& place) { read_line(value, place); };
+    const auto point = [this](const Json& value, const Place& place) { read_point(value, place); };
+    const Place coordinates(at, "coordinates");
+    const auto one = [&](const auto& read) { read(array(object, "coordinates", at), coordinates); };
+    const auto several = [&](const auto& read) {
+      for_each(array(object, "coordinates", at), coordinates, read);
+    };
+    if (type == "Polygon" || type == "MultiPolygon") {
+      type == "Polygon" ? one(rings) : several(rings);
+      return map_.polygon_offsets.push_back(map_.ring_offsets.size() - 1);
+    }
+    map_.has_others = true;
+    if (type == "LineString") return one(line);
+    if (type == "MultiLineString") return several(line);
+    if (type == "Point") return one(point);
+    if (type == "MultiPoint") return several(point);
+    fail_at(Place(at, "type"), "is {}; expected a type of GeoJSON, such as \"Polygon\"", shown(type));
+  }
+
+  void read_position(const Json& value, const Place& at) {
+    if (!value.is_array() || value.size() < 2 || !value[0].is_number() || !value[1].is_number()) {
+      fail_at(at, "is {}; expected a position [x, y]", shown(value));
+    }
+    if (map_.points.size() == static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+      fail(path_, "has more than {} positions", std::numeric_limits<std::int32_t>::max());
+    }
+    for (int axis = 0; axis < 2; ++axis) map_.points.coordinates.push_back(value[axis].get<double>());
+  }
+  /// Returns the index of the first point.
+  std::size_t read_positions(const Json& values, const Place& at) {
+    const std::size_t first = map_.points.size();
+    for_each(values, at, [this](const Json& value, const Place& place) { read_position(value, place); });
+    return first;
+  }
+
+  void read_point(const Json& value, const Place& at) {
+    if (!value.empty()) read_position(value, at);  // an empty array is a geometry without a place
+  }
+
+  void read_line(const Json& value, const Place& at) {
+    const std::size_t first = read_positions(value, at), end = map_.points.size();
+    if (end - first == 1) fail_at(at, "has one position; expected at least 2");
+    for (std::size_t i = first; i + 1 < end; ++i) add_segment(map_.lines, i, i + 1);
+  }
+
+  /// Of a polygon: the first one is its border, and the others are holes.
+  void read_rings(const Json& value, const Place& at) {
+    for_each(value, at, [this](const Json& ring, const Place& place) { read_ring(ring, place); });
+    map_.part_offsets.push_back(map_.ring_offsets.size() - 1);
+  }
+
+  void read_ring(const Json& value, const Place& at) {
+    std::vector<double>& coordinates = map_.points.coordinates;
+    const std::size_t first = read_positions(value, at);
+    std::size_t end = map_.points.size();
+    const bool is_closed = end - first > 1 && coordinates[2 * first] == coordinates[2 * end - 2] &&
+                           coordinates[2 * first + 1] == coordinates[2 * end - 1];
+    if (is_closed) {
+      coordinates.resize(2 * --end);
+    } else {
+      ++unclosed_;
+    }
+    if (end - first < 3) {
+      fail_at(at, "is a ring of {} positions{}; expected at least 4, the last one equal to the first",
+              value.size(), is_closed || value.empty() ? "" : " that is not closed");
+    }
+    for (std::size_t i = first; i < end; ++i) {
+      add_segment(map_.segments, i, i + 1 < end ? i + 1 : first);
+    }
+    map_.ring_offsets.push_back(map_.segments.size() / 2);
+  }
+
+  static void add_segment(std::vector<std::int32_t>& segments, std::size_t from, std::size_t to) {
+    segments.push_back(static_cast<std::int32_t>(from));
+    segments.push_back(static_cast<std::int32_t>(to));
+  }
+
+  const std::string& path_;
+  Map map_;
+  std::size_t unclosed_ = 0;  // rings
+};
+
+}  // namespace
+
+Map read_geojson(const std::string& path) { return GeoJsonReader(path).read(); }
+
+}  // namespace flaunay::io

@@ -1,0 +1,55 @@
+// Reading maps and drawings: points with segments between them. Formats by the file's ending.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/files/points.hpp"
+#include "app/files/poly.hpp"
+
+namespace flaunay::io {
+
+/// Points with segments between them, and what the file says about the inside.
+struct Map {
+  Points points;
+  /// 2 points per segment, in the order of the file: of rings, if there are polygons.
+  std::vector<std::int32_t> segments;
+  /// Further segments: those of lines beside polygons, which bound nothing.
+  std::vector<std::int32_t> lines;
+  std::vector<double> holes;                  ///< x and y per hole: a place inside of it
+  std::vector<std::int32_t> segment_markers;  ///< of a .poly file that has some
+  std::vector<PolyRegion> regions;            ///< of a .poly file
+  /// Ring r has segments [ring_offsets[r], ring_offsets[r + 1]), which begin at its points in their order.
+  /// Part q has rings [part_offsets[q], part_offsets[q + 1]), its border and then its holes, and polygon p
+  /// has rings [polygon_offsets[p], polygon_offsets[p + 1]).
+  std::vector<std::size_t> ring_offsets = {0}, part_offsets = {0}, polygon_offsets = {0};
+  bool has_others = false;         ///< lines or points besides polygons
+  std::vector<std::string> notes;  ///< what was left out or mended, a sentence each
+
+  std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
+};
+
+/// Whether the ending of path is that of a map: .poly, .geojson or .json.
+bool is_map(const std::string& path);
+
+/// Reads a map from path, by its ending (any case):
+///   .poly            Triangle's format: comments, attributes, boundary markers, first index 0 or 1; without
+///                    vertices, those of the .node file beside it
+///   .geojson .json   GeoJSON (RFC 7946): any object; coordinates after the second are ignored, and rings
+///                    that are not closed are read as closed
+/// Throws Error(input) that names the file and the place: line and column for text, the path in the document
+/// for JSON.
+Map read_map(const std::string& path);
+
+/// The files that read_map may read: path, and the .node file beside a .poly file.
+std::vector<std::string> files_of_map(const std::string& path);
+
+/// Reads segments, 2 indices of `points` points each, by the ending of path: .npy (any type of integers,
+/// s x 2), or .txt or .csv (two per line, as points). Throws Error(input) that names the place.
+std::vector<std::int32_t> read_segments(const std::string& path, std::size_t points);
+/// Throws Error(usage) that lists the endings if read_segments does not know the ending of path.
+void check_segments_ending(const std::string& path);
+
+}  // namespace flaunay::io

@@ -1,0 +1,55 @@
+// Writing triangulations to files, and reading triangles back for verification.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/files/map.hpp"
+#include "app/files/points.hpp"
+#include "files/output.hpp"
+#include "flaunay/constrained.hpp"
+
+namespace flaunay::io {
+
+/// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
+/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .geojson (a polygon per triangle), .svg (a
+/// picture).
+/// Throws Error(input) naming path and the system's reason if it cannot be written.
+void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh);
+
+/// The same with constraints, as far as the format can have them. Of the map, points: the added ones follow
+/// those of the input; fill_rule: what depths mean; attributes: of each triangle, or none.
+///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
+///                    edges, whose markers are those of their segments or, if these have none, the numbers of
+///                    their segments, from 1, and with the holes and regions
+///   .obj .ply        the constraint edges, as lines and edges
+///   .vtu .geojson    region and depth of each triangle
+///   .svg             the constraint edges, and the inside in other colours than the outside
+void write_mesh(Outputs& outputs, const std::string& path, const Map& map,
+                const ConstrainedTriangulation& mesh, FillRule fill_rule,
+                const std::vector<double>& attributes = {});
+
+/// The files that write_mesh writes for path: some formats have more than one.
+std::vector<std::string> mesh_files(const std::string& path, bool with_constraints);
+
+/// Checks a path before any work. Throws Error(usage) for an unknown ending, Error(input) if the file cannot
+/// be created. Leaves no new file behind.
+void check_mesh_output(const std::string& path, bool with_constraints = false);
+
+/// Whether the format of path has regions and depths.
+bool shows_labels(const std::string& path);
+
+/// Writes an .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
+void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+                       std::size_t columns, IndexType type = IndexType::int32);
+
+/// Reads triangles, 0-based, from .npy (int32 or int64, m x 3), .ele (either index base), .off, .obj (faces),
+/// .ply as write_mesh writes it. Throws Error(input) that names the place.
+std::vector<std::int32_t> read_triangles(const std::string& path);
+
+/// Reads neighbours, as write_npy_indices writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
+/// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
+std::vector<std::int32_t> read_neighbors(const std::string& path);
+
+}  // namespace flaunay::io

@@ -1,0 +1,387 @@
+#include "app/files/npy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "app/files/mesh.hpp"
+#include "app/files/rows.hpp"
+#include "files/file.hpp"
+#include "host/huge_pages.hpp"
+
+namespace flaunay::io {
+namespace {
+
+struct Header {
+  std::string descr;
+  bool fortran_order = false;
+  std::vector<std::size_t> shape;
+  std::size_t data_begin = 0;
+};
+
+/// Reads the header's text, a Python dictionary with the keys descr, fortran_order and shape.
+class HeaderParser {
+ public:
+  HeaderParser(const std::string& path, std::string_view text) : path_(path), text_(text) {}
+
+  Header parse() {
+    Header header;
+    bool descr_seen = false, order_seen = false, shape_seen = false;
+    expect('{');
+    while (!accept('}')) {
+      const std::string key = parse_string();
+      expect(':');
+      if (key == "descr") {
+        if (peek() == '[') fail(path_, "has a structured dtype; expected plain numbers");
+        header.descr = parse_string();
+        descr_seen = true;
+      } else if (key == "fortran_order") {
+        header.fortran_order = parse_bool();
+        order_seen = true;
+      } else if (key == "shape") {
+        header.shape = parse_shape();
+        shape_seen = true;
+      } else {
+        malformed("unknown key '" + key + "'");
+      }
+      if (!accept(',') && peek() != '}') malformed("expected ',' or '}'");
+    }
+    peek();
+    if (at_ != text_.size()) malformed("expected blanks alone after '}'");
+    if (!descr_seen) malformed("no key 'descr'");
+    if (!order_seen) malformed("no key 'fortran_order'");
+    if (!shape_seen) malformed("no key 'shape'");
+    return header;
+  }
+
+ private:
+  [[noreturn]] void malformed(const std::string& what) const {
+    fail(path_, "the .npy header is malformed at its byte {}: {}", at_, what);
+  }
+  char peek() {
+    while (at_ < text_.size() && std::strchr(" \t\r\n", text_[at_]) && text_[at_] != '\0') ++at_;
+    return at_ < text_.size() ? text_[at_] : '\0';
+  }
+  bool accept(char c) {
+    if (peek() != c) return false;
+    ++at_;
+    return true;
+  }
+  void expect(char c) {
+    if (!accept(c)) malformed(std::string("expected '") + c + "'");
+  }
+  std::string parse_string() {
+    const char quote = peek();
+    if (quote != '\'' && quote != '"') malformed("expected a quoted string");
+    const std::size_t begin = at_ + 1;
+    const std::size_t end = text_.find(quote, begin);
+    if (end == std::string_view::npos) malformed("string without end");
+    at_ = end + 1;
+    return std::string(text_.substr(begin, end - begin));
+  }
+  bool parse_bool() {
+    peek();
+    for (const std::string_view word : {"True", "False"}) {
+      if (text_.substr(at_, word.size()) == word) {
+        at_ += word.size();
+        return word == "True";
+      }
+    }
+    malformed("expected True or False");
+  }
+  std::vector<std::size_t> parse_shape() {
+    std::vector<std::size_t> shape;
+    expect('(');
+    while (!accept(')')) {
+      if (peek() < '0' || peek() > '9') malformed("expected a length of the shape");
+      std::size_t length = 0;
+      for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
+        const auto digit = static_cast<std::size_t>(text_[at_] - '0');
+        if (length > (std::numeric_limits<std::size_t>::max() - digit) / 10) malformed("length too large");
+        length = 10 * length + digit;
+      }
+      accept('L');  // the suffix of long integers in Python 2
+      shape.push_back(length);
+      if (!accept(',') && peek() != ')') malformed("expected ',' or ')'");
+    }
+    return shape;
+  }
+
+  const std::string& path_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+/// Reads the file up to the end of its header.
+Header read_header(const std::string& path, InputFile& file) {
+  constexpr std::size_t kPrefix = 8, kMostHeader = 1 << 16;
+  const std::string prefix(file.first(kPrefix));
+  if (prefix.compare(0, kNpyMagic.size(), kNpyMagic) != 0) {
+    fail(path, "is no .npy file; expected it to begin with \\x93NUMPY");
+  }
+  if (prefix.size() < kPrefix) fail(path, "is truncated in the .npy header: {} bytes", prefix.size());
+  const int version = static_cast<unsigned char>(prefix[6]);
+  if (version < 1 || version > 3) fail(path, "has .npy format version {}; expected 1, 2 or 3", version);
+  const std::size_t text_begin = kPrefix + (version == 1 ? 2 : 4);
+  const std::string_view before_text = file.first(text_begin);
+  std::uint32_t length = 0;
+  std::memcpy(&length, before_text.data() + kPrefix, before_text.size() - kPrefix);
+  if (before_text.size() == text_begin && length > kMostHeader) {
+    fail(path, "has an .npy header of {} bytes; expected at most {}, for an array of plain numbers", length,
+         kMostHeader);
+  }
+  const std::string_view bytes = file.first(text_begin + length);
+  if (bytes.size() < text_begin + length) {
+    fail(path, "is truncated in the .npy header: expected {} bytes of it, the file has {}",
+         text_begin + length, bytes.size());
+  }
+  Header header = HeaderParser(path, bytes.substr(text_begin)).parse();
+  header.data_begin = text_begin + length;
+  return header;
+}
+
+/// What a reader accepts: an array of shape (rows, columns) with one of these dtypes.
+struct Layout {
+  const char* rows_name;
+  std::size_t columns;
+  std::vector<std::string> dtypes;
+};
+
+std::string dtypes_text(const Layout& layout) {
+  std::string text;
+  for (std::size_t i = 0; i < layout.dtypes.size(); ++i) {
+    text += i == 0 ? "'" : i + 1 < layout.dtypes.size() ? ", '" : " or '";
+    text += layout.dtypes[i] + "'";
+  }
+  return text;
+}
+
+/// Checks the header. Returns the number of bytes of all values.
+std::size_t check_header(const std::string& path, const Header& header, const Layout& layout) {
+  if (!header.descr.empty() && header.descr[0] == '>') {
+    fail(path, "has big-endian dtype '{}'; expected {} (numpy converts: array.astype('{}'))", header.descr,
+         dtypes_text(layout), layout.dtypes.front());
+  }
+  if (std::find(layout.dtypes.begin(), layout.dtypes.end(), header.descr) == layout.dtypes.end()) {
+    fail(path, "has dtype '{}'; expected {}", header.descr, dtypes_text(layout));
+  }
+  if (header.shape.size() != 2 || header.shape[1] != layout.columns) {
+    fail(path, "has shape {}; expected ({}, {})", shape_text(header.shape), layout.rows_name, layout.columns);
+  }
+  if (header.fortran_order) {
+    fail(path, "is in Fortran order; expected C order (numpy converts: numpy.ascontiguousarray(array))");
+  }
+  const std::size_t row_bytes = layout.columns * static_cast<std::size_t>(header.descr[2] - '0');
+  if (header.shape[0] > std::numeric_limits<std::size_t>::max() / row_bytes) {
+    fail(path, "has shape {}, more than any memory holds", shape_text(header.shape));
+  }
+  return header.shape[0] * row_bytes;
+}
+
+/// An array whose header was checked. The values are read once.
+class Array {
+ public:
+  Array(const std::string& path, InputFile& file, const Layout& layout)
+      : path_(path), file_(file), header_(read_header(path, file)) {
+    promised_ = check_header(path, header_, layout);
+  }
+
+  const Header& header() const { return header_; }
+  const std::string& dtype() const { return header_.descr; }
+  std::size_t rows() const { return header_.shape[0]; }
+  std::size_t data_begin() const { return header_.data_begin; }
+
+  /// Checks the size of a regular file.
+  void check_size() const { check(static_cast<std::size_t>(file_.size()) - header_.data_begin); }
+
+  template <typename Value>
+  std::vector<Value> values() {
+    if (file_.size() < 0) return values_of_pipe<Value>();
+    // Before there is memory for what the header promises.
+    check_size();
+    std::vector<Value> all;
+    all.reserve(promised_ / sizeof(Value));
+    host::prefer_huge_pages(all.data(), promised_);
+    all.resize(promised_ / sizeof(Value));
+    check(file_.read_from(header_.data_begin, promised_, all.data()));
+    return all;
+  }
+
+ private:
+  template <typename Value>
+  std::vector<Value> values_of_pipe() {
+    const std::string bytes = file_.all();
+    check(bytes.size() - header_.data_begin);
+    std::vector<Value> all(promised_ / sizeof(Value));
+    if (!all.empty()) std::memcpy(all.data(), bytes.data() + header_.data_begin, promised_);
+    return all;
+  }
+
+  void check(std::size_t found) const {
+    if (found < promised_) {
+      fail(path_, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
+           shape_text(header_.shape), header_.descr, promised_, found);
+    }
+    if (found > promised_) {
+      fail(path_, "has {} bytes too many: shape {} of '{}' needs {} bytes after the header, found {}",
+           found - promised_, shape_text(header_.shape), header_.descr, promised_, found);
+    }
+  }
+
+  const std::string& path_;
+  InputFile& file_;
+  Header header_;
+  std::size_t promised_ = 0;
+};
+
+const Layout& point_layout() {
+  static const Layout layout = {"n", 2, {"<f8", "<f4"}};
+  return layout;
+}
+
+}  // namespace
+
+Points read_npy_points(const std::string& path) {
+  InputFile file(path, kPointArray);
+  Array array(path, file, point_layout());
+  Points points;
+  if (array.dtype() == "<f8") {
+    points.coordinates = array.values<double>();
+  } else {
+    const std::vector<float> values = array.values<float>();
+    points.coordinates.assign(values.begin(), values.end());
+  }
+  return points;
+}
+
+NpyPoints find_npy_points(const std::string& path, InputFile& file) {
+  const Array array(path, file, point_layout());
+  array.check_size();
+  return {array.header().shape[0], array.header().data_begin, array.dtype() == "<f8"};
+}
+
+namespace {
+
+/// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
+std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
+  InputFile file(path, "a NumPy array of shape (m, 3)");
+  const Layout layout = {"m", 3, {"<i4", "<i8"}};
+  Array array(path, file, layout);
+  std::vector<std::int32_t> triangles;
+  const auto check = [&](auto value, std::size_t i) {
+    if (value < lowest || value > std::numeric_limits<std::int32_t>::max()) {
+      fail(path, "triangle {} has {} {}; expected {} to {}", i / 3, member, value, lowest,
+           std::numeric_limits<std::int32_t>::max());
+    }
+  };
+  if (array.dtype() == "<i4") {
+    triangles = array.values<std::int32_t>();
+    for (std::size_t i = 0; i < triangles.size(); ++i) check(triangles[i], i);
+  } else {
+    const std::vector<std::int64_t> wide = array.values<std::int64_t>();
+    for (std::size_t i = 0; i < wide.size(); ++i) check(wide[i], i);
+    triangles.assign(wide.begin(), wide.end());
+  }
+  return triangles;
+}
+
+/// The values of an array of segments, converted to indices of points.
+template <typename Value>
+std::vector<std::int32_t> segments_of(const std::string& path, Array& array, std::size_t points) {
+  const std::vector<Value> values = array.values<Value>();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    // A negative value is large without its sign.
+    if (static_cast<std::uint64_t>(values[i]) >= points) {
+      fail(path, "segment {} has index {}, but there are {} points, with indices from 0", i / 2, +values[i],
+           points);
+    }
+  }
+  return {values.begin(), values.end()};
+}
+
+class NpyRows : public RowSource {
+ public:
+  explicit NpyRows(const std::string& path) : path_(path), file_(path, "a NumPy array of shape (m, 3)") {
+    file_.first(1);  // an error if there is none
+    if (file_.size() < 0)
+      fail(path, "is no regular file; expected one, because its rows are not read in order");
+    const Layout layout = {"m", 3, {"<i4", "<i8"}};
+    const Array array(path_, file_, layout);
+    array.check_size();
+    is_wide_ = array.dtype() == "<i8";
+    size_ = array.header().shape[0];
+    begin_ = array.header().data_begin;
+  }
+
+  std::uint64_t size() const override { return size_; }
+
+  void read(std::uint64_t first, std::size_t count, std::int64_t* values) override {
+    const std::uint64_t value_bytes = is_wide_ ? sizeof(std::int64_t) : sizeof(std::int32_t);
+    const std::size_t bytes = static_cast<std::size_t>(3 * count * value_bytes);
+    // Narrow values are read into the upper half, and then moved down one by one.
+    char* const to = reinterpret_cast<char*>(values + 3 * count) - bytes;
+    file_.read_at(begin_ + 3 * first * value_bytes, bytes, to);
+    for (std::size_t i = 0; !is_wide_ && i < 3 * count; ++i) {
+      std::int32_t value = 0;
+      std::memcpy(&value, to + i * sizeof value, sizeof value);
+      values[i] = value;
+    }
+  }
+
+ private:
+  std::string path_;
+  InputFile file_;
+  bool is_wide_ = false;
+  std::uint64_t size_ = 0;
+  std::uint64_t begin_ = 0;  // of the first row, in bytes
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::make_unique<NpyRows>(path); }
+
+std::vector<std::int32_t> read_npy_triangles(const std::string& path) {
+  return read_npy_indices(path, 0, "vertex");
+}
+
+std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t points) {
+  InputFile file(path, "a NumPy array of shape (s, 2)");
+  const Layout layout = {"s", 2, {"<i4", "<i8", "<u4", "<u8", "<i2", "<u2", "|i1", "|u1"}};
+  Array array(path, file, layout);
+  const std::string& dtype = array.dtype();
+  if (dtype == "<i4") return segments_of<std::int32_t>(path, array, points);
+  if (dtype == "<i8") return segments_of<std::int64_t>(path, array, points);
+  if (dtype == "<u4") return segments_of<std::uint32_t>(path, array, points);
+  if (dtype == "<u8") return segments_of<std::uint64_t>(path, array, points);
+  if (dtype == "<i2") return segments_of<std::int16_t>(path, array, points);
+  if (dtype == "<u2") return segments_of<std::uint16_t>(path, array, points);
+  if (dtype == "|i1") return segments_of<std::int8_t>(path, array, points);
+  return segments_of<std::uint8_t>(path, array, points);
+}
+
+std::vector<std::int32_t> read_neighbors(const std::string& path) {
+  if (ending_of(path) != ".npy") fail_ending(path, ".npy");
+  return read_npy_indices(path, -1, "neighbour");
+}
+
+void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+                       std::size_t columns, IndexType type) {
+  if (columns > 0 && values.size() % columns != 0) {
+    throw Error(ErrorKind::internal,
+                fmt::format("{}: {} values make no rows of {}", path, values.size(), columns));
+  }
+  const std::size_t rows = columns == 0 ? values.size() : values.size() / columns;
+  const std::string header = npy_header(descr_of(type), rows, columns);
+  OutputFile& file = outputs.open(path);
+  file.write(header.data(), header.size());
+  if (type == IndexType::int32) {
+    file.write(values.data(), values.size() * sizeof(std::int32_t));
+  } else {
+    for (const std::int64_t value : values) file.write_value(value);
+  }
+}
+
+}  // namespace flaunay::io

@@ -1,0 +1,27 @@
+// A region of a partition as files that other programs read.
+#pragma once
+
+#include <string>
+
+#include "app/files/points.hpp"
+#include "files/output.hpp"
+#include "flaunay/research.hpp"
+
+namespace flaunay::io {
+
+/// Writes, numbered from 0, stem.node with the region's points (attribute: the index of the input point;
+/// marker 1: on the border) and stem.poly with its border as segments, the region on the left. points: the
+/// input's. Throws Error(input) naming the file and the system's reason.
+void write_region(Outputs& outputs, const std::string& stem, const Points& points,
+                  const research::Region& region);
+
+struct StoredRegion {
+  Points points;
+  research::Region region;
+};
+
+/// Reads what write_region writes, of this many points and border edges. Throws Error(input) that names the
+/// file and the line.
+StoredRegion read_region(const std::string& stem, std::size_t points, std::size_t border_edges);
+
+}  // namespace flaunay::io

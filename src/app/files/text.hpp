@@ -1,0 +1,284 @@
+// Reads text by lines and fields, and knows the place for error messages.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "app/files/points.hpp"
+#include "files/file.hpp"
+#include "files/output.hpp"
+
+namespace flaunay::io {
+
+/// A field for messages: quoted and shortened.
+inline std::string quoted(std::string_view field) {
+  constexpr std::size_t kLongest = 32;
+  return fmt::format("'{}{}'", field.substr(0, kLongest), field.size() > kLongest ? "..." : "");
+}
+
+enum class ParsedNumber { fine, unreadable, infinite };
+
+/// Reads all of field as a double; a leading '+' is fine. Numbers too small for a double become zero; those
+/// too large are `infinite`, while the words "inf" and "nan" are `fine` and come out as such.
+inline ParsedNumber parse_number(std::string_view field, double& value) {
+  const char* begin = field.data();
+  const char* end = begin + field.size();
+  if (field.size() > 1 && field[0] == '+' && field[1] != '-') ++begin;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error == std::errc::invalid_argument || stop != end) return ParsedNumber::unreadable;
+  if (error != std::errc::result_out_of_range) return ParsedNumber::fine;
+
+  // Out of range can mean too large or too small; the power of ten of the first digit that is not 0 tells
+  // which. The exponent is capped far beyond that of a double, so that it cannot overflow here.
+  long long power = 0;
+  bool after_point = false, nonzero_seen = false;
+  const char* c = begin;
+  for (; c != end && *c != 'e' && *c != 'E'; ++c) {
+    if (*c == '.') {
+      after_point = true;
+    } else if (*c >= '0' && *c <= '9') {
+      if (after_point && !nonzero_seen) --power;
+      if (*c != '0') nonzero_seen = true;
+      if (!after_point && nonzero_seen) ++power;
+    }
+  }
+  if (c != end) {
+    ++c;
+    const bool negative = c != end && *c == '-';
+    long long exponent = 0;
+    for (; c != end; ++c) {
+      if (*c >= '0' && *c <= '9' && exponent < 1'000'000'000'000'000) exponent = 10 * exponent + (*c - '0');
+    }
+    power += negative ? -exponent : exponent;
+  }
+  if (power > 0) return ParsedNumber::infinite;
+  value = *begin == '-' ? -0.0 : 0.0;
+  return ParsedNumber::fine;
+}
+
+/// A character, and how many bytes of UTF-8 it takes; 0 if they are not valid.
+struct CodePoint {
+  char32_t value = 0;
+  std::size_t bytes = 0;
+};
+/// The first character of a text, which must not be empty. Defined in text.cpp, like the next function.
+CodePoint first_code_point(std::string_view text);
+
+/// Throws Error(input) that names the place if the text is not UTF-8 or has control characters besides blanks
+/// and line ends. lines_before: of the file, before the text.
+void check_text(const std::string& name, std::string_view text, std::size_t lines_before = 0);
+
+/// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
+/// fields. With Separator::blanks_or_comma, fields may be in double quotes.
+class Lines {
+ public:
+  enum class Separator { blanks, blanks_or_comma };
+
+  /// name: the beginning of messages. The text must outlive this object; if it is a later piece of a file,
+  /// `lines_before` are before it. Throws what check_text throws.
+  Lines(std::string name, std::string_view text, Separator separator, std::size_t lines_before = 0)
+      : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma), number_(lines_before) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    const bool is_marked = lines_before == 0 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark;
+    if (is_marked) text.remove_prefix(kByteOrderMark.size());
+    check_text(name_, text, lines_before);
+    next_line_ = text.data();
+    text_end_ = text.data() + text.size();
+  }
+
+  /// Goes to the next line with content; false at the end.
+  bool next() {
+    while (next_line_ != text_end_) {
+      ++number_;
+      line_begin_ = next_line_;
+      line_end_ = find(line_begin_, text_end_, '\n');
+      next_line_ = line_end_ == text_end_ ? text_end_ : line_end_ + 1;
+      line_end_ = find(line_begin_, line_end_, '#');
+      while (line_end_ != line_begin_ && is_blank(line_end_[-1])) --line_end_;
+      rewind();
+      if (cursor_ != line_end_) return true;
+    }
+    return false;
+  }
+  /// Goes back to the first field of the line.
+  void rewind() {
+    cursor_ = line_begin_;
+    skip_blanks();
+    fields_taken_ = 0;
+  }
+
+  /// The next field of the line; false if there is none. Two commas in a row have an empty field between
+  /// them.
+  bool field(std::string_view& result) {
+    skip_blanks();
+    bool comma = false;
+    if (commas_ && fields_taken_ > 0 && cursor_ != line_end_ && *cursor_ == ',') {
+      comma = true;
+      ++cursor_;
+      skip_blanks();
+    }
+    if (cursor_ == line_end_ && !comma) return false;
+    ++fields_taken_;
+    if (quoted_field(result)) return true;
+    const char* begin = cursor_;
+    while (cursor_ != line_end_ && !is_separator(*cursor_)) ++cursor_;
+    result = std::string_view(begin, static_cast<std::size_t>(cursor_ - begin));
+    return true;
+  }
+  std::size_t fields_taken() const { return fields_taken_; }
+  /// The number of fields of the whole line. Goes back to the first one.
+  std::size_t count_fields() {
+    rewind();
+    std::string_view ignored;
+    while (field(ignored)) {
+    }
+    const std::size_t count = fields_taken_;
+    rewind();
+    return count;
+  }
+
+  /// The next field as a whole number; `what` names it for the message.
+  long long integer(std::string_view what) {
+    std::string_view text;
+    if (!field(text)) fail_line("expected {}, found the end of the line", what);
+    return whole_number(text, what);
+  }
+  /// The same of a field of this line.
+  long long whole_number(std::string_view text, std::string_view what) const {
+    long long value = 0;
+    const std::size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
+    const auto [stop, error] = std::from_chars(text.data() + skip, text.data() + text.size(), value);
+    if (error != std::errc() || stop != text.data() + text.size()) {
+      fail_field(text, "expected {} (a whole number), found {}", what, quoted(text));
+    }
+    return value;
+  }
+
+  /// Converts `text`, a field of this line, to a coordinate of the point with this index, which must be
+  /// finite. hint: the end of the message if the field is no number.
+  double coordinate(std::string_view text, std::size_t point, std::string_view hint = "") const {
+    double value = 0;
+    const ParsedNumber parsed = parse_number(text, value);
+    if (parsed == ParsedNumber::unreadable) {
+      fail_field(text, "expected a number (a coordinate of point {}), found {}{}", point,
+                 text.empty() ? "nothing" : quoted(text), hint);
+    }
+    if (parsed == ParsedNumber::infinite) {
+      fail_field(text,
+                 "point {} has coordinate {}, beyond the largest double: infinity; expected finite numbers",
+                 point, quoted(text));
+    }
+    if (!std::isfinite(value)) {
+      fail_field(text, "point {} has coordinate {}; expected finite numbers", point, quoted(text));
+    }
+    return value;
+  }
+
+  const std::string& name() const { return name_; }
+  /// The number of the line, in the file; after the last one, how many lines there are.
+  std::size_t number() const { return number_; }
+  /// An upper bound of the number of lines left, for reserving memory.
+  std::size_t lines_left() const {
+    std::size_t lines = 1;
+    for (const char* c = next_line_; (c = find(c, text_end_, '\n')) != text_end_; ++c) ++lines;
+    return lines;
+  }
+
+  template <typename... Arguments>
+  [[noreturn]] void fail_line(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
+    fail(name_, "line {}: {}", number_, fmt::format(format, std::forward<Arguments>(arguments)...));
+  }
+  template <typename... Arguments>
+  [[noreturn]] void fail_field(std::string_view field, fmt::format_string<Arguments...> format,
+                               Arguments&&... arguments) const {
+    fail(name_, "line {}, column {}: {}", number_, field.data() - line_begin_ + 1,
+         fmt::format(format, std::forward<Arguments>(arguments)...));
+  }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+  static const char* find(const char* begin, const char* end, char wanted) {
+    const void* found =
+        begin == end ? nullptr : std::memchr(begin, wanted, static_cast<std::size_t>(end - begin));
+    return found ? static_cast<const char*>(found) : end;
+  }
+  bool is_separator(char c) const { return is_blank(c) || (commas_ && c == ','); }
+  /// Takes a field in double quotes, in which "" stands for a quote, as in CSV. False if there is none here;
+  /// a quote without its end is an ordinary character.
+  bool quoted_field(std::string_view& result) {
+    if (!commas_ || cursor_ == line_end_ || *cursor_ != '"') return false;
+    const char* begin = cursor_ + 1;
+    const char* end = find(begin, line_end_, '"');
+    while (line_end_ - end > 1 && end[1] == '"') end = find(end + 2, line_end_, '"');
+    if (end == line_end_ || (end + 1 != line_end_ && !is_separator(end[1]))) return false;
+    cursor_ = end + 1;
+    while (begin != end && is_blank(*begin)) ++begin;
+    while (begin != end && is_blank(end[-1])) --end;
+    result = std::string_view(begin, static_cast<std::size_t>(end - begin));
+    return true;
+  }
+  void skip_blanks() {
+    while (cursor_ != line_end_ && is_blank(*cursor_)) ++cursor_;
+  }
+
+  std::string name_;
+  bool commas_;
+  std::size_t number_;
+  const char* next_line_;
+  const char* text_end_;
+  const char* line_begin_ = nullptr;
+  const char* line_end_ = nullptr;
+  const char* cursor_ = nullptr;
+  std::size_t fields_taken_ = 0;
+};
+
+/// Whether the line at hand is a header, which names columns: it has letters, and no field that is a number
+/// or a mistyped one. A line with such a field is data, and must not be skipped. Goes back to the first
+/// field. Defined in text.cpp.
+bool is_header(Lines& lines);
+
+/// The largest number of attributes of a vertex or a triangle, far more than a line holds.
+constexpr long long kMostAttributes = std::numeric_limits<std::int32_t>::max();
+
+/// The number of attributes in a header of Triangle's formats.
+inline long long attribute_count(Lines& lines) {
+  const long long attributes = lines.integer("the number of attributes");
+  if (attributes < 0 || attributes > kMostAttributes) {
+    lines.fail_line("{} attributes; expected 0 to {}", attributes, kMostAttributes);
+  }
+  return attributes;
+}
+
+/// A vertex or triangle number as an index from 0: `number` - `base`, checked to be below `count`.
+inline std::int32_t checked_index(const Lines& lines, std::string_view what, long long number, long long base,
+                                  long long count) {
+  count = std::min<long long>(count, std::numeric_limits<std::int32_t>::max());
+  if (number < base || number - base >= count) {
+    lines.fail_line("{} {} is out of range; expected {} to {}", what, number, base, base + count - 1);
+  }
+  return static_cast<std::int32_t>(number - base);
+}
+
+/// A .node file, the format of Triangle. Defined in points.cpp.
+struct NodeFile {
+  Points points;
+  long long base = 0;                 // the number of the first vertex, 0 or 1
+  std::vector<std::int32_t> indices;  // the first attribute of each vertex, if asked for
+};
+NodeFile read_node(const std::string& path, bool with_indices);
+
+/// Writes a .node file, numbered from 0, without attributes, and with markers if there are some. Defined in
+/// points.cpp.
+void print_node(OutputFile& file, const Points& points);
+
+}  // namespace flaunay::io

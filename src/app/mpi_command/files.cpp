@@ -1,0 +1,197 @@
+#include "app/mpi_command/files.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <random>
+
+#include "app/files/npy.hpp"
+#include "app/files/points.hpp"
+#include "files/file.hpp"
+
+namespace flaunay::mpi {
+namespace {
+
+// Values of one call. The calls are those of one rank alone, because in Open MPI's collective ones all ranks
+// wait for ever if one cannot write; each rank has one contiguous part of the file, for which collective
+// calls would gain nothing.
+constexpr std::size_t kPiece = std::size_t{1} << 22;
+
+constexpr const char* kCutShort =
+    "cannot be written to its end: the disk is full, or the file larger than permitted";
+
+void check_file(int code, const std::string& path, const char* what) {
+  if (code == MPI_SUCCESS) return;
+  char text[MPI_MAX_ERROR_STRING] = "";
+  int length = 0;
+  MPI_Error_string(code, text, &length);
+  io::fail(path, "cannot be {}: {}", what, text);
+}
+
+void check_count(const MPI_Status& status, MPI_Datatype type, std::size_t expected, const std::string& path,
+                 const char* what) {
+  int count = 0;
+  MPI_Get_count(&status, type, &count);
+  if (static_cast<std::size_t>(count) != expected) io::fail(path, "{}", what);
+}
+
+template <typename Value>
+std::vector<double> read_values(MPI_File file, std::uint64_t begin, std::size_t count,
+                                const std::string& path) {
+  const MPI_Datatype type = sizeof(Value) == sizeof(double) ? MPI_DOUBLE : MPI_FLOAT;
+  std::vector<double> values;
+  values.reserve(count);
+  std::vector<Value> piece(std::min(count, kPiece));
+  while (values.size() < count) {
+    const std::size_t size = std::min(kPiece, count - values.size());
+    MPI_Status status;
+    check_file(MPI_File_read_at(file, static_cast<MPI_Offset>(begin + values.size() * sizeof(Value)),
+                                piece.data(), static_cast<int>(size), type, &status),
+               path, "read");
+    check_count(status, type, size, path, "became shorter while it was read");
+    values.insert(values.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(size));
+  }
+  return values;
+}
+
+template <typename Value>
+void write_values(MPI_File file, std::uint64_t begin, const std::vector<std::int64_t>& values,
+                  const std::string& path) {
+  const MPI_Datatype type = sizeof(Value) == sizeof(std::int64_t) ? MPI_INT64_T : MPI_INT32_T;
+  std::vector<Value> piece(std::min(values.size(), kPiece));
+  for (std::size_t done = 0; done < values.size();) {
+    const std::size_t size = std::min(kPiece, values.size() - done);
+    std::transform(values.begin() + static_cast<std::ptrdiff_t>(done),
+                   values.begin() + static_cast<std::ptrdiff_t>(done + size), piece.begin(),
+                   [](std::int64_t value) { return static_cast<Value>(value); });
+    MPI_Status status;
+    check_file(MPI_File_write_at(file, static_cast<MPI_Offset>(begin + done * sizeof(Value)), piece.data(),
+                                 static_cast<int>(size), type, &status),
+               path, "written");
+    check_count(status, type, size, path, kCutShort);
+    done += size;
+  }
+}
+
+/// In the folder of the target, so that it can be renamed.
+std::string temporary_name(const io::Target& target) {
+  std::random_device random;
+  return fmt::format("{}.{}.{:08x}{:08x}", target.folder, target.name, random(), random());
+}
+
+mode_t mode_of(const io::Target& target) {
+  if (target.exists) return target.mode & 07777;
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  return 0666 & ~mask;
+}
+
+}  // namespace
+
+PointFile::PointFile(Ranks& ranks, const std::string& path) : path_(path) {
+  std::vector<std::uint64_t> found(3);
+  ranks.together([&] {
+    if (ranks.rank() != 0) return;
+    const io::PointFormat format = io::point_format(path);
+    if (format != io::PointFormat::npy && format != io::PointFormat::binary)
+      throw Error(ErrorKind::usage,
+                  fmt::format("{}: ranks read .npy and .bin files at the same time, and no others; "
+                              "convert it, or take flaunay triangulate",
+                              path));
+    const bool is_npy = format == io::PointFormat::npy;
+    io::InputFile file(path, is_npy ? io::kPointArray : io::kPairs);
+    file.first(1);  // an error if there is none
+    if (file.size() < 0) io::fail(path, "is no regular file, which ranks can read at the same time");
+    if (is_npy) {
+      const io::NpyPoints points = io::find_npy_points(path, file);
+      found = {points.size, points.data_begin, points.is_double ? 1u : 0u};
+    } else {
+      found = {io::count_pairs(path, static_cast<std::uint64_t>(file.size())), 0, 1};
+    }
+  });
+  ranks.broadcast(found);
+  size_ = found[0];
+  data_begin_ = found[1];
+  is_double_ = found[2] != 0;
+}
+
+std::vector<double> PointFile::read(Ranks& ranks) const {
+  const auto rank = static_cast<std::uint64_t>(ranks.rank()),
+             count = static_cast<std::uint64_t>(ranks.size());
+  // As even as possible, without products that may overflow.
+  const auto begin_of = [&](std::uint64_t r) { return size_ / count * r + std::min(r, size_ % count); };
+  const std::uint64_t first = begin_of(rank), values = 2 * (begin_of(rank + 1) - first);
+  MPI_File file = MPI_FILE_NULL;
+  const int code = MPI_File_open(ranks.communicator(), path_.c_str(), MPI_MODE_RDONLY, MPI_INFO_NULL, &file);
+  ranks.together([&] { check_file(code, path_, "opened"); });
+  const std::uint64_t begin = data_begin_ + 2 * first * (is_double_ ? sizeof(double) : sizeof(float));
+  std::vector<double> points;
+  ranks.together([&] {
+    points = is_double_ ? read_values<double>(file, begin, values, path_)
+                        : read_values<float>(file, begin, values, path_);
+  });
+  MPI_File_close(&file);
+  return points;
+}
+
+IndexFile::IndexFile(Ranks& ranks, const std::string& path, std::size_t columns, std::uint64_t rows,
+                     io::IndexType type)
+    : path_(path), columns_(columns), rows_(rows), type_(type) {
+  std::vector<char> name;
+  ranks.together([&] {
+    if (ranks.rank() != 0) return;
+    target_ = io::find_target(path);
+    if (target_.is_direct) io::fail(path, "is no regular file, which ranks can write at the same time");
+    const std::string text = temporary_name(target_);
+    name.assign(text.begin(), text.end());
+  });
+  ranks.broadcast(name);
+  ranks.together([&] { temporary_ = io::Temporary(std::string(name.begin(), name.end())); });
+  const int code = MPI_File_open(ranks.communicator(), temporary_.path().c_str(),
+                                 MPI_MODE_CREATE | MPI_MODE_EXCL | MPI_MODE_WRONLY, MPI_INFO_NULL, &file_);
+  ranks.together([&] { check_file(code, path_, "created"); });
+}
+
+// Closing is collective; after an error, all ranks are here.
+IndexFile::~IndexFile() {
+  if (file_ != MPI_FILE_NULL) MPI_File_close(&file_);
+}
+
+void IndexFile::write(Ranks& ranks, const std::vector<std::int64_t>& values, std::uint64_t first_row) {
+  const std::uint64_t bytes = type_ == io::IndexType::int32 ? 4 : 8;
+  const std::uint64_t begin = io::kNpyHeaderBytes + first_row * std::max<std::size_t>(1, columns_) * bytes;
+  ranks.together([&] {
+    if (ranks.rank() == 0) {
+      const std::string header = io::npy_header(io::descr_of(type_), rows_, columns_);
+      MPI_Status status;
+      check_file(
+          MPI_File_write_at(file_, 0, header.data(), static_cast<int>(header.size()), MPI_CHAR, &status),
+          path_, "written");
+      check_count(status, MPI_CHAR, header.size(), path_, kCutShort);
+    }
+    if (type_ == io::IndexType::int32) {
+      write_values<std::int32_t>(file_, begin, values, path_);
+    } else {
+      write_values<std::int64_t>(file_, begin, values, path_);
+    }
+  });
+  const int synced = MPI_File_sync(file_), closed = MPI_File_close(&file_);
+  ranks.together([&] {
+    check_file(synced, path_, "written");
+    check_file(closed, path_, "written");
+  });
+}
+
+void IndexFile::place() {
+  const char* const from = temporary_.path().c_str();
+  // Some file systems have no modes.
+  if (::chmod(from, mode_of(target_)) != 0) errno = 0;
+  if (std::rename(from, target_.path().c_str()) != 0)
+    io::fail(path_, "cannot replace what is there: {}", io::system_reason(errno));
+}
+
+}  // namespace flaunay::mpi

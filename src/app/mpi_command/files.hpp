@@ -1,0 +1,62 @@
+// Files that all ranks read and write at the same time, by MPI-IO. All functions are to be called by all
+// ranks; if one fails on a rank, all throw its error.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "files/output.hpp"
+#include "large/mpi/ranks.hpp"
+
+namespace flaunay::mpi {
+
+/// Points of a .npy or .bin file, of which each rank reads an equal share.
+class PointFile {
+ public:
+  /// Reads the header on rank 0. Throws Error(usage) for other formats, and Error(input) for what is no such
+  /// file.
+  PointFile(Ranks& ranks, const std::string& path);
+  std::uint64_t size() const { return size_; }
+  /// This rank's share: x0 y0 x1 y1 ... Throws Error(input) if the file became shorter.
+  std::vector<double> read(Ranks& ranks) const;
+
+ private:
+  std::string path_;
+  std::uint64_t size_ = 0, data_begin_ = 0;
+  bool is_double_ = true;
+};
+
+/// A .npy file of indices. It has a temporary name until it is placed.
+class IndexFile {
+ public:
+  /// columns: 0: an array of one dimension. rows: of all ranks.
+  IndexFile(Ranks& ranks, const std::string& path, std::size_t columns, std::uint64_t rows,
+            io::IndexType type);
+  ~IndexFile();
+  IndexFile(const IndexFile&) = delete;
+  IndexFile& operator=(const IndexFile&) = delete;
+
+  /// Writes this rank's values, whose rows begin at first_row, and closes the file when it is on the disk.
+  void write(Ranks& ranks, const std::vector<std::int64_t>& values, std::uint64_t first_row);
+  /// Gives the file its name. On rank 0 alone, when all files are written; throws Error(input).
+  void place();
+  /// To be called by all ranks afterwards: there is nothing left to remove.
+  void release() { temporary_.release(); }
+
+ private:
+  std::string path_;
+  std::size_t columns_;
+  std::uint64_t rows_;
+  io::IndexType type_;
+  io::Target target_;  // on rank 0
+  // Every rank removes it if this one ends early.
+  io::Temporary temporary_;
+  MPI_File file_ = MPI_FILE_NULL;
+};
+
+}  // namespace flaunay::mpi

@@ -1,0 +1,283 @@
+// The program flaunay-mpi: flaunay triangulate over the ranks of MPI, each with its share of the file.
+#include <fmt/format.h>
+#include <sched.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/command/chunks.hpp"
+#include "app/command/errors.hpp"
+#include "app/command/options.hpp"
+#include "app/command/output.hpp"
+#include "app/command/progress.hpp"
+#include "app/command/results.hpp"
+#include "app/mpi_command/files.hpp"
+#include "files/disk_space.hpp"
+#include "files/temporary.hpp"
+#include "flaunay/mpi.hpp"
+
+namespace flaunay::mpi {
+namespace {
+
+constexpr const char* kProgram = "flaunay-mpi";
+
+struct Request {
+  std::string input;
+  cli::ResultPaths results;
+  std::string index = "auto";
+  Options options;
+  bool quiet = false;
+};
+
+// What a rank used.
+struct Use {
+  std::uint64_t triangles, bytes_sent, peak_bytes;
+  double cpu_seconds;  // of the triangulation
+};
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// Ranks that may use the same cores share them. What the user chose stays.
+void share_cores(const Ranks& ranks) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return;
+  // Each core is divided among the ranks that may use it.
+  std::vector<double> users(CPU_SETSIZE);
+  for (int core = 0; core < CPU_SETSIZE; ++core) users[core] = CPU_ISSET(core, &cores) != 0 ? 1 : 0;
+  ranks.sum_here(users);
+  double share = 0;
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &cores) != 0) share += 1 / users[core];
+  }
+  const std::string threads = std::to_string(std::max(1, static_cast<int>(share + 0.5)));
+  for (const char* const variable : {"FLAUNAY_THREADS", "POCL_MAX_PTHREAD_COUNT"})
+    setenv(variable, threads.c_str(), 0);
+}
+
+std::string statistics_json(const Request& request, const Statistics& statistics,
+                            const std::vector<Use>& uses, double reading, double writing) {
+  nlohmann::ordered_json json;
+  json["flaunay"] = version();
+  json["input"] = request.input;
+  json["points"] = statistics.points;
+  json["duplicates"] = statistics.duplicates;
+  json["triangles"] = statistics.triangles;
+  json["hull_vertices"] = statistics.hull_vertices;
+  json["seconds"] = {{"reading", reading}, {"triangulating", statistics.seconds}, {"writing", writing}};
+  json["points_per_second"] = static_cast<double>(statistics.points) / statistics.seconds;
+  json["undecided_predicates"] = statistics.undecided;
+  json["device"] = statistics.device;
+  json["host_points"] = statistics.host_points;
+  json["phases"] = nlohmann::ordered_json::array();
+  for (const PhaseStatistics& phase : statistics.phases)
+    json["phases"].push_back({{"name", phase.name}, {"seconds", phase.seconds}});
+  json["rounds"] = nlohmann::ordered_json::array();
+  for (const Round& round : statistics.rounds) {
+    json["rounds"].push_back({{"points", round.points},
+                              {"ranks", round.ranks},
+                              {"most_points_of_a_rank", round.most},
+                              {"triangles", round.triangles},
+                              {"handed_on", round.handed_on}});
+  }
+  json["ranks"] = nlohmann::ordered_json::array();
+  for (const Use& use : uses) {
+    json["ranks"].push_back({{"triangles", use.triangles},
+                             {"bytes_sent", use.bytes_sent},
+                             {"cpu_seconds", use.cpu_seconds},
+                             {"peak_bytes", use.peak_bytes}});
+  }
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string host_note(const Statistics& statistics) {
+  if (statistics.host_points == 0) return "";
+  return fmt::format(
+      "note: {} points were triangulated on the hosts, whose devices have no double precision (fp64) for "
+      "coordinates that span so many binary places\n",
+      statistics.host_points);
+}
+
+std::string summary(const Statistics& statistics, int ranks) {
+  return host_note(statistics) +
+         fmt::format(
+             "{} points, {} duplicates, {} triangles, {} hull vertices; on {} ranks in {} rounds in {:.3f} "
+             "s, "
+             "{:.0f} points "
+             "per second\n",
+             statistics.points, statistics.duplicates, statistics.triangles, statistics.hull_vertices, ranks,
+             statistics.rounds.size(), statistics.seconds,
+             static_cast<double>(statistics.points) / std::max(statistics.seconds, 1e-9));
+}
+
+// What is written of an array, and from which row on.
+struct Share {
+  const std::vector<std::int64_t>& values;
+  std::uint64_t first_row, rows;
+};
+
+// In the order of the array files.
+std::array<Share, cli::kArrayFiles.size()> shares_of(const Triangulation& mesh) {
+  const auto first_row = static_cast<std::uint64_t>(mesh.first_row);
+  return {{{mesh.triangles, first_row, mesh.statistics.triangles},
+           {mesh.neighbors, first_row, mesh.statistics.triangles},
+           {mesh.hull, 0, mesh.statistics.hull_vertices},
+           {mesh.representatives, static_cast<std::uint64_t>(mesh.first_point), mesh.statistics.points}}};
+}
+
+// Before any work: the outputs have room, as far as that is known.
+io::IndexType check_outputs(const Request& request, std::uint64_t points) {
+  const io::IndexType type = cli::index_type(request.index, points, request.results);
+  const std::uint64_t bytes = (type == io::IndexType::int32 ? 4 : 8) * points;
+  const auto& paths = request.results.arrays;
+  // There are at most twice as many triangles as points; the hull is long for few inputs.
+  io::check_disk_space({{paths[0], 6 * bytes}, {paths[1], 6 * bytes}, {paths[3], bytes}});
+  return type;
+}
+
+int triangulate(Ranks& ranks, const Request& request) {
+  cli::OutputFiles outputs(request.input);
+  ranks.together([&] {
+    if (ranks.rank() == 0) cli::announce(outputs, request.results);
+  });
+  cli::Progress progress(!request.quiet && ranks.rank() == 0);
+  cli::Stopwatch stopwatch;
+  progress.update("reading");
+  const PointFile file(ranks, request.input);
+  io::IndexType type = io::IndexType::int64;
+  std::vector<int> types(1);
+  ranks.together([&] {
+    if (ranks.rank() == 0) types.front() = static_cast<int>(check_outputs(request, file.size()));
+  });
+  ranks.broadcast(types);
+  type = static_cast<io::IndexType>(types.front());
+  std::vector<double> points = file.read(ranks);
+  const double reading = stopwatch.restart();
+
+  progress.update("triangulating");
+  const double cpu_before = cpu_seconds();
+  Options options = request.options;
+  options.neighbors = !request.results.arrays[1].empty();
+  const Triangulation mesh =
+      mpi::triangulate(ranks.communicator(), points.data(), points.size() / 2, options);
+  points = {};
+  const std::vector<Use> uses = ranks.gather(std::vector<Use>{
+      {mesh.triangles.size() / 3, mesh.statistics.bytes_sent, peak_bytes(), cpu_seconds() - cpu_before}});
+
+  progress.update("writing");
+  stopwatch.restart();
+  const auto shares = shares_of(mesh);
+  std::vector<std::unique_ptr<IndexFile>> files;
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const std::string& path = request.results.arrays[k];
+    if (path.empty()) continue;
+    files.push_back(
+        std::make_unique<IndexFile>(ranks, path, cli::kArrayFiles[k].columns, shares[k].rows, type));
+    files.back()->write(ranks, shares[k].values, shares[k].first_row);
+  }
+  ranks.together([&] {
+    if (ranks.rank() != 0) return;
+    if (!request.results.stats.empty()) {
+      outputs.files()
+          .open(request.results.stats)
+          .print("{}", statistics_json(request, mesh.statistics, uses, reading, stopwatch.seconds()));
+    }
+    outputs.files().write_out();
+    for (const auto& each : files) each->place();
+    outputs.files().commit();
+  });
+  for (const auto& each : files) each->release();
+  progress.finish();
+  if (!request.quiet && ranks.rank() == 0) cli::print(summary(mesh.statistics, ranks.size()));
+  return cli::kSuccess;
+}
+
+void add_triangulate(CLI::App& app, Request& request) {
+  CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
+  command->add_option("input", request.input, "Points: .npy or .bin")->required();
+  cli::add_result_arrays(command, request.results);
+  command->add_option(
+      "--device", request.options.device,
+      "The device of each rank: a part of its name, #k for the k-th that flaunay devices lists, or "
+      "host; several with commas between them: the ranks of a machine take them in turn");
+  command
+      ->add_option("--round-points", request.options.round_points,
+                   "Points of a rank in later rounds, which have as few ranks as that permits; default: a "
+                   "sixteenth of the mean of the first round, but at least 65,536")
+      ->check(CLI::PositiveNumber);
+  cli::add_index(command, request.index);
+  cli::add_quiet(command, request.quiet);
+}
+
+// Reports on rank 0 what all ranks know.
+int report(const Ranks& ranks, int code, const std::string& message) {
+  return ranks.rank() == 0 ? cli::report_error(kProgram, code, message) : code;
+}
+
+int run(Ranks& ranks, int argc, char** argv) {
+  CLI::App app(
+      "Exact two-dimensional Delaunay triangulation over the ranks of MPI: mpirun -n 8 flaunay-mpi ...",
+      kProgram);
+  app.set_version_flag("--version", fmt::format("{} {}", kProgram, version()));
+  app.require_subcommand(0, 1);
+  Request request;
+  add_triangulate(app, request);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return ranks.rank() == 0 ? app.exit(error) : 0;  // --help, --version
+    return report(ranks, cli::kUsage, fmt::format("{} (see {} --help)", error.what(), kProgram));
+  }
+  if (app.get_subcommands().empty())
+    return report(ranks, cli::kUsage, "a subcommand is required: triangulate");
+  share_cores(ranks);
+  try {
+    return triangulate(ranks, request);
+  } catch (const Error& error) {
+    return report(ranks, cli::exit_code(error.kind()), error.what());
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::mpi
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  flaunay::io::clean_up_when_interrupted();
+  int provided = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+  int code = flaunay::cli::kFailure;
+  try {
+    flaunay::mpi::Ranks ranks(MPI_COMM_WORLD);
+    code = flaunay::mpi::run(ranks, argc, argv);
+  } catch (const std::exception& error) {
+    // Of this rank alone; others may wait for it.
+    flaunay::cli::report_error("flaunay-mpi", code, fmt::format("internal error: {}", error.what()));
+    MPI_Abort(MPI_COMM_WORLD, code);
+  }
+  MPI_Finalize();
+  return code;
+}

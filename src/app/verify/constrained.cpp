@@ -1,0 +1,741 @@
+// Why the checks together are complete. `Sweep` cuts the segments and the convex hull at all points on them,
+// and finds the faces between these pieces, from points and segments alone. Each face is to be covered, or
+// not.
+//
+// 0. Depths of faces follow from what lies between them, by the definitions of `FillRule`.
+// 1. Every triangle is counter-clockwise, and every directed edge occurs at most once. Each side of each
+// piece has
+//    a triangle if and only if the face there is to be covered. Every edge with one triangle is a piece. So
+//    the sum of the triangles' oriented boundaries is that of the covered faces: every point in general
+//    position there is in one triangle, and no other one is in any.
+// 2. Every place in a covered face or on its border is a corner. A triangle around it, or on an edge of which
+// it
+//    is, would cover what the triangles at that corner cover. So the triangles are a triangulation of the
+//    covered faces with all points there, and the segments there are chains of its edges.
+// 3. Every edge that is no constraint is locally Delaunay, which is the definition.
+// 4. Of two triangles on one circle whose edge is no constraint, that edge begins at the lexicographically
+//    smallest of the four corners: the rule of `circle_canonical`, for which docs/constrained.md proves that
+//    every cell is then a fan from its smallest vertex.
+#include "app/verify/constrained.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "app/verify/checker.hpp"
+#include "app/verify/sweep.hpp"
+
+namespace flaunay {
+namespace {
+
+using verification::Checker;
+using verification::kHull;
+using verification::kNone;
+using verification::Piece;
+using verification::Place;
+using verification::Span;
+using verification::Sweep;
+
+constexpr std::int32_t kNoPiece = -1, kNoPoint = -1;
+
+/// How rings go around a place, and how many polygons it is in.
+class PolygonsAround {
+ public:
+  PolygonsAround(const Rings& rings, bool is_even_odd)
+      : is_even_odd_(is_even_odd), windings_(rings.segment_offsets.size() - 1, 0) {
+    for (std::size_t r = 0, part = 0, polygon = 0; r < windings_.size(); ++r) {
+      while (rings.part_offsets[part + 1] <= r) ++part;
+      while (rings.polygon_offsets[polygon + 1] <= r) ++polygon;
+      bounded_.push_back({part, polygon, rings.part_offsets[part] == r});
+    }
+    borders_.assign(rings.part_offsets.size(), 0);
+    holes_.assign(rings.part_offsets.size(), 0);
+    parts_.assign(rings.polygon_offsets.size(), 0);
+  }
+
+  void cross(std::size_t ring, int amount) {
+    count_here(ring, -1);
+    windings_[ring] += amount;
+    count_here(ring, 1);
+  }
+  std::int64_t count() const { return count_; }
+
+ private:
+  struct Bounded {
+    std::size_t part, polygon;
+    bool is_border;
+  };
+
+  /// Adds the polygon of a ring to the count, or takes it from there, if it is here.
+  void count_here(std::size_t ring, int amount) {
+    const auto [part, polygon, is_border] = bounded_[ring];
+    const auto add_part = [&](int sign) {
+      if (borders_[part] == 0 || holes_[part] != 0) return;
+      if (parts_[polygon] > 0) --count_;
+      parts_[polygon] += sign;
+      if (parts_[polygon] > 0) ++count_;
+    };
+    const bool is_around = is_even_odd_ ? windings_[ring] % 2 != 0 : windings_[ring] != 0;
+    add_part(-1);
+    if (is_around) (is_border ? borders_ : holes_)[part] += amount;
+    add_part(1);
+  }
+
+  bool is_even_odd_;
+  std::vector<std::int64_t> windings_;  // by ring
+  std::vector<Bounded> bounded_;
+  std::vector<std::int64_t> borders_, holes_;  // by part: how many are around
+  std::vector<std::int64_t> parts_;            // by polygon
+  std::int64_t count_ = 0;
+};
+
+class ConstrainedChecker : public Checker {
+ public:
+  ConstrainedChecker(const double* coordinates, std::size_t n, const std::vector<std::int32_t>& triangles,
+                     const std::vector<std::int32_t>* neighbors, const VerifyConstraints& constraints)
+      : Checker(coordinates, n, triangles, neighbors),
+        constraints_(constraints),
+        segments_(*constraints.segments),
+        sweep_(places_, predicates_) {}
+
+  VerifyReport run() {
+    report_.ok = check_form() && check_coordinates() && check_indices() && check_segments() && check_holes();
+    if (report_.ok) {
+      sort_points();
+      report_.ok = check_orientations() && check_representatives() && match_half_edges() && cut_segments() &&
+                   check_triangulation() && check_circles() && check_edges() && check_segment_edges() &&
+                   check_edge_segments() && check_labels() && check_neighbors_if_given();
+    }
+    report_.exact_evaluations = predicates_.exact_evaluations();
+    return report_;
+  }
+
+ private:
+  std::size_t point_of(std::size_t place) const { return static_cast<std::size_t>(point_of_place_[place]); }
+  bool is_constraint(const Piece& piece) const { return piece.segment != kHull; }
+
+  std::string describe_segment(std::size_t s) const {
+    return fmt::format("segment {} from {} to {}", s, describe_point(segments_[2 * s]),
+                       describe_point(segments_[2 * s + 1]));
+  }
+  std::string describe_piece(const Piece& piece) const {
+    return fmt::format("the edge from {} to {}",
+                       describe_point(point_of(static_cast<std::size_t>(piece.from))),
+                       describe_point(point_of(static_cast<std::size_t>(piece.to))));
+  }
+
+  bool check_segments() {
+    if (segments_.size() % 2 != 0) {
+      return fail("the segments are {} indices, which is not a multiple of 2", segments_.size());
+    }
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      if (segments_[i] < 0 || static_cast<std::size_t>(segments_[i]) >= n_) {
+        return fail("segment {} has an end {}, which is not the index of one of the {} points", i / 2,
+                    segments_[i], n_);
+      }
+    }
+    return true;
+  }
+
+  bool check_holes() {
+    for (std::size_t i = 0; constraints_.holes != nullptr && i < constraints_.holes->size(); ++i) {
+      if (!std::isfinite((*constraints_.holes)[i])) return fail("hole {} is not finite", i / 2);
+    }
+    return true;
+  }
+
+  /// Numbers the distinct points in their order, and the places of holes among them. Each stands for the one
+  /// that triangles use.
+  void number_places() {
+    place_of_point_.resize(n_);
+    const std::vector<SortedPoint> holes = sorted_holes();
+    place_of_hole_.resize(holes.size());
+    auto hole = holes.begin();
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (starts_group(i)) {
+        for (; hole != holes.end() && is_before(*hole, sorted_[i]); ++hole) add_hole(*hole);
+        add_place(sorted_[i], true);
+        for (; hole != holes.end() && !is_before(sorted_[i], *hole); ++hole)
+          place_of_hole_[hole->index] = newest_place();
+      }
+      const auto index = static_cast<std::int32_t>(sorted_[i].index);
+      if (point_of_place_.back() == kNoPoint || used_[index] != 0) point_of_place_.back() = index;
+      place_of_point_[index] = newest_place();
+    }
+    for (; hole != holes.end(); ++hole) add_hole(*hole);
+  }
+  static bool is_before(const SortedPoint& a, const SortedPoint& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  }
+  std::int32_t newest_place() const { return static_cast<std::int32_t>(places_.size()) - 1; }
+  void add_place(const SortedPoint& at, bool is_point) {
+    places_.push_back({{at.x, at.y}, is_point});
+    point_of_place_.push_back(kNoPoint);
+  }
+  void add_hole(const SortedPoint& hole) {
+    add_place(hole, false);
+    place_of_hole_[hole.index] = newest_place();
+  }
+  std::vector<SortedPoint> sorted_holes() const {
+    std::vector<SortedPoint> holes;
+    for (std::size_t k = 0; constraints_.holes != nullptr && k < constraints_.holes->size() / 2; ++k) {
+      holes.push_back({(*constraints_.holes)[2 * k], (*constraints_.holes)[2 * k + 1], k});
+    }
+    std::sort(holes.begin(), holes.end());
+    return holes;
+  }
+
+  bool cut_segments() {
+    number_places();
+    std::vector<Span> spans;
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
+      if (a != b) spans.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(s)});
+    }
+    add_hull(spans, 1);
+    add_hull(spans, -1);
+    const Sweep::Crossing crossing = sweep_.run(spans);
+    if (crossing.first >= 0) {
+      return fail("{} and {} cross at a place that is no point", describe_segment(crossing.first),
+                  describe_segment(crossing.second));
+    }
+    for (const Piece& piece : sweep_.pieces()) report_.constraint_edges += is_constraint(piece);
+    return true;
+  }
+
+  /// Andrew's chain (1979) below all places, or with turn = -1 above them.
+  void add_hull(std::vector<Span>& spans, int turn) {
+    std::vector<std::int32_t> chain;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(places_.size()); ++v) {
+      if (!places_[v].is_point) continue;
+      const auto turns = [&] {
+        const double *a = places_[chain[chain.size() - 2]].at, *b = places_[chain.back()].at;
+        return predicates_.orient2d(a, b, places_[v].at) == turn;
+      };
+      while (chain.size() > 1 && !turns()) chain.pop_back();
+      chain.push_back(v);
+    }
+    for (std::size_t i = 1; i < chain.size(); ++i) spans.push_back({chain[i - 1], chain[i], kHull});
+  }
+
+  bool check_triangulation() {
+    match_pieces();
+    return choose_faces() && check_constraints() && check_border() && check_sides() && check_places() &&
+           check_count();
+  }
+
+  /// Finds the piece that each half-edge is, and the triangles beside each piece.
+  void match_pieces() {
+    const std::vector<Piece>& pieces = sweep_.pieces();
+    std::vector<std::int32_t> first(places_.size() + 1, 0);
+    for (const Piece& piece : pieces) ++first[piece.from + 1];
+    for (std::size_t i = 0; i < places_.size(); ++i) first[i + 1] += first[i];
+    piece_of_.assign(corners_.size(), kNoPiece);
+    above_.assign(pieces.size(), kNone);
+    below_.assign(pieces.size(), kNone);
+    for (std::size_t h = 0; h < corners_.size(); ++h) {
+      const std::int32_t a = place_of_point_[origin(h)], b = place_of_point_[target(h)];
+      const std::int32_t from = std::min(a, b), to = std::max(a, b);
+      const auto end = pieces.begin() + first[from + 1];
+      const auto found = std::lower_bound(pieces.begin() + first[from], end, to,
+                                          [](const Piece& piece, std::int32_t v) { return piece.to < v; });
+      if (found == end || found->to != to) continue;
+      piece_of_[h] = static_cast<std::int32_t>(found - pieces.begin());
+      (a == from ? above_ : below_)[piece_of_[h]] = static_cast<std::int64_t>(h / 3);
+    }
+  }
+
+  /// Decides which faces are to be covered.
+  bool choose_faces() {
+    covered_.assign(sweep_.face_count(), 1);
+    covered_[0] = 0;
+    const bool by_nesting = constraints_.fill_rule == FillRule::nesting;
+    if (constraints_.outside != Outside::keep || constraints_.depths != nullptr) {
+      if (!check_closed()) return false;
+      depths_ = by_nesting                      ? nesting_depths()
+                : constraints_.rings != nullptr ? polygon_depths()
+                                                : winding_depths();
+    }
+    if (constraints_.outside != Outside::keep) {
+      const bool drops_holes = by_nesting && constraints_.outside == Outside::holes;
+      for (std::size_t f = 0; f < covered_.size(); ++f) {
+        if (depths_[f] == 0 || (drops_holes && depths_[f] % 2 == 0)) covered_[f] = 0;
+      }
+    }
+    return drop_seeded();
+  }
+
+  /// Rules other than nesting need closed curves.
+  bool check_closed() {
+    if (constraints_.fill_rule == FillRule::nesting) return true;
+    std::vector<std::int32_t> excess(places_.size(), 0);
+    const Rings* const rings = constraints_.rings;
+    const std::size_t count = rings != nullptr ? rings->segment_offsets.back() : segments_.size() / 2;
+    for (std::size_t s = 0; s < count; ++s) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        std::int32_t& of_place = excess[place_of_point_[segments_[2 * s + k]]];
+        of_place += is_even_odd() || k == 1 ? 1 : -1;
+      }
+    }
+    for (std::size_t place = 0; place < places_.size(); ++place) {
+      if (is_even_odd() ? excess[place] % 2 == 0 : excess[place] == 0) continue;
+      return fail("the segments are no closed curves: at {}, {}", describe_point(point_of(place)),
+                  is_even_odd() ? "an odd number of them ends" : "not as many begin as end");
+    }
+    return true;
+  }
+  bool is_even_odd() const { return constraints_.fill_rule == FillRule::even_odd; }
+
+  /// The faces beyond each piece of a face.
+  struct Beyond {
+    std::int32_t face, piece;
+  };
+  std::vector<std::vector<Beyond>> faces_beyond() const {
+    std::vector<std::vector<Beyond>> beyond(covered_.size());
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (piece.below == piece.above) continue;
+      beyond[piece.below].push_back({piece.above, static_cast<std::int32_t>(i)});
+      beyond[piece.above].push_back({piece.below, static_cast<std::int32_t>(i)});
+    }
+    return beyond;
+  }
+
+  /// By face: the least number of constraints that a path from the outside crosses.
+  std::vector<std::int64_t> nesting_depths() const {
+    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
+    std::vector<std::int64_t> depths(covered_.size(), -1);
+    std::vector<std::int32_t> level = {0}, next;
+    for (std::int64_t depth = 0; !level.empty(); ++depth) {
+      for (std::size_t i = 0; i < level.size(); ++i) {
+        if (depths[level[i]] >= 0) continue;
+        depths[level[i]] = depth;
+        for (const Beyond& other : beyond[level[i]]) {
+          (is_constraint(sweep_.pieces()[other.piece]) ? next : level).push_back(other.face);
+        }
+      }
+      level.swap(next);
+      next.clear();
+    }
+    return depths;
+  }
+
+  /// By face: its winding number, or the parity of the number of segments to the outside.
+  std::vector<std::int64_t> winding_depths() const {
+    const std::vector<std::int64_t> steps = steps_across();
+    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
+    std::vector<std::int64_t> depths(covered_.size(), 0);
+    std::vector<char> reached(covered_.size(), 0);
+    std::vector<std::int32_t> open = {0};
+    reached[0] = 1;
+    while (!open.empty()) {
+      const std::int32_t face = open.back();
+      open.pop_back();
+      for (const Beyond& other : beyond[face]) {
+        if (reached[other.face] != 0) continue;
+        reached[other.face] = 1;
+        const bool is_upward = sweep_.pieces()[other.piece].below == face;
+        depths[other.face] = depths[face] + (is_upward ? steps[other.piece] : -steps[other.piece]);
+        if (is_even_odd()) depths[other.face] &= 1;
+        open.push_back(other.face);
+      }
+    }
+    return depths;
+  }
+
+  /// By piece: how many segments a step from its right to its left crosses; with winding numbers, less those
+  /// that run the other way.
+  std::vector<std::int64_t> steps_across() const {
+    const PiecesByLine pieces(sweep_);
+    // A segment counts from its first piece on, up to the one that begins where it ends.
+    std::vector<std::int64_t> changes(pieces.order.size() + 1, 0), steps(pieces.order.size());
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      const std::int32_t a = first_place(s), b = last_place(s);
+      if (a == b) continue;
+      const std::int64_t step = is_even_odd() || place_of_point_[segments_[2 * s]] == a ? 1 : -1;
+      changes[pieces.position(s, a)] += step;
+      changes[pieces.position(s, b)] -= step;
+    }
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < pieces.order.size(); ++i) steps[pieces.order[i]] = sum += changes[i];
+    return steps;
+  }
+
+  /// A step over a piece, from its right to its left or back, into a face that was not reached before, or out
+  /// of it again.
+  struct Move {
+    std::int32_t piece, face;  // kNoFace on the way back
+    int sign;
+  };
+  /// Goes through all faces, from outside and back.
+  std::vector<Move> tour() const {
+    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
+    std::vector<char> reached(covered_.size(), 0);
+    std::vector<Move> moves, open;
+    const auto look_around = [&](std::int32_t face) {
+      reached[face] = 1;
+      for (const Beyond& other : beyond[face]) {
+        const bool is_upward = sweep_.pieces()[other.piece].below == face;
+        open.push_back({other.piece, other.face, is_upward ? 1 : -1});
+      }
+    };
+    look_around(0);
+    while (!open.empty()) {
+      const Move move = open.back();
+      open.pop_back();
+      if (move.face != Sweep::kNoFace && reached[move.face] != 0) continue;
+      moves.push_back(move);
+      if (move.face == Sweep::kNoFace) continue;
+      open.push_back({move.piece, Sweep::kNoFace, -move.sign});
+      look_around(move.face);
+    }
+    return moves;
+  }
+
+  /// By face: the number of polygons that it is in.
+  std::vector<std::int64_t> polygon_depths() const {
+    const std::vector<Move> moves = tour();
+    // Of each piece on the way, its rings, those that run back negated.
+    std::vector<std::vector<std::int64_t>> rings_at(sweep_.pieces().size());
+    std::vector<char> is_on_way(rings_at.size(), 0);
+    for (const Move& move : moves) is_on_way[move.piece] = 1;
+    const PiecesByLine pieces(sweep_);
+    std::vector<std::size_t> next(pieces.order.size() + 1, pieces.order.size());
+    for (std::size_t i = pieces.order.size(); i-- > 0;) {
+      next[i] = is_on_way[pieces.order[i]] != 0 ? i : next[i + 1];
+    }
+    const std::vector<std::size_t>& offsets = constraints_.rings->segment_offsets;
+    for (std::size_t r = 0; r + 1 < offsets.size(); ++r) {
+      for (std::size_t s = offsets[r]; s < offsets[r + 1]; ++s) {
+        if (first_place(s) == last_place(s)) continue;
+        const bool is_forward = place_of_point_[segments_[2 * s]] == first_place(s);
+        const std::size_t end = pieces.position(s, last_place(s));
+        for (std::size_t i = next[pieces.position(s, first_place(s))]; i < end; i = next[i + 1]) {
+          const auto number = static_cast<std::int64_t>(r) + 1;
+          rings_at[pieces.order[i]].push_back(is_forward ? number : -number);
+        }
+      }
+    }
+    std::vector<std::int64_t> depths(covered_.size(), 0);
+    PolygonsAround around(*constraints_.rings, is_even_odd());
+    for (const Move& move : moves) {
+      for (const std::int64_t ring : rings_at[move.piece]) {
+        around.cross(static_cast<std::size_t>(std::abs(ring)) - 1, ring < 0 ? -move.sign : move.sign);
+      }
+      if (move.face != Sweep::kNoFace) depths[move.face] = around.count();
+    }
+    return depths;
+  }
+
+  std::int32_t first_place(std::size_t segment) const {
+    return std::min(place_of_point_[segments_[2 * segment]], place_of_point_[segments_[2 * segment + 1]]);
+  }
+  std::int32_t last_place(std::size_t segment) const {
+    return std::max(place_of_point_[segments_[2 * segment]], place_of_point_[segments_[2 * segment + 1]]);
+  }
+
+  /// Pieces by line, in their order on it.
+  struct PiecesByLine {
+    const Sweep& sweep;
+    std::vector<std::int32_t> first, order;
+
+    explicit PiecesByLine(const Sweep& of)
+        : sweep(of), first(of.line_count() + 1, 0), order(of.pieces().size()) {
+      for (const Piece& piece : sweep.pieces()) ++first[piece.line + 1];
+      for (std::size_t l = 0; l < sweep.line_count(); ++l) first[l + 1] += first[l];
+      std::vector<std::int32_t> next(first.begin(), first.end() - 1);
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        order[next[sweep.pieces()[i].line]++] = static_cast<std::int32_t>(i);
+      }
+    }
+    /// Where a segment's piece from a place is in `order`; behind its last one if it ends there.
+    std::size_t position(std::size_t segment, std::int32_t place) const {
+      const std::int32_t line = sweep.line_of_segment()[segment];
+      const auto found = std::lower_bound(
+          order.begin() + first[line], order.begin() + first[line + 1], place,
+          [this](std::int32_t piece, std::int32_t v) { return sweep.pieces()[piece].from < v; });
+      return static_cast<std::size_t>(found - order.begin());
+    }
+  };
+
+  /// Leaves out the faces of holes.
+  bool drop_seeded() {
+    for (std::size_t k = 0; k < place_of_hole_.size(); ++k) {
+      const double* at = places_[place_of_hole_[k]].at;
+      const std::int32_t face = sweep_.face_of_place()[place_of_hole_[k]];
+      if (face == Sweep::kNoFace) return fail("hole {} at ({}, {}) is on a segment", k, at[0], at[1]);
+      if (face == 0) return fail("hole {} at ({}, {}) is outside of the convex hull", k, at[0], at[1]);
+      covered_[face] = 0;
+    }
+    return true;
+  }
+
+  /// Every part of a segment that borders on a covered face must be an edge.
+  bool check_constraints() {
+    const Piece* missing = nullptr;
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (!is_constraint(piece) || below_[i] != kNone || above_[i] != kNone) continue;
+      if (covered_[piece.below] == 0 && covered_[piece.above] == 0) continue;
+      if (missing == nullptr || piece.segment < missing->segment) missing = &piece;
+    }
+    if (missing == nullptr) return true;
+    return fail("{} is no chain of edges: {} is missing", describe_segment(missing->segment),
+                describe_piece(*missing));
+  }
+
+  bool check_border() {
+    for (std::size_t h = 0; h < twins_.size(); ++h) {
+      if (twins_[h] != kNone) continue;
+      ++report_.hull_vertices;
+      if (piece_of_[h] != kNoPiece) continue;
+      return fail(
+          "{} has no triangle beyond the edge from point {} to point {}, which is neither on the hull nor a "
+          "constraint",
+          describe_triangle(h / 3), origin(h), target(h));
+    }
+    if (twins_.empty() && covered_.size() == 1) report_.hull_vertices = report_.distinct_points;
+    return true;
+  }
+
+  bool check_sides() {
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (!check_side(piece, "right", piece.below, below_[i])) return false;
+      if (!check_side(piece, "left", piece.above, above_[i])) return false;
+    }
+    return true;
+  }
+  bool check_side(const Piece& piece, const char* side, std::int32_t face, std::int64_t triangle) {
+    if ((triangle != kNone) == (covered_[face] != 0)) return true;
+    if (triangle == kNone) {
+      return fail("there is no triangle on the {} of {}, which is inside", side, describe_piece(piece));
+    }
+    return fail("{} is outside, on the {} of {}", describe_triangle(static_cast<std::size_t>(triangle)), side,
+                describe_piece(piece));
+  }
+
+  /// Places on the border of a covered face are ends of edges, which were found.
+  bool check_places() {
+    for (std::size_t place = 0; place < places_.size(); ++place) {
+      if (!places_[place].is_point) continue;
+      const std::int32_t face = sweep_.face_of_place()[place];
+      const auto i = static_cast<std::size_t>(point_of_place_[place]);
+      if (face == Sweep::kNoFace || covered_[face] == 0 || used_[i] != 0) continue;
+      return fail("{} is in no triangle", describe_point(i));
+    }
+    return true;
+  }
+
+  /// Euler's formula. Follows from the checks before; a safeguard against an error in them.
+  bool check_count() {
+    if (constraints_.outside != Outside::keep || constraints_.holes != nullptr || covered_.size() == 1)
+      return true;
+    const std::size_t expected = 2 * report_.distinct_points - 2 - report_.hull_vertices;
+    if (report_.triangles == expected) return true;
+    return fail("there are {} triangles, but {} distinct points with {} on the boundary must have {}",
+                report_.triangles, report_.distinct_points, report_.hull_vertices, expected);
+  }
+
+  bool check_circles() {
+    for (std::size_t h = 0; h < twins_.size(); ++h) {
+      // On the border, or checked from the other side.
+      if (twins_[h] < static_cast<std::int64_t>(h)) continue;
+      if (piece_of_[h] != kNoPiece && is_constraint(sweep_.pieces()[piece_of_[h]])) continue;
+      bool is_tie = false;
+      if (!check_circle(h, is_tie)) return false;
+      if (is_tie && !check_fan(h)) return false;
+    }
+    return true;
+  }
+
+  bool check_fan(std::size_t h) {
+    const auto place = [this](std::int32_t v) { return place_of_point_[v]; };
+    const std::int32_t a = origin(h), b = target(h), c = corners_[h], d = corners_[twins_[h]];
+    const std::int32_t first = place(c) < place(d) ? c : d;
+    if (std::min(place(a), place(b)) < place(first)) return true;
+    return fail(
+        "{} and triangle {} are on one circle, but their edge from point {} to point {} does not begin at "
+        "{}, the lexicographically smallest of their corners",
+        describe_triangle(h / 3), twins_[h] / 3, a, b, describe_point(first));
+  }
+
+  /// The given edges must be the parts of the segments, each once, its smaller end first.
+  bool check_edges() {
+    if (constraints_.edges == nullptr) return true;
+    const std::vector<std::int32_t>& edges = *constraints_.edges;
+    if (edges.size() != 2 * report_.constraint_edges) {
+      return fail("there are {} indices in the constraint edges, but the segments are made of {} edges",
+                  edges.size(), report_.constraint_edges);
+    }
+    std::vector<char> listed(sweep_.pieces().size(), 0);
+    for (std::size_t e = 0; e < edges.size() / 2; ++e) {
+      const std::int32_t piece = piece_between(edges[2 * e], edges[2 * e + 1]);
+      if (piece == kNoPiece) {
+        return fail(
+            "constraint edge {} from point {} to point {} is no part of a segment, or is the wrong way round",
+            e, edges[2 * e], edges[2 * e + 1]);
+      }
+      if (listed[piece] != 0) {
+        return fail("constraint edge {} from point {} to point {} is listed twice", e, edges[2 * e],
+                    edges[2 * e + 1]);
+      }
+      listed[piece] = 1;
+    }
+    return true;
+  }
+
+  /// The constraint from one point to a later one; kNoPiece if there is none, or if another point stands for
+  /// one of them.
+  std::int32_t piece_between(std::int32_t a, std::int32_t b) const {
+    if (!is_representative(a) || !is_representative(b)) return kNoPiece;
+    const Piece sought{place_of_point_[a], place_of_point_[b], 0, 0, 0, 0};
+    const std::vector<Piece>& pieces = sweep_.pieces();
+    const auto found = std::lower_bound(
+        pieces.begin(), pieces.end(), sought,
+        [](const Piece& p, const Piece& q) { return p.from != q.from ? p.from < q.from : p.to < q.to; });
+    if (found == pieces.end() || found->from != sought.from || found->to != sought.to ||
+        !is_constraint(*found)) {
+      return kNoPiece;
+    }
+    return static_cast<std::int32_t>(found - pieces.begin());
+  }
+  bool is_representative(std::int32_t v) const {
+    return v >= 0 && static_cast<std::size_t>(v) < n_ && point_of_place_[place_of_point_[v]] == v;
+  }
+
+  /// Each segment's edges must lead straight from its smaller end to the other one.
+  bool check_segment_edges() {
+    if (constraints_.segment_edges == nullptr || constraints_.edges == nullptr) return true;
+    const std::vector<std::int32_t>& ranges = *constraints_.segment_edges;
+    const std::vector<std::int32_t>& edges = *constraints_.edges;
+    if (ranges.size() != segments_.size()) {
+      return fail("there are {} indices of segments' edges, but there should be {}", ranges.size(),
+                  segments_.size());
+    }
+    // By edge: how many up to it do not go on straight with the next one.
+    const auto count = static_cast<std::int32_t>(edges.size() / 2);
+    std::vector<std::int32_t> bends(edges.size() / 2 + 1, 0);
+    for (std::int32_t e = 0; e + 1 < count; ++e) {
+      const std::int32_t a = edges[2 * e], b = edges[2 * e + 1], c = edges[2 * e + 3];
+      const bool goes_on = edges[2 * e + 2] == b && predicates_.orient2d(point(a), point(b), point(c)) == 0;
+      bends[e + 1] = bends[e] + (goes_on ? 0 : 1);
+    }
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
+      const std::int32_t first = ranges[2 * s], last = ranges[2 * s + 1];
+      const bool is_right = a == b ? first == 0 && last == 0
+                                   : first >= 0 && first < last && last <= count &&
+                                         place_of_point_[edges[2 * first]] == std::min(a, b) &&
+                                         place_of_point_[edges[2 * last - 1]] == std::max(a, b) &&
+                                         bends[last - 1] == bends[first];
+      if (!is_right) return fail("the edges [{}, {}) are not those of {}", first, last, describe_segment(s));
+    }
+    return true;
+  }
+
+  /// Segments claim their pieces in ascending order, and skip those that have been claimed.
+  bool check_edge_segments() {
+    if (constraints_.edge_segments == nullptr || constraints_.edges == nullptr) return true;
+    const std::vector<std::int32_t>& claimed = *constraints_.edge_segments;
+    if (2 * claimed.size() != constraints_.edges->size()) {
+      return fail("there are {} segments of edges, but there are {} constraint edges", claimed.size(),
+                  constraints_.edges->size() / 2);
+    }
+    const PiecesByLine pieces(sweep_);
+    std::vector<std::int32_t> smallest(pieces.order.size(), -1);
+    std::vector<std::size_t> next(pieces.order.size() + 1);
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] = i;
+    const auto unclaimed = [&next](std::size_t i) {
+      while (next[i] != i) i = next[i] = next[next[i]];
+      return i;
+    };
+    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
+      if (first_place(s) == last_place(s)) continue;
+      const std::size_t end = pieces.position(s, last_place(s));
+      for (std::size_t i = unclaimed(pieces.position(s, first_place(s))); i < end; i = unclaimed(i)) {
+        smallest[pieces.order[i]] = static_cast<std::int32_t>(s);
+        next[i] = i + 1;
+      }
+    }
+    for (std::size_t e = 0; e < claimed.size(); ++e) {
+      const std::int32_t expected =
+          smallest[piece_between((*constraints_.edges)[2 * e], (*constraints_.edges)[2 * e + 1])];
+      if (claimed[e] == expected) continue;
+      return fail("constraint edge {} is said to be a part of segment {} first, but it is one of segment {}",
+                  e, claimed[e], expected);
+    }
+    return true;
+  }
+
+  bool check_labels() {
+    if (constraints_.depths == nullptr && constraints_.regions == nullptr) return true;
+    for (const auto* const labels : {constraints_.depths, constraints_.regions}) {
+      if (labels != nullptr && labels->size() != report_.triangles) {
+        return fail("there are {} depths or regions, but {} triangles", labels->size(), report_.triangles);
+      }
+    }
+    const std::vector<std::int32_t> faces = faces_of_triangles();
+    std::vector<std::int32_t> regions(covered_.size(), -1);
+    std::int32_t count = 0;
+    for (std::size_t t = 0; t < report_.triangles; ++t) {
+      std::int32_t& region = regions[faces[t]];
+      if (region < 0) region = count++;
+      if (constraints_.depths != nullptr && (*constraints_.depths)[t] != depths_[faces[t]]) {
+        return fail("{} has depth {}, but it should be {}", describe_triangle(t), (*constraints_.depths)[t],
+                    depths_[faces[t]]);
+      }
+      if (constraints_.regions != nullptr && (*constraints_.regions)[t] != region) {
+        return fail("{} has region {}, but it should be {}", describe_triangle(t), (*constraints_.regions)[t],
+                    region);
+      }
+    }
+    return true;
+  }
+
+  /// Every face has triangles beside its pieces, and the others are connected with these.
+  std::vector<std::int32_t> faces_of_triangles() const {
+    std::vector<std::int32_t> faces(report_.triangles, Sweep::kNoFace);
+    std::vector<std::size_t> open;
+    const auto enter = [&](std::int64_t triangle, std::int32_t face) {
+      if (triangle == kNone || faces[triangle] != Sweep::kNoFace) return;
+      faces[triangle] = face;
+      open.push_back(static_cast<std::size_t>(triangle));
+    };
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      enter(below_[i], sweep_.pieces()[i].below);
+      enter(above_[i], sweep_.pieces()[i].above);
+    }
+    while (!open.empty()) {
+      const std::size_t t = open.back();
+      open.pop_back();
+      for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
+        if (piece_of_[h] == kNoPiece) enter(twins_[h] / 3, faces[t]);
+      }
+    }
+    return faces;
+  }
+
+  bool check_neighbors_if_given() { return neighbors_ == nullptr || check_neighbors(); }
+
+  const VerifyConstraints& constraints_;
+  const std::vector<std::int32_t>& segments_;
+  std::vector<Place> places_;
+  std::vector<std::int32_t> place_of_point_, point_of_place_, place_of_hole_;
+  Sweep sweep_;
+  std::vector<std::int32_t> piece_of_;       // by half-edge
+  std::vector<std::int64_t> below_, above_;  // by piece: the triangles on its right and on its left, or kNone
+  std::vector<std::int64_t> depths_;         // by face
+  std::vector<char> covered_;                // by face
+};
+
+}  // namespace
+
+VerifyReport verify_constrained(const double* coordinates, std::size_t n,
+                                const std::vector<std::int32_t>& triangles,
+                                const std::vector<std::int32_t>* neighbors,
+                                const VerifyConstraints& constraints) {
+  return ConstrainedChecker(coordinates, n, triangles, neighbors, constraints).run();
+}
+
+}  // namespace flaunay

@@ -1,0 +1,47 @@
+// An exact, independent check of a constrained Delaunay triangulation on the host, by the definition in
+// docs/constrained.md. Shares no code with src/constrained and the kernels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "app/verify/verify.hpp"
+#include "flaunay/constrained.hpp"
+
+namespace flaunay {
+
+/// What a constrained triangulation is checked against.
+struct VerifyConstraints {
+  /// 2 indices of points per segment. Required.
+  const std::vector<std::int32_t>* segments = nullptr;
+  Outside outside = Outside::keep;
+  FillRule fill_rule = FillRule::nesting;
+  /// If given: the rings of polygons, which the rule is about; see Constraints::rings.
+  const Rings* rings = nullptr;
+  /// If given: x and y of each place whose face is left out, too.
+  const std::vector<double>* holes = nullptr;
+  /// If given: the edges that segments are made of, 2 points per edge, and per segment the first of its edges
+  /// and the one after its last.
+  const std::vector<std::int32_t>* edges = nullptr;
+  const std::vector<std::int32_t>* segment_edges = nullptr;
+  /// If given: per constraint edge the smallest index of a segment that has it.
+  const std::vector<std::int32_t>* edge_segments = nullptr;
+  /// If given: per triangle its depth by the fill rule, and the number of its region.
+  const std::vector<std::int32_t>*depths = nullptr, *regions = nullptr;
+};
+
+/// Checks, exactly and for any finite input: what `verify` checks of triangles, edges and points; that every
+/// segment is an edge, or a chain of edges if points are on it; that every other edge is locally Delaunay;
+/// that triangles with a common circle that no constraint divides are a fan from their lexicographically
+/// smallest vertex; and that the triangles tile the convex hull without the faces between constraints that
+/// are to be left out, so every edge with one triangle is on the hull or a constraint. neighbors: null, or 3
+/// per triangle. Segments that cross where no point is are an error, as are open curves if the fill rule
+/// needs closed ones, and holes that are on a constraint or outside of the hull. O((n + s) log (n + s)) for n
+/// points and s segments, whatever overlaps and whatever meets at a point.
+VerifyReport verify_constrained(const double* coordinates, std::size_t n,
+                                const std::vector<std::int32_t>& triangles,
+                                const std::vector<std::int32_t>* neighbors,
+                                const VerifyConstraints& constraints);
+
+}  // namespace flaunay

@@ -1,0 +1,100 @@
+#include "derived/interpolate/natural.hpp"
+
+#include "host/vector_operations.hpp"
+#include "launchers/interpolate/natural.cl.hpp"
+
+namespace flaunay::interpolate {
+
+void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights method, const Table& table,
+             const Buffer<cl_double>& queries, std::size_t m, const std::vector<std::size_t>& query_offsets,
+             const Buffer<cl_double>& results) {
+  host::Arena::Scope scope(runtime.arena());
+  const locate::LocatedQueries located =
+      locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
+  const auto left = runtime.arena().allocate<cl_uchar>(m);
+  // Else not all values are needed, and few of them more than once.
+  const bool is_by_vertex = m >= locator.points.size();
+  Buffer<cl_double> values = table.values;
+  if (is_by_vertex) {
+    const std::size_t n = locator.points.size();
+    values = runtime.arena().allocate<cl_double>(n * table.columns);
+    runtime.map(n, kernels::place_values{.sets = located.sets,
+                                         .columns = table.columns,
+                                         .first_vertices = locator.first_vertices,
+                                         .source = locator.source,
+                                         .values = table.values,
+                                         .placed = values});
+  }
+  runtime.map_in_small_groups(m, kernels::interpolate_natural{.sets = located.sets,
+                                                              .columns = table.columns,
+                                                              .is_by_vertex = is_by_vertex,
+                                                              .method = static_cast<cl_int>(method),
+                                                              .outside = table.outside,
+                                                              .query_offsets = located.query_offsets,
+                                                              .frames = located.frames,
+                                                              .order = located.order,
+                                                              .placed = located.placed,
+                                                              .points = locator.points,
+                                                              .source = locator.source,
+                                                              .faces = locator.faces,
+                                                              .found = located.found,
+                                                              .values = values,
+                                                              .results = results,
+                                                              .left = left});
+  runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.sets = located.sets,
+                                                                      .columns = table.columns,
+                                                                      .is_by_vertex = is_by_vertex,
+                                                                      .method = static_cast<cl_int>(method),
+                                                                      .outside = table.outside,
+                                                                      .query_offsets = located.query_offsets,
+                                                                      .records = locator.records,
+                                                                      .frames = located.frames,
+                                                                      .order = located.order,
+                                                                      .placed = located.placed,
+                                                                      .points = locator.points,
+                                                                      .source = locator.source,
+                                                                      .faces = locator.faces,
+                                                                      .found = located.found,
+                                                                      .values = values,
+                                                                      .left = left,
+                                                                      .results = results});
+}
+
+void natural_neighbors(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
+                       const Buffer<cl_double>& queries, std::size_t m,
+                       const std::vector<std::size_t>& query_offsets, const Buffer<cl_uint>& offsets,
+                       const std::function<NaturalLists(std::size_t total)>& allocate) {
+  host::Arena::Scope scope(runtime.arena());
+  const locate::LocatedQueries located =
+      locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
+  runtime.map_in_small_groups(m, kernels::count_neighbors{.sets = located.sets,
+                                                          .query_offsets = located.query_offsets,
+                                                          .records = locator.records,
+                                                          .frames = located.frames,
+                                                          .order = located.order,
+                                                          .placed = located.placed,
+                                                          .points = locator.points,
+                                                          .source = locator.source,
+                                                          .faces = locator.faces,
+                                                          .found = located.found,
+                                                          .counts = offsets});
+  host::exclusive_scan(runtime, offsets, m, offsets);
+  const std::size_t total = runtime.read_one(offsets, m);
+  const NaturalLists lists = allocate(total);
+  runtime.map_in_small_groups(m, kernels::list_neighbors{.sets = located.sets,
+                                                         .method = static_cast<cl_int>(method),
+                                                         .query_offsets = located.query_offsets,
+                                                         .records = locator.records,
+                                                         .frames = located.frames,
+                                                         .order = located.order,
+                                                         .placed = located.placed,
+                                                         .points = locator.points,
+                                                         .source = locator.source,
+                                                         .faces = locator.faces,
+                                                         .found = located.found,
+                                                         .offsets = offsets,
+                                                         .neighbors = lists.points,
+                                                         .weights = lists.weights});
+}
+
+}  // namespace flaunay::interpolate

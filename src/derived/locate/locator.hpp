@@ -1,0 +1,88 @@
+// Answers queries on a triangulation: the containing triangle, the nearest point.
+#pragma once
+
+#include <memory>
+
+#include "derived/locate/levels.hpp"
+#include "points/cut_tree.hpp"
+#include "points/device_mesh.hpp"
+#include "points/query_range.hpp"
+#include "shared/records.h"
+
+namespace flaunay::locate {
+
+/// The search structure of a triangulation in device memory, about 80 bytes per point. In fixed point,
+/// coordinates are 64-bit integers.
+struct Locator {
+  std::size_t sets = 0;
+  std::vector<std::size_t> point_offsets{};  ///< of the caller's points
+  PointRange range{};
+  /// The vertices of triangles, in the order of their first triangles: coordinates, indices of points, first
+  /// triangles, and the squared distances to their nearest neighbours (the upper half of a double, or in
+  /// fixed point a float).
+  Buffer<cl_double2> points{};
+  Buffer<cl_int> source{}, first_triangle{}, clearances{};
+  Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
+  Buffer<cl_double2> hull_points{};
+  Buffer<cl_int> hull{};
+  Buffer<kernel::mesh_set> records{};  ///< one per set
+  Buffer<kernel::cut_node> nodes{};    ///< the nodes of all trees
+  Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
+  Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
+  std::size_t most_triangles = 0;      ///< of one set
+  bool has_clearances = false;         ///< measured only when queries for nearest points come
+  /// For the search of nearest points. There are none until a query needs them.
+  Levels levels{};
+  std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
+};
+
+/// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
+/// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
+/// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
+Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+
+/// The same without trees, of points that are scaled already. Not for queries of callers.
+Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+
+/// Computes the clearances, which the search for nearest points needs. Does not wait.
+void measure_clearances(host::Runtime& runtime, Locator& locator);
+
+// Queries are m points, x0 y0 x1 y1 ..., with the alignment of doubles; set s has queries [query_offsets[s],
+// query_offsets[s + 1]). Each call waits 2 times, or 3 if sets need different scalings, to check that all
+// queries are finite, and neither too fine nor too far away for exact arithmetic with the points; otherwise
+// it throws Error(input), which names a query. Then it enqueues the rest. Many queries are sorted by the
+// leaves of the trees first, which takes one more wait. Temporary memory: 24 m bytes, or 32 m if queries are
+// sorted.
+
+/// Finds for each query the triangle that contains it, the smallest one if there are several; -1 outside of
+/// the hull.
+void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles);
+
+/// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
+/// of its representative; -1 if the set is empty. About O(log n) steps per query, except at a vertex with
+/// very many neighbours that are no fan and are all about as near. If a query is far to walk to, makes the
+/// locator's levels; until there are levels, waits once more. The first call measures the clearances, and
+/// waits once more for that.
+void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
+
+/// The queries of one call, in the order in which kernels answer them, with their triangles.
+struct LocatedQueries {
+  float orient_bound = 0;  ///< of the queries' orientations, see shared/bounds.h
+  cl_int sets = 0;
+  Buffer<kernel::query_frame> frames{};  ///< by set
+  Buffer<cl_int> query_offsets{};        ///< by set; not filled if there is one set
+  Buffer<cl_int> order{};                ///< per place, the number of its query
+  Buffer<cl_double2> placed{};           ///< per place, the scaled query
+  Buffer<cl_int> found{};                ///< per place, the triangle; less than 0 outside of the hull
+};
+
+/// Finds the triangle of each query, for kernels that continue from there. The result is allocated in the
+/// runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
+LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
+                               const Buffer<cl_double>& queries, std::size_t m,
+                               const std::vector<std::size_t>& query_offsets,
+                               const QueryLimits& limits = kOrientLimits);
+
+}  // namespace flaunay::locate

@@ -1,0 +1,177 @@
+// Reads whole files; errors that name a file.
+#pragma once
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "files/printable.hpp"
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::io {
+
+// The binary formats are little-endian and are read and written as they lie in memory.
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "flaunay::io needs a little-endian host");
+
+/// Throws Error(input) with a printable message that starts with path.
+template <typename... Arguments>
+[[noreturn]] void fail(const std::string& path, fmt::format_string<Arguments...> format,
+                       Arguments&&... arguments) {
+  const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
+  throw Error(ErrorKind::input, printable(fmt::format("{}: {}", path, text)));
+}
+
+inline std::string system_reason(int error_number) { return std::strerror(error_number); }
+
+/// The part of the file's name from its last dot, in lower case; empty if there is no dot.
+inline std::string ending_of(const std::string& path) {
+  const std::string name = path.substr(path.find_last_of('/') + 1);
+  const std::size_t dot = name.find_last_of('.');
+  if (dot == std::string::npos) return "";
+  std::string ending = name.substr(dot);
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return ending;
+}
+
+/// Throws Error(usage) saying that the ending of path is not among `expected`.
+[[noreturn]] inline void fail_ending(const std::string& path, std::string_view expected) {
+  const std::string ending = ending_of(path);
+  throw Error(ErrorKind::usage,
+              ending.empty() ? fmt::format("{}: has no ending; expected {}", path, expected)
+                             : fmt::format("{}: unknown ending '{}'; expected {}", path, ending, expected));
+}
+
+/// The name of a path of read_file in messages.
+inline std::string shown_path(const std::string& path) {
+  return path == "-" ? std::string("- (standard input)") : path;
+}
+
+/// A file being read; "-" is standard input. Its beginning can be checked before the rest is read.
+/// Throws Error(input).
+class InputFile {
+ public:
+  /// expected: what should be in the file, for messages.
+  InputFile(const std::string& path, std::string_view expected)
+      : name_(shown_path(path)),
+        expected_(expected),
+        descriptor_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    struct stat status {};
+    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
+      const int reason = errno;
+      close();
+      fail(name_, "cannot be opened: {}; expected {}", system_reason(reason), expected_);
+    }
+    if (S_ISDIR(status.st_mode)) {
+      close();
+      fail(name_, "cannot be read: {}; expected {}", system_reason(EISDIR), expected_);
+    }
+    // The size of a regular file is known; room for one byte more detects the end in the same call. For pipes
+    // the buffer grows.
+    if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = status.st_size;
+    whole_ = size_ >= 0 ? static_cast<std::size_t>(size_) + 1 : 1 << 16;
+  }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  ~InputFile() { close(); }
+
+  /// The first `count` bytes, or all if there are fewer. The view is valid until the next call.
+  std::string_view first(std::size_t count) {
+    read_until(count);
+    return std::string_view(bytes_.data(), std::min(count, used_));
+  }
+
+  /// The size of a regular file; unknown, -1, of a pipe.
+  std::int64_t size() const { return size_; }
+
+  /// Reads the bytes [begin, begin + count), begin being at most the count of the last call of first(),
+  /// straight to their place. Returns how many there are. Nothing can be read afterwards.
+  std::size_t read_from(std::size_t begin, std::size_t count, void* to) {
+    const std::size_t known = std::min(used_ - std::min(begin, used_), count);
+    if (known > 0) std::memcpy(to, bytes_.data() + begin, known);
+    std::size_t got = known;
+    while (got < count && !ended_) got += read_some(static_cast<char*>(to) + got, count - got);
+    return got;
+  }
+
+  /// Reads the next bytes after those of earlier calls of this function, without the others. Returns how many
+  /// there are; fewer than `count` at the end.
+  std::size_t read_next(void* to, std::size_t count) {
+    std::size_t got = 0;
+    while (got < count && !ended_) got += read_some(static_cast<char*>(to) + got, count - got);
+    used_ += got;
+    if (used_ == 0 && ended_) fail_empty();
+    return got;
+  }
+
+  /// Reads the bytes [begin, begin + count) of a regular file, at any time. Fails if they are not there,
+  /// since callers know the size of the file from before.
+  void read_at(std::uint64_t begin, std::size_t count, void* to) const {
+    for (std::size_t got = 0; got < count;) {
+      const ssize_t more =
+          ::pread(descriptor_, static_cast<char*>(to) + got, count - got, static_cast<off_t>(begin + got));
+      if (more < 0 && errno == EINTR) continue;
+      if (more < 0) fail(name_, "cannot be read: {}", system_reason(errno));
+      if (more == 0) {
+        fail(name_, "ends after {} bytes, but had {} when it was opened: it became shorter while it was read",
+             begin + got, size_);
+      }
+      got += static_cast<std::size_t>(more);
+    }
+  }
+
+  /// All bytes. Nothing can be read afterwards.
+  std::string all() {
+    for (std::size_t room = whole_; !ended_; room *= 2) read_until(room);
+    bytes_.resize(used_);
+    return std::move(bytes_);
+  }
+
+ private:
+  /// Reads until there are `count` bytes or the file ends.
+  void read_until(std::size_t count) {
+    if (bytes_.size() < count) bytes_.resize(count);
+    while (used_ < count && !ended_) {
+      used_ += read_some(&bytes_[used_], count - used_);
+    }
+    if (used_ == 0 && ended_) fail_empty();
+  }
+  [[noreturn]] void fail_empty() const { fail(name_, "is empty (zero bytes); expected {}", expected_); }
+  std::size_t read_some(char* to, std::size_t most) {
+    const ssize_t got = ::read(descriptor_, to, most);
+    if (got < 0 && errno == EINTR) return 0;
+    if (got < 0) fail(name_, "cannot be read: {}", system_reason(errno));
+    ended_ = got == 0;
+    return static_cast<std::size_t>(got);
+  }
+  void close() {
+    if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
+  }
+
+  std::string name_;
+  std::string expected_;
+  int descriptor_;
+  std::int64_t size_ = -1;
+  std::size_t whole_ = 0;  // room for all bytes of a regular file
+  std::string bytes_;      // the first used_ bytes were read
+  std::size_t used_ = 0;
+  bool ended_ = false;
+};
+
+/// The bytes of the file at path, or of standard input for "-". `expected` says what should have been in it.
+inline std::string read_file(const std::string& path, std::string_view expected) {
+  return InputFile(path, expected).all();
+}
+
+}  // namespace flaunay::io

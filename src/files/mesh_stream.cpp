@@ -1,0 +1,85 @@
+#include "files/mesh_stream.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "files/disk_space.hpp"
+#include "files/file.hpp"
+#include "files/npy_header.hpp"
+#include "files/scratch.hpp"
+
+namespace flaunay::io {
+namespace {
+
+std::size_t bytes_of(IndexType type) { return type == IndexType::int32 ? 4 : 8; }
+
+}  // namespace
+
+std::size_t columns_of(MeshArray array) {
+  return array == MeshArray::triangles || array == MeshArray::neighbors ? 3 : 0;
+}
+
+void check_stream_output(const std::string& path) {
+  if (!path.empty() && find_target(path).is_direct) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is no regular file; expected one, because triangulations in chunks are not "
+                            "written in order",
+                            path));
+  }
+}
+
+void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
+                const std::string& scratch) {
+  std::vector<SizedOutput> files;
+  for (const MeshArray array : {MeshArray::triangles, MeshArray::neighbors, MeshArray::representatives}) {
+    const std::uint64_t entries = array == MeshArray::representatives ? n : 2 * n * columns_of(array);
+    files.push_back({paths[static_cast<std::size_t>(array)], entries * bytes_of(type)});
+  }
+  // It may be on the same disk as an output.
+  files.push_back({scratch_folder(scratch), n * kScratchBytesPerPoint, true});
+  check_disk_space(files);
+}
+
+MeshFiles::MeshFiles(Outputs& outputs, const std::array<std::string, kMeshArrays>& paths, IndexType type)
+    : type_(type) {
+  for (std::size_t k = 0; k < kMeshArrays; ++k) {
+    check_stream_output(paths[k]);
+    if (!paths[k].empty()) files_[k].output = &outputs.open(paths[k]);
+  }
+}
+
+bool MeshFiles::wants(MeshArray array) const { return file_of(array).output != nullptr; }
+
+void MeshFiles::write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) {
+  File& file = files_[static_cast<std::size_t>(array)];
+  const std::uint64_t place = kNpyHeaderBytes + first * bytes_of(type_);
+  file.entries = std::max(file.entries, first + count);
+  if (type_ == IndexType::int64) {
+    file.output->write_at(place, values, count * sizeof *values);
+    return;
+  }
+  constexpr std::size_t kPiece = std::size_t{1} << 16;
+  for (std::size_t done = 0; done < count; done += narrow_.size()) {
+    narrow_.resize(std::min(kPiece, count - done));
+    for (std::size_t i = 0; i < narrow_.size(); ++i) {
+      if (values[done + i] > std::numeric_limits<std::int32_t>::max()) {
+        throw Error(ErrorKind::internal, fmt::format("index {} in a file of int32", values[done + i]));
+      }
+      narrow_[i] = static_cast<std::int32_t>(values[done + i]);
+    }
+    file.output->write_at(place + done * sizeof narrow_[0], narrow_.data(),
+                          narrow_.size() * sizeof narrow_[0]);
+  }
+}
+
+void MeshFiles::finish() {
+  for (std::size_t k = 0; k < kMeshArrays; ++k) {
+    if (files_[k].output == nullptr) continue;
+    const std::size_t columns = columns_of(static_cast<MeshArray>(k));
+    const std::uint64_t rows = columns == 0 ? files_[k].entries : files_[k].entries / columns;
+    const std::string header = npy_header(descr_of(type_), rows, columns);
+    files_[k].output->write_at(0, header.data(), header.size());
+  }
+}
+
+}  // namespace flaunay::io

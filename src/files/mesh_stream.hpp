@@ -1,0 +1,55 @@
+// The arrays of a triangulation as .npy files, written in pieces.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "files/output.hpp"
+#include "flaunay/chunks.hpp"
+
+namespace flaunay::io {
+
+constexpr std::size_t kMeshArrays = 4;  ///< of MeshArray
+
+/// Writes each array to a file of `outputs`, which must be regular files: entries are written in any order.
+/// Nothing has a name before the outputs are committed. Throws Error(input) that names the file.
+class MeshFiles : public MeshSink {
+ public:
+  /// paths: in the order of MeshArray; an empty one means that the array is not wanted.
+  MeshFiles(Outputs& outputs, const std::array<std::string, kMeshArrays>& paths, IndexType type);
+
+  bool wants(MeshArray array) const override;
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override;
+
+  /// Writes the headers, after all entries.
+  void finish();
+
+ private:
+  struct File {
+    OutputFile* output = nullptr;  // null: not wanted
+    std::uint64_t entries = 0;     // up to the last one that was written
+  };
+
+  const File& file_of(MeshArray array) const { return files_[static_cast<std::size_t>(array)]; }
+
+  IndexType type_;
+  std::array<File, kMeshArrays> files_;
+  std::vector<std::int32_t> narrow_;
+};
+
+/// Throws Error(input) if the disks have no room for the arrays of n points, which have at most 2 n
+/// triangles, and for the points of chunks in the scratch folder. The hull is not counted, since it is long
+/// for few inputs.
+void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
+                const std::string& scratch);
+
+/// Entries per row of an array's file; 0: it has one dimension.
+std::size_t columns_of(MeshArray array);
+
+/// Throws Error(usage) if the file exists and is no regular file.
+void check_stream_output(const std::string& path);
+
+}  // namespace flaunay::io

@@ -1,0 +1,82 @@
+// What is final in a chunk's triangulation, and what is handed on: a round of blocks
+// (kernels/blocks/rounds.cl) with chunks in the place of blocks. Both decide by shared/certify.h and
+// shared/open_sectors.h. Unlike there, the outside is no triangle here: the vertices of the hull go on to the
+// last round, which has the hull.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flaunay/chunks.hpp"
+#include "flaunay/flaunay.hpp"
+#include "geometry/magnitudes.hpp"
+#include "host/native/threads.hpp"
+#include "large/chunks/points.hpp"
+#include "shared/records.h"
+
+namespace flaunay::chunks {
+
+/// Where a chunk lies: its rectangle, on or beyond whose sides all other points are, and the box around all
+/// points, not scaled.
+struct Place {
+  kernel::vertex_box rectangle, all;
+};
+
+/// A triangulated chunk. Rows are counted from the number of its first one, which may be known only later.
+class FinishedChunk {
+ public:
+  /// mesh: the triangulation of the chunk's points, with neighbours. scaling: that of all points. O(points),
+  /// and in later rounds O(points log points).
+  FinishedChunk(host::Threads& threads, ChunkPoints points, Triangulation mesh, const Place& place,
+                const geometry::Scaling& scaling);
+
+  /// The number of triangles that are final.
+  std::uint64_t triangles() const { return triangles_; }
+  const ChunkPoints& points() const { return points_; }
+  const Triangulation& mesh() const { return mesh_; }
+
+  /// The points around which something is missing.
+  ChunkPoints handed_on(std::uint64_t first_row) const;
+  /// Writes the triangles that are final, and their neighbours, also those of rounds before.
+  void write(MeshSink& sink, std::uint64_t first_row) const;
+  /// Writes which points are not their own representatives.
+  void write_duplicates(MeshSink& sink) const;
+  /// Writes the hull, if this is the only chunk of the last round.
+  void write_hull(MeshSink& sink) const;
+
+ private:
+  // A side of a final triangle whose other side is not final in this chunk.
+  struct Border {
+    std::int32_t triangle, corner;
+    std::int64_t closed;  // the open edge that it closes, or -1
+  };
+
+  // An edge that is open at a point of the chunk.
+  struct OpenAt {
+    std::int32_t at;
+    OpenEdge edge;
+  };
+
+  std::int32_t corner(std::size_t t, int k) const { return mesh_.triangles[3 * t + k]; }
+  void write_rows(MeshSink& sink, std::uint64_t first_row) const;
+  void write_links(MeshSink& sink, std::uint64_t first_row) const;
+  bool is_missing(std::size_t t) const;
+  void find_final(host::Threads& threads, const kernel::block_frame& frame);
+  void number_edge_ends(kernel::scaling scale);
+  void find_border(host::Threads& threads);
+  std::vector<OpenAt> open_edges(std::uint64_t first_row) const;
+  std::vector<char> unfinished() const;
+  std::int64_t open_edge(std::int32_t from, std::int32_t to, int begins) const;
+
+  ChunkPoints points_;
+  Triangulation mesh_;
+  double orient_bound_;
+  std::vector<kernel::double2> scaled_;   // the points, and the ends of open edges in other chunks
+  std::vector<kernel::open_edge> edges_;  // the open edges, with places in scaled_
+  std::vector<std::int32_t> rows_;        // by triangle: which one of those that are final, or -1
+  std::vector<Border> border_;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace flaunay::chunks

@@ -1,0 +1,77 @@
+// Points of chunks on disk.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "files/scratch.hpp"
+#include "flaunay/chunks.hpp"
+#include "large/chunks/points.hpp"
+#include "shared/language.h"
+
+namespace flaunay::chunks {
+
+/// The bytes of a point of the first round in the scratch file.
+constexpr std::size_t kFirstRoundBytes = kScratchBytesPerPoint;
+
+/// Buffers for a chunk have a multiple of this many bytes: whole points, and whole blocks of the disk, so
+/// that these can be given back. Smaller ones would be slow to read.
+constexpr std::size_t kBufferUnit = 512 * kFirstRoundBytes;
+
+/// A part of the scratch file.
+struct Extent {
+  std::uint64_t begin, bytes;
+};
+
+using io::ScratchFile;
+
+/// Points of one chunk in the scratch file: words of 8 bytes.
+struct StoredChunk {
+  std::vector<Extent> extents;
+  std::uint64_t points = 0;
+};
+
+/// Brings points to chunks in the scratch file, through a buffer for each.
+class ChunkWriters {
+ public:
+  /// buffer_bytes: of all chunks together.
+  ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes);
+
+  /// Of the first round.
+  void add(std::size_t chunk, kernel::double2 p, std::int64_t id) {
+    push(writers_[chunk], p, id);
+    count(writers_[chunk]);
+  }
+  /// Of later rounds: point i of a list, with its open edges.
+  void add(std::size_t chunk, const ChunkPoints& from, std::size_t i);
+  /// Writes what is in the buffers.
+  std::vector<StoredChunk> take();
+
+ private:
+  struct Writer {
+    std::vector<std::uint64_t> words;
+    StoredChunk stored;
+  };
+  void push(Writer& writer, kernel::double2 p, std::int64_t id) const {
+    if (writer.words.empty()) writer.words.reserve(most_words_);
+    writer.words.push_back(kernel::as_ulong(p.x));
+    writer.words.push_back(kernel::as_ulong(p.y));
+    writer.words.push_back(static_cast<std::uint64_t>(id));
+  }
+  // To be called when all words of a point are there.
+  void count(Writer& writer) {
+    ++writer.stored.points;
+    if (writer.words.size() >= most_words_) flush(writer);
+  }
+  void flush(Writer& writer);
+
+  ScratchFile& file_;
+  std::size_t most_words_ = 0;
+  std::vector<Writer> writers_;
+};
+
+/// Reads the points of a chunk.
+ChunkPoints read_chunk(const ScratchFile& file, const StoredChunk& chunk, bool is_first_round);
+
+}  // namespace flaunay::chunks

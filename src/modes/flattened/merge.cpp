@@ -1,0 +1,91 @@
+#include "launchers/flattened/merge.cl.hpp"
+#include "modes/flattened/stages.hpp"
+
+namespace flaunay::flattened {
+
+void merge(Workspace& work, PointTable& table, const Level& level, const Paths& paths, Level& next,
+           RetiredRegions& retired) {
+  host::Runtime& runtime = work.runtime;
+  Arena& scratch = work.scratch();
+  Arena::Scope scope(scratch);
+
+  // At most three steps per corner.
+  work.add_depth(Component::merge, log2_ceiling(paths.size) + 3 * (2 + kernel::ORIENT_OPERATIONS) +
+                                       scan_depth(level.corners) + scan_depth(paths.size) +
+                                       scan_depth(2 * level.regions));
+  work.add_depth(Component::split, 1 + scan_depth(level.points));
+  const auto places = scratch.allocate<cl_int>(level.corners);
+  const auto codes = scratch.allocate<cl_uchar>(level.corners);
+  runtime.map(level.corners, kernels::corner_codes{.points_count = level.points,
+                                                   .bound = work.bounds.orient,
+                                                   .kept = paths.flags,
+                                                   .corners = level.corner_ids,
+                                                   .regions = level.corner_regions,
+                                                   .axis = level.axis,
+                                                   .cut = level.cut,
+                                                   .points = table.points,
+                                                   .path_offsets = paths.offsets,
+                                                   .path = paths.vertices,
+                                                   .path_projections = paths.projections,
+                                                   .places = places,
+                                                   .codes = codes});
+  {
+    Arena::Scope list_scope(scratch);
+    const auto list = pack_undecided(work, codes, level.corners);
+    run_list(work, kernels::corner_codes_exact{.count = work.list_length,
+                                               .list = list,
+                                               .corners = level.corner_ids,
+                                               .regions = level.corner_regions,
+                                               .axis = level.axis,
+                                               .cut = level.cut,
+                                               .points = table.points,
+                                               .path_offsets = paths.offsets,
+                                               .path = paths.vertices,
+                                               .places = places,
+                                               .codes = codes});
+  }
+  const auto corner_sides = scratch.allocate<cl_uint2>(level.corners + 1);
+  runtime.map(level.corners, kernels::corner_counts{.codes = codes, .counts = corner_sides});
+  host::exclusive_scan(runtime, corner_sides, level.corners, corner_sides);
+
+  const auto internal = scratch.allocate<cl_uint>(paths.size + 1);
+  runtime.map(paths.size, kernels::path_internal{.regions = level.regions,
+                                                 .path_offsets = paths.offsets,
+                                                 .path = paths.vertices,
+                                                 .side = table.side,
+                                                 .internal = internal});
+  host::exclusive_scan(runtime, internal, paths.size, internal);
+  const ListSplit split = begin_split(work, table, level);
+
+  const Children child =
+      place_children(work, level, paths, {split.points_before, corner_sides, internal}, next, retired);
+
+  runtime.map(level.corners, kernels::emit_corners{.old_corners = level.corner_ids,
+                                                   .regions = level.corner_regions,
+                                                   .corner_offsets = level.corner_offsets,
+                                                   .path = paths.vertices,
+                                                   .path_offsets = paths.offsets,
+                                                   .places = places,
+                                                   .codes = codes,
+                                                   .scanned = corner_sides,
+                                                   .child_region = child.region,
+                                                   .child_base = child.base,
+                                                   .corners = next.corner_ids,
+                                                   .corner_region = next.corner_regions,
+                                                   .retired = retired.corner_ids});
+  runtime.map(paths.size, kernels::emit_path{.path = paths.vertices,
+                                             .path_region = paths.regions,
+                                             .path_offsets = paths.offsets,
+                                             .internal = internal,
+                                             .corner_offsets = level.corner_offsets,
+                                             .scanned = corner_sides,
+                                             .child_region = child.region,
+                                             .child_base = child.base,
+                                             .corners = next.corner_ids,
+                                             .corner_region = next.corner_regions,
+                                             .retired = retired.corner_ids});
+
+  split_lists(work, table, level, split, child, next);
+}
+
+}  // namespace flaunay::flattened

@@ -1,0 +1,70 @@
+#include "geometry/halfedges.hpp"
+#include "launchers/flattened/output.cl.hpp"
+#include "modes/flattened/stages.hpp"
+
+namespace flaunay::flattened {
+
+std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
+                                       const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
+                                       std::size_t count) {
+  if (table.sets == 1) return {0, count};
+  host::Runtime& runtime = work.runtime;
+  Arena::Scope scope(work.scratch());
+  const auto keys = work.scratch().allocate<cl_ulong>(count);
+  const auto order = work.scratch().allocate<cl_int>(count);
+  const auto counts = work.scratch().allocate<cl_uint>(table.sets);
+  const auto unsorted = work.scratch().allocate<cl_int>(3 * count);
+  runtime.fill(counts, table.sets, cl_uint{0});
+  runtime.map(count, kernels::triangle_sets{.triangles = triangles,
+                                            .set_of_id = table.set_of_id,
+                                            .keys = keys,
+                                            .order = order,
+                                            .counts = counts});
+  host::sort_by_key(runtime, keys, order, count);
+  runtime.copy(triangles, 0, unsorted, 0, 3 * count);
+  runtime.map(count,
+              kernels::reorder_triangles{.order = order, .triangles = unsorted, .reordered = triangles});
+  if (twins.memory() != nullptr) {
+    const auto places = work.scratch().allocate<cl_int>(count);
+    runtime.map(count, kernels::triangle_places{.order = order, .places = places});
+    runtime.copy(twins, 0, unsorted, 0, 3 * count);
+    runtime.map(count, kernels::reorder_twins{
+                           .order = order, .places = places, .twins = unsorted, .reordered = twins});
+  }
+  std::vector<std::size_t> offsets{0};
+  for (const cl_uint size : read_all(work, counts, table.sets)) offsets.push_back(offsets.back() + size);
+  return offsets;
+}
+
+void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
+               const Buffer<cl_int>& twins, std::size_t count, const Options& options,
+               Triangulation& result) {
+  host::Runtime& runtime = work.runtime;
+  const host::Runtime::Settled settled(runtime);
+  Arena::Scope scope(work.scratch());
+  const bool with_neighbors = options.neighbors || options.halfedges;
+  runtime.resize(result.triangles, 3 * count);
+  runtime.resize(result.neighbors, with_neighbors ? 3 * count : 0);
+  const auto output = runtime.output(result.triangles);
+  const auto neighbors = runtime.output(result.neighbors);
+  runtime.map(count, kernels::finish_rows{.with_neighbors = with_neighbors,
+                                          .triangles = triangles,
+                                          .twins = twins,
+                                          .source = table.source,
+                                          .rows = output,
+                                          .neighbors = neighbors});
+  runtime.fetch_later(output, result.triangles);
+  runtime.fetch_later(neighbors, result.neighbors);
+  runtime.finish();
+  if (with_neighbors) geometry::write_halfedges(options, result);
+}
+
+std::vector<std::int32_t> read_indices(Workspace& work, const PointTable& table, const Buffer<cl_int>& ids,
+                                       std::size_t count) {
+  Arena::Scope scope(work.scratch());
+  const auto indices = work.scratch().allocate<cl_int>(count);
+  work.runtime.map(count, kernels::map_ids{.ids = ids, .source = table.source, .indices = indices});
+  return read_all(work, indices, count);
+}
+
+}  // namespace flaunay::flattened

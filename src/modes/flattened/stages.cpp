@@ -1,0 +1,36 @@
+#include "modes/flattened/stages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "shared/codes.h"
+
+namespace flaunay::flattened {
+
+std::size_t region_group(const Workspace& work, std::size_t elements) {
+  const Tuning& tuning = tuning_of(work.runtime);
+  if (tuning.tile_group == 0) return 1;
+  std::size_t group = std::clamp<std::size_t>(tuning.chain_group_least, 1, tuning.tile_group);
+  while (2 * group <= tuning.tile_group && 2 * group * tuning.chain_points <= elements) group *= 2;
+  return group;
+}
+
+Buffer<cl_int> pack_undecided(Workspace& work, const Buffer<cl_uchar>& flags, std::size_t n) {
+  const auto list = work.scratch().allocate<cl_int>(n);
+  host::pack_positions(work.runtime, flags, n, kernel::FLAG_UNDECIDED, list, work.list_length);
+  host::add_count(work.runtime, work.list_length, work.undecided);
+  return list;
+}
+
+void check_invariants(Workspace& work) {
+  const cl_int bits = work.runtime.read_one(work.broken, 0);
+  if (bits == 0) return;
+  std::string what;
+  if (bits & kernel::BROKEN_PATH) what += " a point on a cut line is not on its path;";
+  if (bits & kernel::BROKEN_BORDER) what += " a region's border does not enclose it;";
+  if (bits & kernel::BROKEN_CIRCLE) what += " an edge is not Delaunay;";
+  throw Error(ErrorKind::internal, fmt::format("broken invariant:{} please report the input", what));
+}
+
+}  // namespace flaunay::flattened
