@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/constrained.hpp"
 #include "constrained/crossings/split.hpp"
 #include "constrained/insertion/constrained.hpp"
 #include "tests/constrained/check.hpp"
@@ -21,7 +22,6 @@
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
-#include "app/verify/constrained.hpp"
 
 namespace flaunay::testing {
 namespace {

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "constrained/insertion/constrained.hpp"
 #include "flaunay/research.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
-#include "app/verify/exact.hpp"
 
 namespace flaunay::testing {
 

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/constrained.hpp"
 #include "constrained/crossings/split.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.hpp"
@@ -28,7 +29,6 @@
 #include "tests/fuzz/run.hpp"
 #include "tests/fuzz/segments.hpp"
 #include "tests/support/environment.hpp"
-#include "app/verify/constrained.hpp"
 
 namespace flaunay::fuzz {
 namespace {
