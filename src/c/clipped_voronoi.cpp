@@ -1,8 +1,8 @@
 // The C interface to clipped Voronoi cells and to relaxation.
 #include <CL/cl.h>
-#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "c/errors.hpp"
@@ -28,17 +28,10 @@ namespace {
 
 template <typename Handle>
 auto& buffer_of(Handle& cells, unsigned part) {
-  switch (part) {
-    case FLAUNAY_CLIPPED_VORONOI_VERTICES:
-      return cells.cpp.vertices;
-    case FLAUNAY_CLIPPED_VORONOI_OFFSETS:
-      return cells.cpp.offsets;
-    case FLAUNAY_CLIPPED_VORONOI_AREAS:
-      return cells.cpp.areas;
-    case FLAUNAY_CLIPPED_VORONOI_CENTROIDS:
-      return cells.cpp.centroids;
-  }
-  throw Error(ErrorKind::usage, fmt::format("{} is not one part of clipped Voronoi cells", part));
+#define BUFFER(type, name, ...) &DeviceClippedVoronoi::name,
+  static constexpr std::array kBuffers = {FLAUNAY_CLIPPED_VORONOI_ARRAYS(BUFFER)};
+#undef BUFFER
+  return c::buffer_of(cells.cpp, kBuffers, part, "clipped Voronoi cells");
 }
 
 }  // namespace
@@ -64,21 +57,12 @@ size_t flaunay_clipped_voronoi_vertex_count(const flaunay_clipped_voronoi* cells
   return read(cells, [](const auto& handle) { return handle.cpp.vertices.size() / 2; });
 }
 
-const double* flaunay_clipped_voronoi_vertices(const flaunay_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.vertices); });
-}
-
-const int32_t* flaunay_clipped_voronoi_offsets(const flaunay_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.offsets); });
-}
-
-const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.areas); });
-}
-
-const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return c::elements(handle.cpp.centroids); });
-}
+#define ACCESSOR(type, name, ...)                                                        \
+  const type* flaunay_clipped_voronoi_##name(const flaunay_clipped_voronoi* cells) {     \
+    return read(cells, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
+  }
+FLAUNAY_CLIPPED_VORONOI_ARRAYS(ACCESSOR)
+#undef ACCESSOR
 
 flaunay_status flaunay_device_clipped_voronoi_create(flaunay_device_clipped_voronoi** cells) {
   return create(cells, [] { return std::make_unique<flaunay_device_clipped_voronoi>(); });

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 #include <numeric>
 
@@ -26,15 +27,10 @@ namespace {
 
 template <typename Handle>
 auto& buffer_of(Handle& edges, unsigned part) {
-  switch (part) {
-    case FLAUNAY_CONSTRAINT_CONSTRAINED:
-      return edges.cpp.constrained;
-    case FLAUNAY_CONSTRAINT_PIECE_EDGES:
-      return edges.cpp.piece_edges;
-    case FLAUNAY_CONSTRAINT_EDGES:
-      return edges.cpp.constraint_edges;
-  }
-  throw Error(ErrorKind::usage, fmt::format("{} is not one part of constraint edges", part));
+  static constexpr std::array kBuffers = {&DeviceConstraintEdges::constrained,
+                                          &DeviceConstraintEdges::piece_edges,
+                                          &DeviceConstraintEdges::constraint_edges};
+  return c::buffer_of(edges.cpp, kBuffers, part, "constraint edges");
 }
 
 flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
@@ -43,16 +39,9 @@ flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   view.constraint_count = result.constraint_edges.size() / 2;
   view.segment_count = result.piece_offsets.size() - 1;
   view.piece_count = result.piece_edges.size() / 2;
-  view.added_points = elements(result.added_points);
-  view.added_offsets = elements(result.added_offsets);
-  view.constraint_edges = elements(result.constraint_edges);
-  view.edge_segments = elements(result.edge_segments);
-  view.piece_offsets = elements(result.piece_offsets);
-  view.piece_edges = elements(result.piece_edges);
-  view.constrained = elements(result.constrained);
-  view.depths = elements(result.depths);
-  view.regions = elements(result.regions);
-  view.polygons = elements(result.polygons);
+#define VIEW(type, name, ...) view.name = elements(result.name);
+  FLAUNAY_CONSTRAINED_ARRAYS(VIEW)
+#undef VIEW
   return view;
 }
 

@@ -1,6 +1,7 @@
 // The C interface to devices, triangulators and triangulations.
 #include "flaunay/flaunay.h"
 
+#include <array>
 #include <memory>
 
 #include "c/errors.hpp"
@@ -38,6 +39,14 @@ const std::vector<flaunay_mode_info>& modes() {
     return all;
   }());
   return infos;
+}
+
+template <typename Result>
+auto& buffer_of(Result& triangulation, unsigned part) {
+#define BUFFER(type, name, ...) &DeviceTriangulation::name,
+  static constexpr std::array kBuffers = {FLAUNAY_TRIANGULATION_ARRAYS(BUFFER)};
+#undef BUFFER
+  return c::buffer_of(triangulation, kBuffers, part, "a triangulation");
 }
 
 }  // namespace
@@ -165,25 +174,12 @@ size_t flaunay_triangulation_hull_count(const flaunay_triangulation* triangulati
   return read(triangulation, [](const auto& handle) { return handle.view.hull_count; });
 }
 
-const int32_t* flaunay_triangulation_triangles(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.triangles; });
-}
-
-const int32_t* flaunay_triangulation_neighbors(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.neighbors; });
-}
-
-const int32_t* flaunay_triangulation_halfedges(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.halfedges; });
-}
-
-const int32_t* flaunay_triangulation_hull(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.hull; });
-}
-
-const int32_t* flaunay_triangulation_representatives(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.representatives; });
-}
+#define ACCESSOR(type, name, ...)                                                        \
+  const type* flaunay_triangulation_##name(const flaunay_triangulation* triangulation) { \
+    return read(triangulation, [](const auto& handle) { return handle.view.name; });     \
+  }
+FLAUNAY_TRIANGULATION_ARRAYS(ACCESSOR)
+#undef ACCESSOR
 
 const size_t* flaunay_triangulation_triangle_offsets(const flaunay_triangulation* triangulation) {
   return read(triangulation, [](const auto& handle) { return handle.view.triangle_offsets; });
@@ -211,14 +207,12 @@ void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangul
 
 flaunay_status flaunay_device_triangulation_set_buffer(flaunay_device_triangulation* triangulation,
                                                        unsigned part, cl_mem memory) {
-  return guarded([&] {
-    required(triangulation, "the triangulation").cpp.*c::array_of(part).buffer = c::to_buffer(memory);
-  });
+  return guarded(
+      [&] { buffer_of(required(triangulation, "the triangulation").cpp, part) = c::to_buffer(memory); });
 }
 
 cl_mem flaunay_device_triangulation_buffer(const flaunay_device_triangulation* triangulation, unsigned part) {
-  return read(triangulation,
-              [&](const auto& handle) { return (handle.cpp.*c::array_of(part).buffer).memory(); });
+  return read(triangulation, [&](const auto& handle) { return buffer_of(handle.cpp, part).memory(); });
 }
 
 unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation) {

@@ -18,7 +18,6 @@ using research::Mode;
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
 using call::kMostCountable;
-using call::kResultArrays;
 
 // Enumerators of C and C++ have the same values, so a mode is found by its value.
 static_assert(FLAUNAY_MODE_BLOCKS == static_cast<int>(Mode::blocks) &&
@@ -65,13 +64,13 @@ Finish to_finish(int finish) {
   throw_usage(fmt::format("there is no finish {}", finish));
 }
 
-// Bit k of flaunay_part stands for row k of the table.
-constexpr unsigned bit_of(std::size_t row) { return 1u << row; }
+// Bit k of flaunay_part stands for the k-th array.
+constexpr unsigned bit_of(std::size_t k) { return 1u << k; }
 static_assert(FLAUNAY_PART_TRIANGLES == bit_of(0) &&
-              FLAUNAY_PART_REPRESENTATIVES == bit_of(kResultArrays.size() - 1));
+              FLAUNAY_PART_REPRESENTATIVES == bit_of(kTriangulationArrayCount - 1));
 
 void check_parts(unsigned parts) {
-  constexpr unsigned kAll = bit_of(kResultArrays.size()) - 1;
+  constexpr unsigned kAll = bit_of(kTriangulationArrayCount) - 1;
   if (parts & ~kAll) throw_usage(fmt::format("there are no parts {:#x}", parts & ~kAll));
 }
 
@@ -176,11 +175,9 @@ flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& s
   view.set_count = set_count(triangulation.triangle_offsets);
   view.triangle_count = triangulation.triangles.size() / 3;
   view.hull_count = triangulation.hull.size();
-  view.triangles = elements(triangulation.triangles);
-  view.neighbors = elements(triangulation.neighbors);
-  view.halfedges = elements(triangulation.halfedges);
-  view.hull = elements(triangulation.hull);
-  view.representatives = elements(triangulation.representatives);
+#define VIEW(type, name, ...) view.name = elements(triangulation.name);
+  FLAUNAY_TRIANGULATION_ARRAYS(VIEW)
+#undef VIEW
   view.triangle_offsets = elements(triangulation.triangle_offsets);
   view.hull_offsets = elements(triangulation.hull_offsets);
   view.statistics = statistics.get();
@@ -197,10 +194,9 @@ research::Options to_options(const flaunay_options* options) {
   result.hull = to_hull(options->hull);
   result.finish = to_finish(options->finish);
   if (options->parts != 0) {
-    for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
-      const auto option = kResultArrays[k].option;
-      if (option != nullptr) result.*option = (options->parts & bit_of(k)) != 0;
-    }
+    for_each_array([&](const auto& array, std::size_t k) {
+      if (array.option != nullptr) result.*array.option = (options->parts & bit_of(k)) != 0;
+    });
   }
   result.profile = options->profile != 0;
   result.partition_levels = options->partition_levels;
@@ -218,25 +214,16 @@ Parts to_parts(unsigned parts) {
   check_parts(parts);
   Parts result;
   if (parts == 0) return result;
-  for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
-    result.*kResultArrays[k].part = (parts & bit_of(k)) != 0;
-  }
+  for_each_array([&](const auto& array, std::size_t k) { result.*array.part = (parts & bit_of(k)) != 0; });
   return result;
 }
 
 unsigned to_bits(const Parts& parts) {
   unsigned bits = 0;
-  for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
-    if (parts.*kResultArrays[k].part) bits |= bit_of(k);
-  }
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (parts.*array.part) bits |= bit_of(k);
+  });
   return bits;
-}
-
-const call::ResultArray& array_of(unsigned part) {
-  for (std::size_t k = 0; k < kResultArrays.size(); ++k) {
-    if (part == bit_of(k)) return kResultArrays[k];
-  }
-  throw_usage(fmt::format("{} is not one part of a triangulation", part));
 }
 
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n) {

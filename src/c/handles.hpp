@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "c/errors.hpp"
-#include "call/result_arrays.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.h"
 #include "flaunay/research.hpp"
+#include "flaunay/result_arrays.hpp"
 
 namespace flaunay::c {
 
@@ -57,8 +57,16 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
 /// Bits of flaunay_part. Throws Error(usage) for an unknown bit. 0: the defaults.
 Parts to_parts(unsigned parts);
 unsigned to_bits(const Parts& parts);
-/// The array of one bit. Throws Error(usage) for anything else.
-const call::ResultArray& array_of(unsigned part);
+
+/// The buffer of one part, where bit k stands for the k-th of these members. Throws Error(usage), which names
+/// the result, for anything else.
+template <typename Result, typename Buffers>
+auto& buffer_of(Result& result, const Buffers& buffers, unsigned part, const char* name) {
+  for (std::size_t k = 0; k < buffers.size(); ++k) {
+    if (part == 1u << k) return result.*buffers[k];
+  }
+  throw Error(ErrorKind::usage, fmt::format("{} is not one part of {}", part, name));
+}
 
 /// Null: one set. Throws Error(usage) unless the offsets go from 0 to n without decreasing.
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n);

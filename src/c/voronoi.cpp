@@ -1,6 +1,5 @@
 // The C interface to Voronoi diagrams.
-#include <fmt/format.h>
-
+#include <array>
 #include <memory>
 
 #include "c/errors.hpp"
@@ -26,17 +25,10 @@ namespace {
 
 template <typename Handle>
 auto& buffer_of(Handle& voronoi, unsigned part) {
-  switch (part) {
-    case FLAUNAY_VORONOI_CIRCUMCENTRES:
-      return voronoi.cpp.circumcentres;
-    case FLAUNAY_VORONOI_CELL_OFFSETS:
-      return voronoi.cpp.cell_offsets;
-    case FLAUNAY_VORONOI_CELLS:
-      return voronoi.cpp.cells;
-    case FLAUNAY_VORONOI_UNBOUNDED:
-      return voronoi.cpp.unbounded;
-  }
-  throw Error(ErrorKind::usage, fmt::format("{} is not one part of a Voronoi diagram", part));
+#define BUFFER(type, name, ...) &DeviceVoronoi::name,
+  static constexpr std::array kBuffers = {FLAUNAY_VORONOI_ARRAYS(BUFFER)};
+#undef BUFFER
+  return c::buffer_of(voronoi.cpp, kBuffers, part, "a Voronoi diagram");
 }
 
 }  // namespace
@@ -65,21 +57,12 @@ size_t flaunay_voronoi_corner_count(const flaunay_voronoi* voronoi) {
   return read(voronoi, [](const auto& handle) { return handle.cpp.cells.size(); });
 }
 
-const double* flaunay_voronoi_circumcentres(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.circumcentres); });
-}
-
-const int32_t* flaunay_voronoi_cell_offsets(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.cell_offsets); });
-}
-
-const int32_t* flaunay_voronoi_cells(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.cells); });
-}
-
-const uint8_t* flaunay_voronoi_unbounded(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.unbounded); });
-}
+#define ACCESSOR(type, name, ...)                                                          \
+  const type* flaunay_voronoi_##name(const flaunay_voronoi* voronoi) {                     \
+    return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
+  }
+FLAUNAY_VORONOI_ARRAYS(ACCESSOR)
+#undef ACCESSOR
 
 flaunay_status flaunay_device_voronoi_create(flaunay_device_voronoi** voronoi) {
   return create(voronoi, [] { return std::make_unique<flaunay_device_voronoi>(); });

@@ -1,0 +1,113 @@
+// The arrays of the results as tables, one row per array: for programs that treat all arrays alike, such as
+// bindings to other languages and writers of files.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "flaunay/constrained.hpp"
+#include "flaunay/device_memory.hpp"
+#include "flaunay/flaunay.hpp"
+
+/// The arrays of flaunay::Triangulation, in the order of the bits of flaunay_part. A row is X(type of the
+/// elements, name, of what there is one row per thing, elements per row, by what it is asked for, what it
+/// has). An array is computed always or on request, by the member of its name in flaunay::Options.
+#define FLAUNAY_TRIANGULATION_ARRAYS(X)                                                   \
+  X(std::int32_t, triangles, triangle, 3, always, "3 point indices per row")              \
+  X(std::int32_t, neighbors, triangle, 3, on_request,                                     \
+    "the triangle opposite to each vertex, -1 on the hull")                               \
+  X(std::int32_t, halfedges, halfedge, 1, on_request, "the opposite one, -1 on the hull") \
+  X(std::int32_t, hull, hull_vertex, 1, always, "counter-clockwise")                      \
+  X(std::int32_t, representatives, point, 1, always, "for each point the smallest index of an equal point")
+
+/// The arrays that triangulations in chunks have, in the order of flaunay::MeshArray: X(name).
+#define FLAUNAY_MESH_ARRAYS(X) X(triangles) X(neighbors) X(hull) X(representatives)
+
+/// The arrays that flaunay::ConstrainedTriangulation has besides: X(type, name, rows, elements per row, asked
+/// for by).
+#define FLAUNAY_CONSTRAINED_ARRAYS(X)                       \
+  X(double, added_points, added_point, 2, always)           \
+  X(std::size_t, added_offsets, set_offset, 1, always)      \
+  X(std::int32_t, constraint_edges, constraint, 2, always)  \
+  X(std::int32_t, edge_segments, constraint, 1, always)     \
+  X(std::int32_t, piece_offsets, segment_offset, 1, always) \
+  X(std::int32_t, piece_edges, piece, 2, always)            \
+  X(std::uint8_t, constrained, triangle, 3, always)         \
+  X(std::int32_t, depths, triangle, 1, labels)              \
+  X(std::int32_t, regions, triangle, 1, labels)             \
+  X(std::int32_t, polygons, triangle, 1, map)
+
+/// The arrays of flaunay::Voronoi, in the order of the bits of flaunay_voronoi_part: X(type, name, rows,
+/// elements per row).
+#define FLAUNAY_VORONOI_ARRAYS(X)                \
+  X(double, circumcentres, triangle, 2)          \
+  X(std::int32_t, cell_offsets, point_offset, 1) \
+  X(std::int32_t, cells, corner, 1)              \
+  X(std::uint8_t, unbounded, point, 1)
+
+/// The arrays of flaunay::ClippedVoronoi, in the order of the bits of flaunay_clipped_voronoi_part: as above.
+#define FLAUNAY_CLIPPED_VORONOI_ARRAYS(X)   \
+  X(double, vertices, vertex, 2)            \
+  X(std::int32_t, offsets, point_offset, 1) \
+  X(double, areas, point, 1)                \
+  X(double, centroids, point, 2)
+
+namespace flaunay {
+
+/// Of what an array of a triangulation has one row per thing.
+enum class RowOf { triangle, halfedge, hull_vertex, point };
+
+/// The largest number of rows for n points.
+constexpr std::size_t most_rows(RowOf row, std::size_t n) {
+  return row == RowOf::triangle ? 2 * n : row == RowOf::halfedge ? 6 * n : n;
+}
+
+/// One array of a triangulation with elements of type T.
+template <typename T>
+struct TriangulationArray {
+  using Element = T;                          ///< the type of its elements
+  const char* name;                           ///< the name of all the members below
+  RowOf row;                                  ///< of what it has one row per thing
+  std::size_t columns;                        ///< elements per row; 1: it has one dimension
+  const char* text;                           ///< what it has, for users
+  std::vector<T> Triangulation::*values;      ///< the array in host memory
+  bool Options::*option;                      ///< the option that asks for it; null: it is computed always
+  DeviceBuffer DeviceTriangulation::*buffer;  ///< the array in device memory
+  bool Parts::*part;                          ///< what asks for it in device memory
+};
+
+#define FLAUNAY_OPTION_always(name) nullptr
+#define FLAUNAY_OPTION_on_request(name) &Options::name
+#define FLAUNAY_ROW(type, name, row, columns, asked, text) \
+  TriangulationArray<type>{#name,                          \
+                           RowOf::row,                     \
+                           columns,                        \
+                           text,                           \
+                           &Triangulation::name,           \
+                           FLAUNAY_OPTION_##asked(name),   \
+                           &DeviceTriangulation::name,     \
+                           &Parts::name},
+/// FLAUNAY_TRIANGULATION_ARRAYS as a tuple.
+constexpr std::tuple kTriangulationArrays{FLAUNAY_TRIANGULATION_ARRAYS(FLAUNAY_ROW)};
+#undef FLAUNAY_ROW
+#undef FLAUNAY_OPTION_on_request
+#undef FLAUNAY_OPTION_always
+
+/// The number of arrays of a triangulation.
+constexpr std::size_t kTriangulationArrayCount = std::tuple_size_v<decltype(kTriangulationArrays)>;
+
+/// Calls visit(array, k) for the k-th array of a triangulation, in the order of the table.
+template <typename Visit>
+constexpr void for_each_array(const Visit& visit) {
+  std::apply(
+      [&visit](const auto&... arrays) {
+        std::size_t k = 0;
+        (visit(arrays, k++), ...);
+      },
+      kTriangulationArrays);
+}
+
+}  // namespace flaunay
