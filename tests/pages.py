@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the Markdown pages of the source tree: that links lead to files and headings that exist, that paths in code
-spans exist, and that lines have at most 120 columns, except in tables, in code, and on pages that programs write.
+"""Checks the Markdown pages of the source tree: that links lead to files and headings that exist, that no two headings
+of a page are equal, that files named in code spans exist, and that lines have at most 120 columns, except in tables, in
+code, and on pages that programs write.
 
     pages.py SOURCE
 """
@@ -12,8 +13,13 @@ import sys
 COLUMNS = 120
 PATTERNS = ("*.md", "docs/*.md", "bench/results/*.md", "tests/data/*.md")
 WRITTEN_BY_PROGRAMS = "bench/results"
+FOLDERS = ("bench", "cmake", "docs", "examples", "host", "kernels", "python", "scripts", "src", "tests")
 # A code span with a folder of the source tree, such as `src/call/parts.hpp`. Placeholders and patterns are no paths.
-PATH = re.compile(r"`((?:bench|cmake|docs|examples|host|kernels|python|scripts|src|tests)/[\w./-]*)`")
+PATH = re.compile(rf"`((?:{'|'.join(FOLDERS)})/[\w./-]*)`")
+# One with a source file by its name, or by the end of its path, such as `planar.h` or `blocks/merge.cl`.
+SOURCE_FILE = re.compile(r"`([\w-][\w./-]*\.(?:cl|cmake|cpp|hpp|h|py|sh))`")
+# A changelog has the same headings for each version.
+REPEATS_HEADINGS = "CHANGELOG.md"
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
@@ -34,11 +40,31 @@ def prose(page):
 
 
 def headings(page):
-    return {anchor(line.lstrip("#")) for _, line in prose(page) if line.startswith("#")}
+    """Its headings in their order, with the numbers of their lines."""
+    return [(number, anchor(line.lstrip("#"))) for number, line in prose(page) if line.startswith("#")]
 
 
-def problems(source, page):
+def repeated_headings(page):
+    seen = set()
+    for number, heading in headings(page):
+        if heading in seen and page.name != REPEATS_HEADINGS:
+            yield number, f"a second heading {heading}"
+        seen.add(heading)
+
+
+def path_ends(source):
+    """All names by which pages may call files: their paths from any folder on."""
+    ends = set()
+    for folder in FOLDERS:
+        for file in (source / folder).rglob("*.*"):
+            parts = file.relative_to(source).parts
+            ends.update("/".join(parts[k:]) for k in range(len(parts)))
+    return ends
+
+
+def problems(source, page, files):
     is_written_by_people = not page.is_relative_to(source / WRITTEN_BY_PROGRAMS)
+    yield from repeated_headings(page)
     for number, line in prose(page):
         if len(line) > COLUMNS and is_written_by_people and not line.startswith("|"):
             yield number, f"{len(line)} columns"
@@ -49,19 +75,23 @@ def problems(source, page):
             target = page.parent / name if name else page
             if not target.exists():
                 yield number, f"no file {link}"
-            elif fragment and fragment not in headings(target):
+            elif fragment and all(fragment != heading for _, heading in headings(target)):
                 yield number, f"no heading {link}"
         for path in PATH.findall(line):
             if not (source / path).exists():
                 yield number, f"no file {path}"
+        for name in SOURCE_FILE.findall(line):
+            if name not in files:
+                yield number, f"no file is called {name}"
 
 
 def main():
     source = pathlib.Path(sys.argv[1])
+    files = path_ends(source)
     found = 0
     for pattern in PATTERNS:
         for page in sorted(source.glob(pattern)):
-            for number, problem in problems(source, page):
+            for number, problem in problems(source, page, files):
                 print(f"{page.relative_to(source)}:{number}: {problem}")
                 found += 1
     sys.exit(1 if found else 0)
