@@ -111,7 +111,7 @@ std::string text_of(const Json& record) {
 int measure_and_record(const std::string& subcommand, const std::string& command_line,
                        const Measurement& measurement, const std::function<Result()>& measure) {
   // Before hours of measuring.
-  if (!measurement.json_path.empty()) io::OutputFile::check(measurement.json_path);
+  if (!measurement.json_path.empty()) io::Outputs().announce(measurement.json_path);
   Result result = measure();
   round_numbers(result.tables);
   for (const auto& [title, rows] : result.tables.items()) {

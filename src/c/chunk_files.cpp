@@ -9,6 +9,7 @@
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "files/file.hpp"
 #include "files/mesh_stream.hpp"
 #include "files/output.hpp"
 #include "large/chunks/array_sink.hpp"
@@ -72,7 +73,7 @@ Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& array
                               parts[k].name));
     }
     paths[k] = parts[k].path;
-    io::check_output(paths[k], ".npy");
+    io::check_ending(paths[k], ".npy");
   }
   return paths;
 }

@@ -2,9 +2,9 @@
 
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <map>
 
 #include "files/file.hpp"
 #include "files/output.hpp"
@@ -25,35 +25,28 @@ std::string readable(std::uint64_t bytes) {
 
 void check_disk_space(const std::vector<SizedOutput>& files) {
   struct Disk {
-    dev_t device;
-    std::string path, folder;  // of one of its files
-    std::uint64_t needed;
-    bool has_outputs, has_scratch;
+    std::string path, folder;  // of the first of its files
+    std::uint64_t needed = 0;
+    bool has_outputs = false, has_scratch = false;
   };
-  std::vector<Disk> disks;
+  std::map<dev_t, Disk> disks;
   for (const SizedOutput& file : files) {
     if (file.path.empty() || file.path == "-") continue;
-    Disk found{0, file.path, file.path, 0, !file.is_scratch, file.is_scratch};
-    if (file.is_scratch) {
-      struct stat status {};
-      if (::stat(file.path.c_str(), &status) != 0) {
-        fail(file.path, "has no room for a scratch file: {}", system_reason(errno));
-      }
-      found.device = status.st_dev;
-    } else {
+    std::string folder = file.path;
+    if (!file.is_scratch) {
       const Target target = find_target(file.path);
       if (target.is_direct) continue;
-      found.device = target.folder_id.device;
-      found.folder = target.folder;
+      folder = target.folder;
     }
-    const auto same = [&](const Disk& disk) { return disk.device == found.device; };
-    auto disk = std::find_if(disks.begin(), disks.end(), same);
-    if (disk == disks.end()) disk = disks.insert(disk, found);
-    disk->needed += file.bytes;
-    disk->has_outputs |= found.has_outputs;
-    disk->has_scratch |= found.has_scratch;
+    struct stat status {};
+    if (::stat(folder.c_str(), &status) != 0) {
+      fail(file.path, "has no room for a scratch file: {}", system_reason(errno));
+    }
+    Disk& disk = disks.try_emplace(status.st_dev, Disk{file.path, folder}).first->second;
+    disk.needed += file.bytes;
+    (file.is_scratch ? disk.has_scratch : disk.has_outputs) = true;
   }
-  for (const Disk& disk : disks) {
+  for (const auto& [device, disk] : disks) {
     const std::uint64_t room = free_bytes(disk.folder);
     if (disk.needed <= room) continue;
     if (!disk.has_outputs) {

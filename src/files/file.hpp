@@ -53,9 +53,46 @@ inline std::string ending_of(const std::string& path) {
                              : fmt::format("{}: unknown ending '{}'; expected {}", path, ending, expected));
 }
 
+inline void check_ending(const std::string& path, std::string_view expected) {
+  if (ending_of(path) != expected) fail_ending(path, expected);
+}
+
 /// The name of a path of read_file in messages.
 inline std::string shown_path(const std::string& path) {
   return path == "-" ? std::string("- (standard input)") : path;
+}
+
+/// Calls `part(done)`, which reads or writes some of the bytes after those that are done, until all are or no
+/// more come. Returns how many are done; if not all, errno is the reason, or 0 if no more came.
+template <typename Part>
+std::size_t move_bytes(std::size_t bytes, const Part& part) {
+  std::size_t done = 0;
+  while (done < bytes) {
+    errno = 0;
+    const ssize_t more = part(done);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) break;
+    done += static_cast<std::size_t>(more);
+  }
+  return done;
+}
+/// Whether all bytes were written to an open file, at a place of it or after the last ones.
+inline bool write_at(int descriptor, std::uint64_t place, const void* data, std::size_t bytes) {
+  return bytes == move_bytes(bytes, [=](std::size_t done) {
+           return ::pwrite(descriptor, static_cast<const char*>(data) + done, bytes - done,
+                           static_cast<off_t>(place + done));
+         });
+}
+inline bool write_next(int descriptor, const void* data, std::size_t bytes) {
+  return bytes == move_bytes(bytes, [=](std::size_t done) {
+           return ::write(descriptor, static_cast<const char*>(data) + done, bytes - done);
+         });
+}
+/// Reads from a place of an open file. Returns how many bytes there are, as move_bytes.
+inline std::size_t read_at(int descriptor, std::uint64_t place, std::size_t bytes, void* to) {
+  return move_bytes(bytes, [=](std::size_t done) {
+    return ::pread(descriptor, static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(place + done));
+  });
 }
 
 /// A file being read; "-" is standard input. Its beginning can be checked before the rest is read.
@@ -118,16 +155,11 @@ class InputFile {
   /// Reads the bytes [begin, begin + count) of a regular file, at any time. Fails if they are not there,
   /// since callers know the size of the file from before.
   void read_at(std::uint64_t begin, std::size_t count, void* to) const {
-    for (std::size_t got = 0; got < count;) {
-      const ssize_t more =
-          ::pread(descriptor_, static_cast<char*>(to) + got, count - got, static_cast<off_t>(begin + got));
-      if (more < 0 && errno == EINTR) continue;
-      if (more < 0) fail(name_, "cannot be read: {}", system_reason(errno));
-      if (more == 0) {
-        fail(name_, "ends after {} bytes, but had {} when it was opened: it became shorter while it was read",
-             begin + got, size_);
-      }
-      got += static_cast<std::size_t>(more);
+    const std::size_t got = io::read_at(descriptor_, begin, count, to);
+    if (got < count && errno != 0) fail(name_, "cannot be read: {}", system_reason(errno));
+    if (got < count) {
+      fail(name_, "ends after {} bytes, but had {} when it was opened: it became shorter while it was read",
+           begin + got, size_);
     }
   }
 

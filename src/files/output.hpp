@@ -2,7 +2,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <sys/types.h>
 
 #include <cstddef>
@@ -19,52 +18,36 @@ namespace flaunay::io {
 /// The type of the indices in a file.
 enum class IndexType { int32, int64 };
 
-/// What the system tells files apart by, whatever their paths.
-struct FileId {
-  dev_t device = 0;
-  ino_t number = 0;
-
-  bool operator==(const FileId&) const = default;
-};
-inline FileId file_id(const struct stat& status) { return {status.st_dev, status.st_ino}; }
-
 /// Where an output goes, with symbolic links followed, also those to files that do not exist yet.
 struct Target {
+  std::string path;
   std::string folder;  ///< ends with a slash
-  std::string name;    ///< in the folder
-  FileId folder_id;
   bool exists = false;
   bool is_direct = false;  ///< it exists and is no regular file, such as a device or a pipe
-  FileId id;               ///< if it exists
   mode_t mode = 0;         ///< if it exists
-
-  std::string path() const { return folder + name; }
 };
+
+/// Whether both paths lead to one file, or folder, that exists.
+bool is_one_file(const std::string& a, const std::string& b);
 
 /// Throws Error(input) if a file cannot be written there.
 Target find_target(const std::string& path);
 
-/// Whether both are one file, or would be one if they existed. Some folders do not tell upper case from lower
-/// case.
-bool is_same(const Target& a, const Target& b);
-
-/// A file being written. Its bytes go to a file without a name in the target's folder, or to a temporary file
-/// where the system has no files without names. Targets that are no regular files (devices, pipes, "-" for
-/// standard output) are written directly. All functions throw Error(input).
+/// A file being written. Its bytes go to a partial file beside the target, whose name has the target's in it.
+/// Targets that are no regular files (devices, pipes, "-" for standard output) are written directly. All
+/// functions throw Error(input).
 class OutputFile {
  public:
+  /// Creates the partial file. Throws Error(usage) if this process writes another one for the same target.
   explicit OutputFile(const std::string& path);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
-  /// Throws the error that writing would throw if the path cannot be created. Leaves no file behind.
-  static void check(const std::string& path);
-
   template <typename... Arguments>
   void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(fmt::appender(buffer_), format, std::forward<Arguments>(arguments)...);
-    flush_if_full();
+    if (buffer_.size() >= kFull) flush();
   }
   void write(const void* data, std::size_t bytes);
   /// Writes at a place of the file, counted in bytes from its beginning, whatever else is written. Only
@@ -75,60 +58,59 @@ class OutputFile {
     write(&value, sizeof value);
   }
 
+  /// Empty if the file is written directly.
+  const std::string& partial_path() const { return partial_.path(); }
+
  private:
   friend class Outputs;
 
   static constexpr std::size_t kFull = std::size_t{1} << 20;
 
-  /// Whether it replaces its target in the end; otherwise it is written directly.
-  bool is_placed() const { return path_ != "-" && !target_.is_direct; }
-  void open_temporary();
-  void flush_if_full() {
-    if (buffer_.size() >= kFull) flush();
-  }
+  void start();
   void flush();
-  void write_through(const char* data, std::size_t bytes);
-  void write_to_disk();
-  void give_name();
   void close();
+  void check_written(bool is_written) const;
 
   std::string path_;  // as the user wrote it
   Target target_;
-  Temporary temporary_;  // none while the file has no name, and if it is written directly
+  Temporary partial_;
   int descriptor_ = -1;
-  FileId id_;  // of the written file
   fmt::memory_buffer buffer_;
 };
 
-/// Checks a path before any work. Throws Error(usage) unless it ends in `ending` (".npy", ".json"), and
-/// Error(input) if the file cannot be created. Leaves no new file behind.
-void check_output(const std::string& path, const std::string& ending);
-
-/// The files that one run writes.
+/// The files that one run writes. What was not committed changes nothing.
 class Outputs {
  public:
-  /// The reference is valid until commit.
+  /// Creates a file that may be written later, to find errors before the work begins. Throws Error(input) if
+  /// it cannot be created, Error(usage) if another file of this run has the path, however it is written.
+  void announce(const std::string& path);
+  /// A file that was announced, or else a new one. The reference is valid until commit.
   OutputFile& open(const std::string& path);
+  /// An old file that commit removes.
+  void remove(const std::string& path) { removed_.push_back(path); }
 
+  /// Writes and closes the files that were opened, so that there may be more than the system keeps open.
+  void close();
   /// Writes all files to the disk. The targets are still untouched.
   void write_out();
   /// Calls write_out, and then replaces the targets. If that fails for one, all targets stay as they were, or
   /// are made so again; the message says if that fails too.
   void commit();
-  /// The same, but does not wait until the files are on the disk. For many small files in a new folder.
-  void commit_without_waiting();
 
  private:
   struct Placed {
-    OutputFile* file;
-    bool has_replaced;  // what was there has the temporary name now
+    std::string path;  // as the user wrote it
+    std::string target;
+    std::string old;  // the file that was there, now; empty if there was none
   };
-  void place_all();
-  void place(OutputFile& file);
+  void place(const OutputFile& file);
+  void keep_old(const std::string& path, const Target& target, bool is_removed);
   std::string take_back();
 
-  std::vector<std::unique_ptr<OutputFile>> files_;
+  std::vector<std::unique_ptr<OutputFile>> announced_, files_;
+  std::vector<std::string> removed_;
   std::vector<Placed> placed_;
+  std::string closed_in_;  // a folder with files that were closed before they were on the disk
 };
 
 }  // namespace flaunay::io

@@ -60,30 +60,14 @@ void ScratchFile::append(const void* data, std::size_t bytes) {
 }
 
 void ScratchFile::write_at(std::uint64_t begin, const void* data, std::size_t bytes) {
-  const char* next = static_cast<const char*>(data);
-  while (bytes > 0) {
-    const ssize_t written = ::pwrite(descriptor_, next, bytes, static_cast<off_t>(begin));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      fail(folder_, "the scratch file cannot be written at byte {}: {}", begin, system_reason(errno));
-    }
-    next += written;
-    begin += static_cast<std::uint64_t>(written);
-    bytes -= static_cast<std::size_t>(written);
-  }
+  if (io::write_at(descriptor_, begin, data, bytes)) return;
+  fail(folder_, "the scratch file cannot be written at byte {}: {}", begin, system_reason(errno));
 }
 
 void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) const {
-  for (std::size_t got = 0; got < count;) {
-    const ssize_t more =
-        ::pread(descriptor_, static_cast<char*>(to) + got, count - got, static_cast<off_t>(begin + got));
-    if (more < 0 && errno == EINTR) continue;
-    if (more <= 0) {
-      fail(folder_, "the scratch file of {} bytes cannot be read at byte {}: {}", size_, begin + got,
-           more < 0 ? system_reason(errno) : "it ends there");
-    }
-    got += static_cast<std::size_t>(more);
-  }
+  if (io::read_at(descriptor_, begin, count, to) == count) return;
+  fail(folder_, "the scratch file of {} bytes cannot be read at byte {}: {}", size_, begin,
+       errno != 0 ? system_reason(errno) : "it ends there");
 }
 
 void ScratchFile::release(std::uint64_t begin, std::uint64_t count) {

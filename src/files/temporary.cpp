@@ -4,25 +4,17 @@
 #include <signal.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <cstdio>
+#include <set>
 #include <system_error>
 #include <thread>
-#include <utility>
-#include <vector>
 
 namespace flaunay::io {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct Existing {
-  std::string path;
-  Temporary::Contents contents;
-};
-
 struct Registry {
   std::recursive_mutex mutex;
-  std::vector<Existing> existing;
+  std::set<std::string> paths;
 };
 
 // Never destroyed, because the thread that waits for signals may use it until the process ends.
@@ -31,33 +23,21 @@ Registry& registry() {
   return all;
 }
 
-void remove_existing(const Existing& temporary) {
-  std::error_code ignored;
-  if (temporary.contents == Temporary::Contents::all) {
-    fs::remove_all(temporary.path, ignored);
-  } else {
-    fs::remove(temporary.path, ignored);
-  }
-}
-
-void end_by(int signal_number) {
-  ::signal(signal_number, SIG_DFL);
-  sigset_t only;
-  sigemptyset(&only);
-  sigaddset(&only, signal_number);
-  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
-  ::raise(signal_number);
-}
-
 void wait_and_clean_up(const sigset_t& signals) {
   int signal_number = 0;
   if (sigwait(&signals, &signal_number) != 0) return;
   Registry& all = registry();
   // Locked until the end, so that no more are made.
   all.mutex.lock();
-  // The newest first, because it may be in an older one.
-  std::for_each(all.existing.rbegin(), all.existing.rend(), remove_existing);
-  end_by(signal_number);
+  // Backwards, so that a folder comes after what is in it.
+  std::for_each(all.paths.rbegin(), all.paths.rend(),
+                [](const std::string& path) { std::remove(path.c_str()); });
+  ::signal(signal_number, SIG_DFL);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal_number);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  ::raise(signal_number);
 }
 
 }  // namespace
@@ -73,7 +53,7 @@ void clean_up_when_interrupted() {
       sigaddset(&awaited, signal_number);
     }
   }
-  // A thread that waits may do what a signal handler may not, such as listing a folder. All other threads
+  // A thread that waits may do what a signal handler may not, such as taking a lock. All other threads
   // inherit the blocked signals.
   pthread_sigmask(SIG_BLOCK, &awaited, nullptr);
   try {
@@ -86,33 +66,16 @@ void clean_up_when_interrupted() {
 
 Uninterrupted::Uninterrupted() : lock_(registry().mutex) {}
 
-Temporary::Temporary(std::string path, Contents contents) : path_(std::move(path)), contents_(contents) {
+Temporary::Temporary(std::string path) : path_(std::move(path)) {
   const Uninterrupted registered;
-  registry().existing.push_back({path_, contents_});
-}
-
-Temporary::Temporary(Temporary&& other) noexcept { *this = std::move(other); }
-
-Temporary& Temporary::operator=(Temporary&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(contents_, other.contents_);
-  return *this;
+  registry().paths.insert(path_);
 }
 
 Temporary::~Temporary() {
   if (path_.empty()) return;
   const Uninterrupted removed;
-  remove_existing({path_, contents_});
-  release();
-}
-
-void Temporary::release() {
-  const Uninterrupted released;
-  auto& existing = registry().existing;
-  const auto own = std::find_if(existing.begin(), existing.end(),
-                                [this](const Existing& one) { return one.path == path_; });
-  if (own != existing.end()) existing.erase(own);
-  path_.clear();
+  std::remove(path_.c_str());
+  registry().paths.erase(path_);
 }
 
 }  // namespace flaunay::io

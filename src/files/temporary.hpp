@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <string>
+#include <utility>
 
 namespace flaunay::io {
 
@@ -19,29 +20,24 @@ class Uninterrupted {
   std::unique_lock<std::recursive_mutex> lock_;
 };
 
-/// A file or folder that the destructor removes.
+/// A file, or a folder, that the destructor removes if it is still there and, in the case of a folder, empty.
 class Temporary {
  public:
-  enum class Contents {
-    none,  ///< a file; or a folder that is kept if something is in it
-    all,   ///< a folder with everything in it
-  };
-
   Temporary() = default;  ///< none
   /// Takes over what is at path. To be called in the scope of the Uninterrupted in which it was made.
-  explicit Temporary(std::string path, Contents contents = Contents::none);
-  Temporary(Temporary&& other) noexcept;
-  Temporary& operator=(Temporary&& other) noexcept;
+  explicit Temporary(std::string path);
+  Temporary(Temporary&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  Temporary& operator=(Temporary&& other) noexcept {
+    std::swap(path_, other.path_);
+    return *this;
+  }
   ~Temporary();
 
-  /// Empty if there is none, or no more.
+  /// Empty if there is none.
   const std::string& path() const { return path_; }
-  /// What is at the path stays there, if anything.
-  void release();
 
  private:
   std::string path_;
-  Contents contents_ = Contents::none;
 };
 
 }  // namespace flaunay::io

@@ -537,14 +537,11 @@ TEST_F(IoTest, OutputsThatCannotBeCreatedSayWhy) {
       {path(std::string(300, 'n') + ".off"), "name too long"},
   };
   for (const auto& [target, reason] : cases) {
-    expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { check_mesh_output(t); });
-    expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { check_output(t, ".off"); });
+    expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { Outputs().announce(t); });
     expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { write_mesh(t, points, mesh); });
   }
   // The .node beside an .ele counts too.
   std::filesystem::create_directory(path("b.node"));
-  expect_error(ErrorKind::input, path("b.node: "), {"Is a directory"},
-               [&] { check_mesh_output(path("b.ele")); });
   expect_error(ErrorKind::input, path("b.node: "), {"Is a directory"},
                [&] { write_mesh(path("b.ele"), points, mesh); });
   EXPECT_EQ(names(), (std::set<std::string>{"folder.off", "file", "b.node"}));
@@ -563,7 +560,7 @@ TEST_F(IoTest, UnwritableFolderSaysWhy) {
   }
   for (const char* name : {"closed/a.off", "kept.off"}) {
     expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
-                 [&] { check_mesh_output(path(name)); });
+                 [&] { Outputs().announce(path(name)); });
     expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
                  [&] { write_mesh(path(name), {kSquare}, square_mesh()); });
   }
@@ -571,30 +568,35 @@ TEST_F(IoTest, UnwritableFolderSaysWhy) {
   EXPECT_EQ(read(path("kept.off")), "kept");
 }
 
-TEST_F(IoTest, CheckingLeavesEverythingAsItWas) {
+TEST_F(IoTest, AnnouncedFilesAreGoneUnlessTheyAreWritten) {
   const std::string kept = write("kept.off", "kept");
-  for (const char* name :
-       {"a.ele", "a.off", "a.ply", "a.vtu", "a.obj", "a.npy", "a.svg", "A.SVG", "kept.off"}) {
-    EXPECT_NO_THROW(check_mesh_output(path(name))) << name;
+  for (const char* name : {"a.npy", "kept.off"}) {
+    Outputs outputs;
+    outputs.announce(path(name));
+    EXPECT_EQ(names().size(), 2u) << "a partial file";
   }
-  EXPECT_NO_THROW(check_output(path("a.json"), ".json"));
   EXPECT_EQ(names(), std::set<std::string>{"kept.off"});
+  Outputs outputs;
+  for (const char* name : {"a.npy", "b.npy", "kept.off"}) outputs.announce(path(name));
+  outputs.open(path("b.npy")).print("written");
+  outputs.commit();
+  EXPECT_EQ(names(), (std::set<std::string>{"b.npy", "kept.off"}));
   EXPECT_EQ(read(kept), "kept");
 }
 
 TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
   for (const char* name : {"a.stl", "a", "-", "a.node"}) {
     expect_error(ErrorKind::usage, std::string(name) + ": ",
-                 {".ele, .off, .ply, .vtu, .obj, .npy, .geojson, .svg"}, [&] { check_mesh_output(name); });
+                 {".ele, .off, .ply, .vtu, .obj, .npy, .geojson, .svg"}, [&] { mesh_files(name); });
     expect_error(ErrorKind::usage, std::string(name) + ": ", {".svg"}, [&] { write_mesh(name, {}, {}); });
   }
   expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},
-               [] { check_output("a.npy", ".json"); });
+               [] { check_ending("a.npy", ".json"); });
 }
 
 TEST_F(IoTest, FullDeviceIsAnError) {
   std::filesystem::create_symlink("/dev/full", path("full.off"));
-  EXPECT_NO_THROW(check_mesh_output(path("full.off")));
+  EXPECT_NO_THROW(Outputs().announce(path("full.off")));
   expect_error(ErrorKind::input, path("full.off: "), {"No space left"},
                [&] { write_mesh(path("full.off"), {kSquare}, square_mesh()); });
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
@@ -648,7 +650,7 @@ TEST_F(IoTest, ADanglingLinkIsFollowed) {
   std::filesystem::create_directory(path("folder"));
   std::filesystem::create_symlink("folder/second.off", path("first.off"));
   std::filesystem::create_symlink("../real.off", path("folder/second.off"));
-  EXPECT_NO_THROW(check_mesh_output(path("first.off")));
+  EXPECT_NO_THROW(Outputs().announce(path("first.off")));
   EXPECT_FALSE(std::filesystem::exists(path("real.off")));
   write_mesh(path("first.off"), {kSquare}, square_mesh());
   EXPECT_TRUE(std::filesystem::is_symlink(path("first.off")));
@@ -658,30 +660,38 @@ TEST_F(IoTest, ADanglingLinkIsFollowed) {
   std::filesystem::create_symlink("b.off", path("a.off"));
   std::filesystem::create_symlink("a.off", path("b.off"));
   expect_error(ErrorKind::input, path("a.off"), {"symbolic links"},
-               [&] { check_mesh_output(path("a.off")); });
+               [&] { Outputs().announce(path("a.off")); });
   std::filesystem::create_symlink("nowhere/c.off", path("c.off"));
-  expect_error(ErrorKind::input, path("c.off"), {"No such file"}, [&] { check_mesh_output(path("c.off")); });
+  expect_error(ErrorKind::input, path("c.off"), {"No such file"}, [&] { Outputs().announce(path("c.off")); });
 }
 
-TEST_F(IoTest, TargetsAreTheSameByWhateverPath) {
+TEST_F(IoTest, TwoOutputsOfOnePathAreRefusedHoweverItIsWritten) {
   std::filesystem::create_directory(path("folder"));
   std::filesystem::create_directory_symlink("folder", path("link"));
   std::filesystem::create_symlink("folder/a", path("dangling"));
-  const auto same = [&](const std::string& a, const std::string& b) {
-    return is_same(find_target(path(a)), find_target(path(b)));
-  };
+  std::filesystem::create_symlink("/dev/null", path("null"));
   for (const std::string state : {"new", "existing"}) {
     SCOPED_TRACE(state);
     for (const char* other : {"folder/a", "./folder//a", "link/a", "folder/../folder/a", "dangling"}) {
-      EXPECT_TRUE(same("folder/a", other)) << other;
+      Outputs outputs;
+      outputs.announce(path("folder/a"));
+      expect_error(ErrorKind::usage, path(other), {"same path"}, [&] { outputs.announce(path(other)); });
     }
-    for (const char* other : {"a", "folder/b", "folder/\xc3\xa4"}) {
-      EXPECT_FALSE(same("folder/a", other)) << other;
-    }
+    Outputs outputs;
+    outputs.announce(path("folder/a"));
+    for (const char* other : {"a", "folder/b", "folder/\xc3\xa4", "null"}) outputs.announce(path(other));
+    expect_error(ErrorKind::usage, "/dev/null", {"same path"}, [&] { outputs.announce("/dev/null"); });
     write("folder/a", "");
   }
-  write("folder/b", "");
-  EXPECT_FALSE(same("folder/a", "folder/b"));
+}
+
+TEST_F(IoTest, NamesMayBeAsLongAsTheSystemPermits) {
+  const std::string name(255, 'n'), other = name.substr(0, 254) + 'm';
+  Outputs outputs;
+  outputs.open(path(name)).print("one");
+  outputs.open(path(other)).print("other");
+  outputs.commit();
+  EXPECT_EQ(read(path(name)) + read(path(other)), "oneother");
 }
 
 TEST_F(IoTest, OutputsAreCommittedTogether) {
@@ -700,22 +710,35 @@ TEST_F(IoTest, OutputsAreCommittedTogether) {
 
 TEST_F(IoTest, IfOneOutputFailsAllStayAsTheyWere) {
   write("old", "old");
-  for (const std::string name : {"folder", "./new", "./old"}) {
-    SCOPED_TRACE(name);
-    Outputs outputs;
-    outputs.open(path("old")).print("other");
-    outputs.open(path("new")).print("other");
-    outputs.open(path(name)).print("other");
-    // In the way of an output that was well when it was opened; the others have the path of an earlier one.
-    if (name == "folder") std::filesystem::create_directory(path(name));
-    const bool is_folder = name == "folder";
-    expect_error(is_folder ? ErrorKind::input : ErrorKind::usage, path(name),
-                 {is_folder ? "Is a directory" : "same path", "all outputs are as they were"},
-                 [&] { outputs.commit(); });
-    EXPECT_EQ(read(path("old")), "old");
-    EXPECT_FALSE(std::filesystem::exists(path("new")));
-  }
-  EXPECT_EQ(names(), (std::set<std::string>{"old", "folder"}));
+  write("removed", "old");
+  Outputs outputs;
+  outputs.open(path("old")).print("other");
+  outputs.open(path("new")).print("other");
+  outputs.remove(path("removed"));
+  outputs.open(path("folder")).print("other");
+  // In the way of an output that was well when it was opened.
+  std::filesystem::create_directory(path("folder"));
+  expect_error(ErrorKind::input, path("folder"), {"Is a directory", "all outputs are as they were"},
+               [&] { outputs.commit(); });
+  outputs = Outputs();
+  EXPECT_EQ(names(), (std::set<std::string>{"old", "folder", "removed"}));
+  EXPECT_EQ(read(path("old")) + read(path("removed")), "oldold");
+}
+
+TEST_F(IoTest, OldFilesAreRemovedWithTheCommit) {
+  write("removed", "old");
+  write("replaced", "old");
+  Outputs outputs;
+  outputs.remove(path("removed"));
+  outputs.remove(path("replaced"));
+  outputs.open(path("replaced")).print("new");
+  outputs.close();
+  outputs.open(path("last")).print("last");
+  outputs.write_out();
+  EXPECT_EQ(read(path("replaced")) + read(path("removed")), "oldold");
+  outputs.commit();
+  EXPECT_EQ(names(), (std::set<std::string>{"replaced", "last"}));
+  EXPECT_EQ(read(path("replaced")) + read(path("last")), "newlast");
 }
 
 TEST(PrintableTest, EscapesWhatATerminalWouldObey) {

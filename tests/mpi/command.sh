@@ -66,7 +66,7 @@ case "$1" in
     on 3 kuzmin.npy --triangles wide.npy --index 64
     on 3 kuzmin.npy --triangles narrow.npy
     python3 "$here/arrays.py" width
-    [[ -z $(find . -name '.*.npy.*') ]] || fail 'temporary files are left'
+    [[ -z $(find . -name '*.partial') ]] || fail 'temporary files are left'
     ;;
 
   errors)
@@ -108,7 +108,7 @@ case "$1" in
     wait "$launcher" || got=$?
     ((got != 0)) || fail 'the exit code is 0 though a rank was killed'
     [[ $(cat t.npy) == old && ! -e n.npy ]] || fail 'an output has changed'
-    [[ -z $(find . -name '.*.npy.*') ]] || fail 'temporary files are left'
+    [[ -z $(find . -name '*.partial') ]] || fail 'temporary files are left'
     ;;
 
   *) fail "unknown test $1" ;;

@@ -1,6 +1,5 @@
 /* To be preloaded: a system with the faults that FLAUNAY_FAULTS lists, separated by commas:
    no-unnamed-files       as on network file systems
-   no-exchange            no renameat2
    no-links               no hard links
    ignore-case            names in upper case are those in lower case
    no-threads             none can be made
@@ -101,13 +100,6 @@ DEFINE_OPEN(open64)
     return real(actual(path, &lower), status);                        \
   }
 DEFINE_STAT(stat)
-DEFINE_STAT(lstat)
-
-int access(const char* path, int mode) {
-  REAL("access", (const char*, int))
-  struct path lower;
-  return real(actual(path, &lower), mode);
-}
 
 int faccessat(int folder, const char* path, int mode, int flags) {
   REAL("faccessat", (int, const char*, int, int))
@@ -120,14 +112,6 @@ int rename(const char* from, const char* to) {
   if (rename_fails(to)) return refuse(EIO);
   struct path lower_from, lower_to;
   return real(actual(from, &lower_from), actual(to, &lower_to));
-}
-
-int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) {
-  REAL("renameat2", (int, const char*, int, const char*, unsigned))
-  if (is_listed("no-exchange")) return refuse(EINVAL);
-  if (rename_fails(to)) return refuse(EIO);
-  struct path lower_from, lower_to;
-  return real(from_folder, actual(from, &lower_from), to_folder, actual(to, &lower_to), flags);
 }
 
 int link(const char* from, const char* to) {

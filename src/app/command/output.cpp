@@ -1,12 +1,12 @@
 #include "app/command/output.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "app/files/mesh.hpp"
 #include "app/files/points.hpp"
@@ -23,44 +23,35 @@ bool print(const std::string& text) {
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 
-OutputFiles::OutputFiles(const std::string& input, const std::vector<std::string>& more) : inputs_(more) {
+OutputFiles::OutputFiles(const std::string& input, std::vector<std::string> more) : inputs_(std::move(more)) {
   inputs_.push_back(input);
 }
 
-void OutputFiles::reserve(const std::string& path) {
-  const io::Target target = io::find_target(path);
-  for (const std::string& name : inputs_) {
-    struct stat input {};
-    const bool is_file = name != "-" && ::stat(name.c_str(), &input) == 0;
-    if (is_file && target.exists && target.id == io::file_id(input)) {
-      throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the input", path));
-    }
+void OutputFiles::announce(const std::string& path) {
+  const auto is_output = [&](const std::string& input) {
+    return input != "-" && io::is_one_file(input, path);
+  };
+  if (std::any_of(inputs_.begin(), inputs_.end(), is_output)) {
+    throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the input", path));
   }
-  for (const io::Target& other : announced_) {
-    if (io::is_same(target, other)) {
-      throw Error(ErrorKind::usage, fmt::format("{}: two outputs have the same path", path));
-    }
-  }
-  announced_.push_back(target);
+  files_.announce(path);
 }
 
 void OutputFiles::add_mesh(const std::string& path, bool with_constraints) {
   if (path.empty()) return;
-  io::check_mesh_output(path, with_constraints);
-  for (const std::string& file : io::mesh_files(path, with_constraints)) reserve(file);
+  for (const std::string& file : io::mesh_files(path, with_constraints)) announce(file);
 }
 
 void OutputFiles::add(const std::string& path, const std::string& ending) {
   if (path.empty()) return;
-  io::check_output(path, ending);
-  reserve(path);
+  io::check_ending(path, ending);
+  announce(path);
 }
 
 void OutputFiles::add_points(const std::string& path) {
   if (path == "-") return;
   io::check_points_output(path);
-  io::check_output(path, io::ending_of(path));
-  reserve(path);
+  announce(path);
 }
 
 }  // namespace flaunay::cli

@@ -18,7 +18,7 @@ bool print(const std::string& text);
 class OutputFiles {
  public:
   /// input and more: files that no output may overwrite; "-" for none.
-  explicit OutputFiles(const std::string& input, const std::vector<std::string>& more = {});
+  explicit OutputFiles(const std::string& input, std::vector<std::string> more = {});
 
   /// Announces a mesh in one of the formats of write_mesh. An empty path means that there is none. Throws
   /// Error(usage) if the ending is unknown or another file of this run has the path, Error(input) if the file
@@ -29,14 +29,13 @@ class OutputFiles {
   /// Announces points in one of the formats of write_points, with the same errors. "-" is standard output.
   void add_points(const std::string& path);
 
-  /// Where the announced files are written. Without commit(), nothing changes.
+  /// Where the announced files are written.
   io::Outputs& files() { return files_; }
 
  private:
-  void reserve(const std::string& path);
+  void announce(const std::string& path);
 
   std::vector<std::string> inputs_;
-  std::vector<io::Target> announced_;
   io::Outputs files_;
 };
 

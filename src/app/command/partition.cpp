@@ -52,9 +52,10 @@ research::Partition compute(const PartitionRequest& request, const io::Points& p
 int partition(const PartitionRequest& request) {
   io::check_points_ending(request.input);
   // The folder comes first, because the picture may be in it.
-  PartitionWriter writer(request.folder, request.input, request.force);
+  const io::Temporary folder = make_partition_folder(request.folder, request.input, request.force);
   check_no_partition_file(request.folder, request.picture);
   OutputFiles outputs(request.input);
+  announce_partition(outputs.files(), request.folder);
   outputs.add(request.picture, ".svg");
 
   RunFacts facts;
@@ -69,17 +70,10 @@ int partition(const PartitionRequest& request) {
 
   stopwatch.restart();
   progress.update("writing");
-  writer.write(points, result, {request.input, request.levels, request.cut, request.dividing_paths});
-  if (!request.picture.empty()) {
-    io::write_partition_svg(outputs.files(), request.picture, points, result);
-    outputs.files().write_out();
-  }
-  {
-    const io::Uninterrupted until_kept;
-    writer.place();
-    outputs.files().commit();
-    writer.keep();
-  }
+  write_partition(outputs.files(), request.folder, points, result,
+                  {request.input, request.levels, request.cut, request.dividing_paths});
+  if (!request.picture.empty()) io::write_partition_svg(outputs.files(), request.picture, points, result);
+  outputs.files().commit();
   facts.writing_seconds = stopwatch.seconds();
   progress.finish();
 

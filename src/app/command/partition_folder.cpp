@@ -1,12 +1,8 @@
 #include "app/command/partition_folder.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -18,7 +14,6 @@
 #include "app/files/npy.hpp"
 #include "app/files/region.hpp"
 #include "files/file.hpp"
-#include "files/output.hpp"
 
 namespace flaunay::cli {
 
@@ -58,7 +53,7 @@ std::vector<fs::path> partition_files(const std::string& folder) {
 // folder.
 void check_in_the_way(const fs::path& file, const std::string& input, bool force) {
   std::error_code error;
-  if (input != "-" && fs::equivalent(file, input, error)) {
+  if (input != "-" && io::is_one_file(file.string(), input)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: the partition would overwrite the input; choose another folder", input));
   }
@@ -70,33 +65,6 @@ void check_in_the_way(const fs::path& file, const std::string& input, bool force
   if (fs::is_directory(file, error)) {
     throw Error(ErrorKind::usage, fmt::format("{}: is a folder, and in the way", file.string()));
   }
-}
-
-io::Temporary make_folder(const std::string& folder) {
-  const io::Uninterrupted made;
-  std::error_code error;
-  const bool is_new = fs::create_directory(folder, error);
-  if (error) io::fail(folder, "cannot be made: {}", error.message());
-  return is_new ? io::Temporary(folder) : io::Temporary();
-}
-
-io::Temporary make_aside(const std::string& folder) {
-  const io::Uninterrupted made;
-  std::string path = inside(folder, ".flaunay-XXXXXX");
-  if (::mkdtemp(path.data()) == nullptr) {
-    io::fail(folder, "cannot be written: {}", io::system_reason(errno));
-  }
-  return io::Temporary(path, io::Temporary::Contents::all);
-}
-
-// Waits until everything that was written there is on the disk: once, because there may be thousands of
-// files.
-void write_to_disk(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool is_written = descriptor >= 0 && ::syncfs(descriptor) == 0;
-  const int reason = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!is_written) io::fail(folder, "cannot be written: {}", io::system_reason(reason));
 }
 
 std::string description(const research::Partition& partition, const PartitionFacts& facts) {
@@ -159,72 +127,29 @@ void check_points(const std::string& path, const io::StoredRegion& stored, const
 
 }  // namespace
 
-PartitionWriter::PartitionWriter(const std::string& folder, const std::string& input, bool force)
-    : folder_(folder), made_folder_(make_folder(folder)) {
+io::Temporary make_partition_folder(const std::string& folder, const std::string& input, bool force) {
+  const io::Uninterrupted made;
+  std::error_code error;
+  const bool is_new = fs::create_directory(folder, error);
+  if (error) io::fail(folder, "cannot be made: {}", error.message());
   for (const fs::path& file : partition_files(folder)) check_in_the_way(file, input, force);
-  aside_ = make_aside(folder);
+  return is_new ? io::Temporary(folder) : io::Temporary();
 }
 
-PartitionWriter::~PartitionWriter() { take_back(); }
+void announce_partition(io::Outputs& outputs, const std::string& folder) {
+  outputs.announce(inside(folder, kFinished));
+  outputs.announce(inside(folder, kDescription));
+}
 
-void PartitionWriter::write(const io::Points& points, const research::Partition& partition,
-                            const PartitionFacts& facts) {
-  const std::string& aside = aside_.path();
+void write_partition(io::Outputs& outputs, const std::string& folder, const io::Points& points,
+                     const research::Partition& partition, const PartitionFacts& facts) {
+  for (const fs::path& old : partition_files(folder)) outputs.remove(old.string());
   for (std::size_t r = 0; r < partition.regions.size(); ++r) {
-    io::Outputs region;
-    io::write_region(region, region_stem(aside, r), points, partition.regions[r]);
-    region.commit_without_waiting();
+    io::write_region(outputs, region_stem(folder, r), points, partition.regions[r]);
+    outputs.close();
   }
-  io::Outputs others;
-  io::write_npy_indices(others, inside(aside, kFinished), partition.triangles, 3);
-  others.open(inside(aside, kDescription)).print("{}", description(partition, facts));
-  others.commit_without_waiting();
-  write_to_disk(aside);
-}
-
-void PartitionWriter::place() {
-  try {
-    place_files();
-  } catch (const Error& error) {
-    throw Error(error.kind(), fmt::format("{}; {}", error.what(), take_back()));
-  }
-}
-
-void PartitionWriter::place_files() {
-  const std::string replaced = inside(aside_.path(), "replaced");
-  std::error_code error;
-  fs::create_directory(replaced, error);
-  if (error) io::fail(replaced, "cannot be made: {}", error.message());
-  for (const fs::path& file : partition_files(folder_)) {
-    move(file.string(), inside(replaced, file.filename().string()));
-  }
-  for (const fs::path& file : partition_files(aside_.path())) {
-    move(file.string(), inside(folder_, file.filename().string()));
-  }
-}
-
-void PartitionWriter::keep() {
-  moves_.clear();
-  made_folder_.release();
-}
-
-void PartitionWriter::move(const std::string& from, const std::string& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error) io::fail(to, "cannot be put in place: {}", error.message());
-  moves_.push_back({from, to});
-}
-
-std::string PartitionWriter::take_back() {
-  std::string left;
-  for (; !moves_.empty(); moves_.pop_back()) {
-    std::error_code error;
-    fs::rename(moves_.back().to, moves_.back().from, error);
-    if (error) left = aside_.path();
-  }
-  if (left.empty()) return "the folder is as it was";
-  aside_.release();
-  return fmt::format("files are left in {}: the old ones in its folder 'replaced'", left);
+  io::write_npy_indices(outputs, inside(folder, kFinished), partition.triangles, 3);
+  outputs.open(inside(folder, kDescription)).print("{}", description(partition, facts));
 }
 
 PartitionReader::PartitionReader(const std::string& folder) : folder_(folder) {
@@ -277,14 +202,12 @@ research::Region PartitionReader::read_region(std::size_t r, const std::string& 
 void check_no_partition_file(const std::string& folder, const std::string& path) {
   if (path.empty()) return;
   const io::Target target = io::find_target(path);
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0 || !(target.folder_id == io::file_id(status))) return;
+  if (!io::is_one_file(target.folder, folder)) return;
   // A file may have the name of another one in different case.
   const std::vector<fs::path> files = partition_files(folder);
-  const auto is_target = [&](const fs::path& file) {
-    return target.exists && ::stat(file.c_str(), &status) == 0 && target.id == io::file_id(status);
-  };
-  if (is_partition_name(target.name) || std::any_of(files.begin(), files.end(), is_target)) {
+  const auto is_target = [&](const fs::path& file) { return io::is_one_file(file.string(), target.path); };
+  if (is_partition_name(fs::path(target.path).filename().string()) ||
+      std::any_of(files.begin(), files.end(), is_target)) {
     throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the partition", path));
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/files/points.hpp"
+#include "files/output.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/research.hpp"
 
@@ -21,40 +22,17 @@ struct PartitionFacts {
   research::Hull dividing_paths = research::Hull::prune;
 };
 
-/// Writes a partition. All files are written to a temporary folder; place() moves them to their places.
-/// Without keep(), the destructor leaves the folder as it was, and so does a signal that ends the process.
-class PartitionWriter {
- public:
-  /// Makes the folder if it is missing. input: the file that must not be overwritten; "-" for none. Throws
-  /// Error(usage) if the folder holds files of a partition and force is not set, Error(input) if nothing can
-  /// be written there.
-  PartitionWriter(const std::string& folder, const std::string& input, bool force);
-  ~PartitionWriter();
-  PartitionWriter(const PartitionWriter&) = delete;
-  PartitionWriter& operator=(const PartitionWriter&) = delete;
+/// Makes the folder of a partition if it is missing; then it is removed again unless something is in it in
+/// the end. input: the file that must not be overwritten; "-" for none. Throws Error(usage) if the folder
+/// holds files of a partition and force is not set.
+io::Temporary make_partition_folder(const std::string& folder, const std::string& input, bool force);
+/// Throws Error(input) if nothing can be written there.
+void announce_partition(io::Outputs& outputs, const std::string& folder);
+/// Writes a partition that replaces the one in the folder, with its solutions.
+void write_partition(io::Outputs& outputs, const std::string& folder, const io::Points& points,
+                     const research::Partition& partition, const PartitionFacts& facts);
 
-  void write(const io::Points& points, const research::Partition& partition, const PartitionFacts& facts);
-  /// Replaces the partition that was in the folder, with its solutions, until the destructor puts it back.
-  void place();
-  /// What place() did is kept.
-  void keep();
-
- private:
-  struct Move {
-    std::string from, to;
-  };
-  void move(const std::string& from, const std::string& to);
-  void place_files();
-  /// Says in words how far that was possible.
-  std::string take_back();
-
-  std::string folder_;
-  io::Temporary made_folder_;  // the folder, if it is new
-  io::Temporary aside_;        // with the new files, and later with those that they replace
-  std::vector<Move> moves_;    // of place()
-};
-
-/// Reads a folder that a PartitionWriter wrote, and finds the solutions.
+/// Reads a folder with a partition, and finds the solutions.
 class PartitionReader {
  public:
   /// Reads partition.json. This and the other members throw Error(input) that names the file.

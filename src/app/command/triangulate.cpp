@@ -160,6 +160,7 @@ int triangulate(const TriangulateRequest& request) {
   std::unique_ptr<Triangulator> triangulator;
   if (do_not_fit(request, about, progress, triangulator)) {
     progress.finish();
+    outputs = OutputFiles("-");  // Chunks announce theirs.
     return triangulate_too_many(request, about, std::move(triangulator));
   }
   facts.opening_seconds = stopwatch.restart();

@@ -473,10 +473,6 @@ std::vector<std::string> mesh_files(const std::string& path, bool with_constrain
   return files;
 }
 
-void check_mesh_output(const std::string& path, bool with_constraints) {
-  for (const std::string& file : mesh_files(path, with_constraints)) OutputFile::check(file);
-}
-
 bool shows_labels(const std::string& path) {
   if (path.empty()) return false;
   const Format format = output_format(path);

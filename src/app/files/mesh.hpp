@@ -30,12 +30,9 @@ void write_mesh(Outputs& outputs, const std::string& path, const Map& map,
                 const ConstrainedTriangulation& mesh, FillRule fill_rule,
                 const std::vector<double>& attributes = {});
 
-/// The files that write_mesh writes for path: some formats have more than one.
-std::vector<std::string> mesh_files(const std::string& path, bool with_constraints);
-
-/// Checks a path before any work. Throws Error(usage) for an unknown ending, Error(input) if the file cannot
-/// be created. Leaves no new file behind.
-void check_mesh_output(const std::string& path, bool with_constraints = false);
+/// The files that write_mesh writes for path: some formats have more than one. Throws Error(usage) for an
+/// unknown ending.
+std::vector<std::string> mesh_files(const std::string& path, bool with_constraints = false);
 
 /// Whether the format of path has regions and depths.
 bool shows_labels(const std::string& path);

@@ -363,7 +363,7 @@ std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t
 }
 
 std::vector<std::int32_t> read_neighbors(const std::string& path) {
-  if (ending_of(path) != ".npy") fail_ending(path, ".npy");
+  check_ending(path, ".npy");
   return read_npy_indices(path, -1, "neighbour");
 }
 

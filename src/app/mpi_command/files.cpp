@@ -1,13 +1,8 @@
 #include "app/mpi_command/files.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <random>
 
 #include "app/files/npy.hpp"
 #include "app/files/points.hpp"
@@ -77,19 +72,6 @@ void write_values(MPI_File file, std::uint64_t begin, const std::vector<std::int
   }
 }
 
-/// In the folder of the target, so that it can be renamed.
-std::string temporary_name(const io::Target& target) {
-  std::random_device random;
-  return fmt::format("{}.{}.{:08x}{:08x}", target.folder, target.name, random(), random());
-}
-
-mode_t mode_of(const io::Target& target) {
-  if (target.exists) return target.mode & 07777;
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  return 0666 & ~mask;
-}
-
 }  // namespace
 
 PointFile::PointFile(Ranks& ranks, const std::string& path) : path_(path) {
@@ -138,22 +120,23 @@ std::vector<double> PointFile::read(Ranks& ranks) const {
   return points;
 }
 
-IndexFile::IndexFile(Ranks& ranks, const std::string& path, std::size_t columns, std::uint64_t rows,
-                     io::IndexType type)
+IndexFile::IndexFile(Ranks& ranks, io::Outputs& outputs, const std::string& path, std::size_t columns,
+                     std::uint64_t rows, io::IndexType type)
     : path_(path), columns_(columns), rows_(rows), type_(type) {
   std::vector<char> name;
   ranks.together([&] {
     if (ranks.rank() != 0) return;
-    target_ = io::find_target(path);
-    if (target_.is_direct) io::fail(path, "is no regular file, which ranks can write at the same time");
-    const std::string text = temporary_name(target_);
-    name.assign(text.begin(), text.end());
+    const std::string& partial = outputs.open(path).partial_path();
+    name.assign(partial.begin(), partial.end());
   });
   ranks.broadcast(name);
-  ranks.together([&] { temporary_ = io::Temporary(std::string(name.begin(), name.end())); });
-  const int code = MPI_File_open(ranks.communicator(), temporary_.path().c_str(),
-                                 MPI_MODE_CREATE | MPI_MODE_EXCL | MPI_MODE_WRONLY, MPI_INFO_NULL, &file_);
-  ranks.together([&] { check_file(code, path_, "created"); });
+  const std::string partial(name.begin(), name.end());
+  ranks.together([&] {
+    if (ranks.rank() != 0) partial_ = io::Temporary(partial);
+  });
+  const int code =
+      MPI_File_open(ranks.communicator(), partial.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file_);
+  ranks.together([&] { check_file(code, path_, "opened"); });
 }
 
 // Closing is collective; after an error, all ranks are here.
@@ -184,14 +167,6 @@ void IndexFile::write(Ranks& ranks, const std::vector<std::int64_t>& values, std
     check_file(synced, path_, "written");
     check_file(closed, path_, "written");
   });
-}
-
-void IndexFile::place() {
-  const char* const from = temporary_.path().c_str();
-  // Some file systems have no modes.
-  if (::chmod(from, mode_of(target_)) != 0) errno = 0;
-  if (std::rename(from, target_.path().c_str()) != 0)
-    io::fail(path_, "cannot replace what is there: {}", io::system_reason(errno));
 }
 
 }  // namespace flaunay::mpi

@@ -31,31 +31,26 @@ class PointFile {
   bool is_double_ = true;
 };
 
-/// A .npy file of indices. It has a temporary name until it is placed.
+/// A .npy file of indices among the outputs of rank 0.
 class IndexFile {
  public:
-  /// columns: 0: an array of one dimension. rows: of all ranks.
-  IndexFile(Ranks& ranks, const std::string& path, std::size_t columns, std::uint64_t rows,
-            io::IndexType type);
+  /// outputs: those of rank 0, which commits them; path must be that of a regular file. columns: 0: an array
+  /// of one dimension. rows: of all ranks.
+  IndexFile(Ranks& ranks, io::Outputs& outputs, const std::string& path, std::size_t columns,
+            std::uint64_t rows, io::IndexType type);
   ~IndexFile();
   IndexFile(const IndexFile&) = delete;
   IndexFile& operator=(const IndexFile&) = delete;
 
   /// Writes this rank's values, whose rows begin at first_row, and closes the file when it is on the disk.
   void write(Ranks& ranks, const std::vector<std::int64_t>& values, std::uint64_t first_row);
-  /// Gives the file its name. On rank 0 alone, when all files are written; throws Error(input).
-  void place();
-  /// To be called by all ranks afterwards: there is nothing left to remove.
-  void release() { temporary_.release(); }
 
  private:
   std::string path_;
   std::size_t columns_;
   std::uint64_t rows_;
   io::IndexType type_;
-  io::Target target_;  // on rank 0
-  // Every rank removes it if this one ends early.
-  io::Temporary temporary_;
+  io::Temporary partial_;  // on the other ranks, which remove it if rank 0 is killed
   MPI_File file_ = MPI_FILE_NULL;
 };
 

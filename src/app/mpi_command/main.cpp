@@ -22,6 +22,7 @@
 #include "app/command/results.hpp"
 #include "app/mpi_command/files.hpp"
 #include "files/disk_space.hpp"
+#include "files/mesh_stream.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/mpi.hpp"
 
@@ -158,9 +159,12 @@ io::IndexType check_outputs(const Request& request, std::uint64_t points) {
 }
 
 int triangulate(Ranks& ranks, const Request& request) {
-  cli::OutputFiles outputs(request.input);
   ranks.together([&] {
-    if (ranks.rank() == 0) cli::announce(outputs, request.results);
+    if (ranks.rank() != 0) return;
+    // Not kept, because other ranks do not know the files yet, which they remove if this one is killed.
+    cli::OutputFiles announced(request.input);
+    cli::announce(announced, request.results);
+    for (const std::string& path : request.results.arrays) io::check_stream_output(path);
   });
   cli::Progress progress(!request.quiet && ranks.rank() == 0);
   cli::Stopwatch stopwatch;
@@ -189,26 +193,23 @@ int triangulate(Ranks& ranks, const Request& request) {
   progress.update("writing");
   stopwatch.restart();
   const auto shares = shares_of(mesh);
+  io::Outputs outputs;
   std::vector<std::unique_ptr<IndexFile>> files;
   for (std::size_t k = 0; k < shares.size(); ++k) {
     const std::string& path = request.results.arrays[k];
     if (path.empty()) continue;
     files.push_back(
-        std::make_unique<IndexFile>(ranks, path, cli::kArrayFiles[k].columns, shares[k].rows, type));
+        std::make_unique<IndexFile>(ranks, outputs, path, cli::kArrayFiles[k].columns, shares[k].rows, type));
     files.back()->write(ranks, shares[k].values, shares[k].first_row);
   }
   ranks.together([&] {
     if (ranks.rank() != 0) return;
     if (!request.results.stats.empty()) {
-      outputs.files()
-          .open(request.results.stats)
+      outputs.open(request.results.stats)
           .print("{}", statistics_json(request, mesh.statistics, uses, reading, stopwatch.seconds()));
     }
-    outputs.files().write_out();
-    for (const auto& each : files) each->place();
-    outputs.files().commit();
+    outputs.commit();
   });
-  for (const auto& each : files) each->release();
   progress.finish();
   if (!request.quiet && ranks.rank() == 0) cli::print(summary(mesh.statistics, ranks.size()));
   return cli::kSuccess;
