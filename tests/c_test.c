@@ -412,6 +412,40 @@ static void test_tables_of_triangles(void) {
   CHECK(fails(flaunay_vertex_neighbors(NULL, 1, kTriangle, 3, 3, starts, neighbors), usage, "triangles"));
 }
 
+static void test_measures_of_triangles(void) {
+  // A square with its diagonal, and a point far off.
+  const double places[] = {0, 0, 6, 0, 6, 6, 0, 6, 100, 90};
+  const int32_t corners[] = {0, 1, 2, 0, 2, 3, 1, 4, 2}, beyond[] = {2, 1, -1, -1, -1, 0, -1, 0, -1};
+  int8_t turns[3], angles[9];
+  double radii[3];
+  int32_t first[3];
+  CHECK(flaunay_triangle_turns(places, 5, corners, 3, turns) == FLAUNAY_SUCCESS);
+  CHECK(turns[0] == 1 && turns[1] == 1 && turns[2] == 1);
+  CHECK(flaunay_triangle_angles(places, 5, corners, 3, angles) == FLAUNAY_SUCCESS);
+  const int8_t expected[] = {1, 0, 1, 1, 1, 0, 1, 1, -1};
+  CHECK(memcmp(angles, expected, sizeof expected) == 0);
+  CHECK(flaunay_circumradii(places, 5, corners, 3, radii) == FLAUNAY_SUCCESS);
+  CHECK(fabs(radii[0] - sqrt(18)) < 1e-14 && radii[1] == radii[0] && radii[2] > radii[0]);
+  CHECK(flaunay_same_circles(places, 5, corners, 3, beyond, first) == FLAUNAY_SUCCESS);
+  CHECK(first[0] == 0 && first[1] == 0 && first[2] == 2);
+
+  const int32_t others[] = {0, 2, 1, 0, 1, 1};
+  CHECK(flaunay_triangle_turns(places, 5, others, 2, turns) == FLAUNAY_SUCCESS);
+  CHECK(turns[0] == -1 && turns[1] == 0);
+  CHECK(flaunay_circumradii(places, 5, others, 2, radii) == FLAUNAY_SUCCESS && isinf(radii[1]));
+
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  CHECK(flaunay_circumradii(NULL, 0, NULL, 0, NULL) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_circumradii(places, 4, corners, 3, radii), usage, "triangles: 4 is none"));
+  CHECK(fails(flaunay_circumradii(places, 5, corners, 3, NULL), usage, "NULL"));
+  CHECK(fails(flaunay_triangle_turns(NULL, 5, corners, 3, turns), usage, "null"));
+  CHECK(fails(flaunay_triangle_angles(places, 5, NULL, 3, angles), usage, "triangles"));
+  CHECK(fails(flaunay_same_circles(places, 5, corners, 3, NULL, first), usage, "neighbors"));
+  CHECK(fails(flaunay_same_circles(places, 5, corners, 2, beyond, first), usage, "neighbors: 2 is none"));
+  const double wrong[] = {0, 0, NAN, 0, 6, 6};
+  CHECK(fails(flaunay_triangle_angles(wrong, 3, corners, 1, angles), FLAUNAY_ERROR_INPUT, "not finite"));
+}
+
 static void test_on_host(void) {
   flaunay_options options = {.mode = FLAUNAY_MODE_DWYER};
   flaunay_triangulation* mesh = NULL;
@@ -2052,6 +2086,7 @@ static void test_all(void) {
   test_kept_triangulations();
   test_bad_kept_triangulations();
   test_tables_of_triangles();
+  test_measures_of_triangles();
   test_on_host();
   test_progress_and_profile();
   test_a_triangulator_in_use();

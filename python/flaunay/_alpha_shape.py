@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._accurate import signs_of_turns
+from flaunay import _flaunay
 from flaunay._arrays import ArrayLike, Fixed, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -176,10 +176,8 @@ class AlphaShape(Fixed):
         order = np.lexsort((points[members, 1], points[members, 0], ring_of))
         starts = np.cumsum(sizes) - sizes
         smallest = order[starts]
-        before, after = (
-            points[members[starts + (smallest - starts + step) % sizes]] for step in (-1, 1)
-        )
-        outer: Mask = signs_of_turns(before, points[members[smallest]], after) > 0
+        turns = [members[starts + (smallest - starts + step) % sizes] for step in (-1, 0, 1)]
+        outer: Mask = _flaunay.turns(points, np.stack(turns, axis=1)) > 0
         return outer
 
     def rings(self) -> list[Indices]:

@@ -515,6 +515,44 @@ def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indi
     return starts, neighbors
 
 
+def _of_triangles(
+    function: Any, points: _Doubles, triangles: _Indices, results: npt.NDArray[Any], *others: Any
+) -> None:
+    """Has a function of the library write what it finds out about triangles of points."""
+    corners, points = _as_corners(triangles), _as_doubles(points)
+    given = (_address_of(points), _count_points(points), _address_of(corners), len(corners))
+    _check_changed(function(*given, *map(_address_of, others), _address_of(results)))
+
+
+def turns(points: _Doubles, triangles: _Indices) -> npt.NDArray[np.int8]:
+    """Whether the corners of each triangle turn left, 1, or right, -1, or are on one line, 0: exactly."""
+    results = np.empty(len(triangles), np.int8)
+    _of_triangles(library.triangle_turns, points, triangles, results)
+    return results
+
+
+def angles(points: _Doubles, triangles: _Indices) -> npt.NDArray[np.int8]:
+    """Whether the angle at each corner is acute, 1, right, 0, or obtuse, -1: exactly."""
+    results = np.empty((len(triangles), 3), np.int8)
+    _of_triangles(library.triangle_angles, points, triangles, results)
+    return results
+
+
+def circumradii(points: _Doubles, triangles: _Indices) -> _Doubles:
+    """The circumradii of triangles, with a relative error below 2**-45; infinite if there is none."""
+    results = np.empty(len(triangles))
+    _of_triangles(library.circumradii, points, triangles, results)
+    return results
+
+
+def same_circles(points: _Doubles, triangles: _Indices, neighbors: _Indices) -> _Indices:
+    """For each triangle of a triangulation the first one that has the same circumcircle, exactly."""
+    beyond = _as_indices(neighbors, "neighbors", (len(triangles), 3))
+    results = np.empty(len(triangles), np.int32)
+    _of_triangles(library.same_circles, points, triangles, results, beyond)
+    return results
+
+
 # ---- Points and results in device memory; handles of OpenCL are integers, as pyopencl has them
 
 

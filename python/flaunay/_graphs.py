@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._accurate import circumradii_of, signs_of_dots
+from flaunay import _flaunay
 from flaunay._arrays import FloatArray, frozen
 from flaunay._errors import UsageError
 from flaunay._optional import optional
@@ -268,16 +268,8 @@ class TriangleGraphs:
         """
         if len(self.simplices) == 0:
             return frozen(np.ones(len(self.edges), np.bool_))
-        points = np.asarray(self.points, np.float64)
-        corners = [points[self.simplices[:, k]] for k in range(3)]
         # Of all points, a corner opposite to the edge is first in its disc, if any is.
-        acute = np.stack(
-            [
-                signs_of_dots(corners[(k + 1) % 3], corners[(k + 2) % 3], corners[k]) > 0
-                for k in range(3)
-            ],
-            axis=1,
-        )
+        acute = _flaunay.angles(np.asarray(self.points, np.float64), self.simplices) > 0
         triangle, corner = self._edge_order
         beyond = self.neighbors[triangle, corner]
         is_back = self.neighbors[beyond] == triangle[:, None]
@@ -315,8 +307,7 @@ class TriangleGraphs:
         array([2.5])
         """
         points = np.asarray(self.points, np.float64)
-        a, b, c = (points[self.simplices[:, k]] for k in range(3))
-        return frozen(circumradii_of(a, b, c))
+        return frozen(_flaunay.circumradii(points, self.simplices))
 
 
 def minimum_spanning_forest(

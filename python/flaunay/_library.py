@@ -331,6 +331,7 @@ class DeviceInfo(ctypes.Structure):
 
 # The type of the result, and those of the arguments. Arrays and handles are addresses.
 _TRIANGULATE = [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, POINTER(Options), c_void_p]
+_OF_TRIANGLES = [c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]
 _ANSWER = [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t, c_void_p]
 _DEVICE_ANSWER = [c_void_p, POINTER(DevicePoints), POINTER(Enqueue), c_void_p]
 
@@ -385,6 +386,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         c_int,
         [c_void_p, c_size_t, c_void_p, c_size_t, c_size_t, c_void_p, c_void_p],
     ),
+    "triangle_turns": (c_int, _OF_TRIANGLES),
+    "triangle_angles": (c_int, _OF_TRIANGLES),
+    "circumradii": (c_int, _OF_TRIANGLES),
+    "same_circles": (c_int, [*_OF_TRIANGLES, c_void_p]),
     "device_triangulation_create": (c_int, [c_void_p]),
     "device_triangulation_destroy": (None, [c_void_p]),
     "device_triangulation_buffer": (c_void_p, [c_void_p, c_uint]),

@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _cells, _cocircular, _flaunay, _triangulators
+from flaunay import _cells, _flaunay, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -115,10 +115,10 @@ class Voronoi(VoronoiPlots):
         # The vertex of each triangle; None if it has its triangle's index.
         self._vertex_of: Optional[Indices] = None
         if merge:
-            first = _cocircular.same_circle(coordinates, tri.simplices, tri.neighbors)
+            first = _flaunay.same_circles(coordinates, tri.simplices, tri.neighbors)
             distinct, numbers = np.unique(first, return_inverse=True)
             vertices = vertices[distinct]
-            offsets, cells = _cocircular.merge_cells(numbers, offsets, cells, self.unbounded)
+            offsets, cells = _merge_cells(numbers, offsets, cells, self.unbounded)
             self._vertex_of = frozen(numbers.astype(np.int32))
         self.vertices: npt.NDArray[np.float64] = frozen(vertices)
         self.cell_offsets: Indices = frozen(offsets)
@@ -217,3 +217,24 @@ class Voronoi(VoronoiPlots):
             "points cannot be added: make a new diagram of all of them, "
             "Voronoi(numpy.concatenate([voronoi.points, points]))"
         )
+
+
+def _merge_cells(
+    vertices: npt.NDArray[np.intp],
+    offsets: Indices,
+    cells: Indices,
+    unbounded: npt.NDArray[np.bool_],
+) -> tuple[Indices, Indices]:
+    """Offsets and cells, with their vertices replaced by others, without those that follow themselves."""
+    merged = vertices[cells]
+    sizes = np.diff(offsets)
+    cell = np.repeat(np.arange(len(sizes)), sizes)
+    previous = np.arange(len(cells)) - 1
+    first = offsets[:-1][sizes > 0]
+    previous[first] = offsets[1:][sizes > 0] - 1
+    is_first = np.zeros(len(cells), bool)
+    is_first[first] = True
+    # The first vertex of an unbounded cell follows none.
+    kept = (merged != merged[previous]) | (is_first & unbounded[cell])
+    counts = np.bincount(cell[kept], minlength=len(sizes))
+    return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32), merged[kept].astype(np.int32)

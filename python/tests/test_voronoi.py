@@ -9,7 +9,7 @@ import pytest
 import scipy.spatial
 
 import flaunay
-from flaunay import _cocircular
+from flaunay import _flaunay
 
 
 def place(voronoi, vertex):
@@ -195,6 +195,11 @@ def test_what_is_nearly_cocircular_is_not_merged(scale):
 def test_cocircularity_is_that_of_fractions(random):
     # Quadrilaterals on circles, of small and large integers and beyond, half of them moved a little.
     ring = circle(1000)
+    # Each of two triangles, on both sides of an edge.
+    first = 4 * np.arange(100, dtype=np.int32)
+    triangles = np.stack([first + k for k in (0, 1, 2, 1, 0, 3)], axis=1).reshape(-1, 3)
+    neighbors = np.full((200, 3), -1, np.int32)
+    neighbors[:, 2] = np.arange(200) ^ 1
     for scale, digits in (
         (1, 0),
         (12345679, 0),
@@ -205,7 +210,8 @@ def test_cocircularity_is_that_of_fractions(random):
     ):
         quads = random.permuted(np.tile(np.arange(len(ring)), (100, 1)), axis=1)[:, :4]
         points = (ring[quads] + (2.0**digits if digits else 0)) * scale
-        points[::2, 3] = np.nextafter(points[::2, 3], np.inf)
+        moved = points[::2, 3]
+        moved[...] = np.where(moved == 0, 2.0**-40 * scale, np.nextafter(moved, np.inf))
         expected = []
         for a, b, c, d in points:
             rows = [[Fraction(v) for v in row] for row in (a, b, c, d)]
@@ -216,8 +222,9 @@ def test_cocircularity_is_that_of_fractions(random):
                 + (cx * cx + cy * cy) * (ax * by - bx * ay)
             )
             expected.append(determinant == 0)
-        found = _cocircular.are_cocircular(points.transpose(1, 2, 0))
-        assert found.tolist() == expected and 50 <= sum(expected) < 100
+        found = _flaunay.same_circles(points.reshape(-1, 2), triangles, neighbors).reshape(-1, 2)
+        assert (found[:, 0] == 2 * np.arange(100)).all()
+        assert (found[:, 0] == found[:, 1]).tolist() == expected and 50 <= sum(expected) < 100
 
 
 @pytest.mark.parametrize("merge", [False, True])

@@ -9,6 +9,7 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "geometry/triangles.hpp"
 
 using namespace flaunay;
 
@@ -55,6 +56,16 @@ void for_each_edge(const Indices& corners, const Indices& hull, const Visit& vis
     for (std::size_t k = 0; k < 3; ++k) visit(corners[t + k], corners[t + (k + 1) % 3]);
   }
   for (std::size_t i = 0; i < hull.size(); ++i) visit(hull[(i + 1) % hull.size()], hull[i]);
+}
+
+// Checks the caller's triangles and calls work(triangles, results), unless there are none.
+template <typename Result, typename Work>
+flaunay_status measure(const double* coordinates, std::size_t n, const std::int32_t* corners, std::size_t t,
+                       Result* results, const Work& work) {
+  return guarded([&] {
+    const Indices copy = checked_corners(corners, t, n);
+    if (t > 0) work(geometry::Triangles(coordinates, n, copy), &required(results, "the array of results"));
+  });
 }
 
 }  // namespace
@@ -105,5 +116,36 @@ flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, cons
     Indices next(starts, starts + n);
     for_each_edge(corners, ring, [&](std::int32_t from, std::int32_t to) { neighbors[next[from]++] = to; });
     for (std::size_t i = 0; i < n; ++i) std::sort(neighbors + starts[i], neighbors + starts[i + 1]);
+  });
+}
+
+flaunay_status flaunay_triangle_turns(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
+                                      int8_t* turns) {
+  return measure(coordinates, n, triangles, t, turns, [](const auto& of, int8_t* results) {
+    for (std::size_t i = 0; i < of.size(); ++i) results[i] = static_cast<int8_t>(of.turn(i));
+  });
+}
+
+flaunay_status flaunay_triangle_angles(const double* coordinates, size_t n, const int32_t* triangles,
+                                       size_t t, int8_t* angles) {
+  return measure(coordinates, n, triangles, t, angles, [](const auto& of, int8_t* results) {
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      for (int k = 0; k < 3; ++k) results[3 * i + k] = static_cast<int8_t>(of.angle(i, k));
+    }
+  });
+}
+
+flaunay_status flaunay_circumradii(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
+                                   double* radii) {
+  return measure(coordinates, n, triangles, t, radii, [](const auto& of, double* results) {
+    for (std::size_t i = 0; i < of.size(); ++i) results[i] = of.circumradius(i);
+  });
+}
+
+flaunay_status flaunay_same_circles(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
+                                    const int32_t* neighbors, int32_t* first) {
+  return measure(coordinates, n, triangles, t, first, [&](const auto& of, int32_t* results) {
+    geometry::find_same_circles(of, checked(neighbors, entries_of(t), -1, t, "neighbors", "triangles"),
+                                results);
   });
 }

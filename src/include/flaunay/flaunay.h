@@ -707,6 +707,24 @@ FLAUNAY_API flaunay_status flaunay_first_triangles(const int32_t* triangles, siz
 FLAUNAY_API flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, const int32_t* hull,
                                                     size_t h, size_t n, int32_t* starts, int32_t* neighbors);
 
+/// Finds for each of t triangles whether its corners turn left (1) or right (-1) or are collinear (0),
+/// exactly. turns: t values of the caller's. This and the next functions return FLAUNAY_ERROR_USAGE if an
+/// index is out of range, and the errors of flaunay_triangulate for points. O(n + t) work.
+FLAUNAY_API flaunay_status flaunay_triangle_turns(const double* coordinates, size_t n,
+                                                  const int32_t* triangles, size_t t, int8_t* turns);
+/// Finds for each corner of t triangles whether its angle is acute (1), right (0) or obtuse (-1), exactly.
+/// angles: 3 t values of the caller's.
+FLAUNAY_API flaunay_status flaunay_triangle_angles(const double* coordinates, size_t n,
+                                                   const int32_t* triangles, size_t t, int8_t* angles);
+/// Computes the radii of the circumcircles of t triangles, with a relative error below 2^-45: infinite if
+/// they exceed all doubles, or if the corners are collinear. radii: t values of the caller's.
+FLAUNAY_API flaunay_status flaunay_circumradii(const double* coordinates, size_t n, const int32_t* triangles,
+                                               size_t t, double* radii);
+/// Finds for each of t triangles of a Delaunay triangulation the first one that has the same circumcircle,
+/// exactly. neighbors: as FLAUNAY_PART_NEIGHBORS has them; first: t values of the caller's.
+FLAUNAY_API flaunay_status flaunay_same_circles(const double* coordinates, size_t n, const int32_t* triangles,
+                                                size_t t, const int32_t* neighbors, int32_t* first);
+
 // ---- Constrained triangulations
 
 /// Triangulates points with segments as edges: the canonical constrained Delaunay triangulation, a function
