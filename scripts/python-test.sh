@@ -37,8 +37,9 @@ rm -rf build/python-wheel
 numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
 "${pip[@]}" install --quiet meshio networkx shapely mypy "numpy==$numpy"
 
-# The annotations of the package and of what its users are shown.
-"$python" -m mypy --strict python/flaunay examples/python
+# The annotations of the package, as it is installed, and of what its users are shown.
+"$python" -m mypy --strict --package flaunay
+"$python" -m mypy --strict examples/python
 
 # The programs in the guide.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md

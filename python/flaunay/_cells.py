@@ -179,7 +179,7 @@ def clipped(voronoi: Voronoi, bounds: Any) -> ClippedVoronoi:
         tri.representatives,
         corners,
     )
-    return ClippedVoronoi(*arrays, bounds=corners)
+    return ClippedVoronoi(**arrays, bounds=corners)
 
 
 def voronoi_polygons(

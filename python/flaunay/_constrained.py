@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from flaunay import _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
+from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
 from flaunay._export import TriangleExports
-from flaunay._library import CROSSINGS, FILL_RULES, OUTSIDE
 from flaunay._optional import optional
 from flaunay._plot import ConstrainedArtists, draw_constrained
 from flaunay._triangulation import Triangulation
@@ -258,7 +258,7 @@ def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict
     return {
         "crossings": number_of(CROSSINGS, crossings, "crossings"),
         "outside": number_of(OUTSIDE, outside, "outside"),
-        "fill_rule": number_of(FILL_RULES, fill_rule, "fill_rule"),
+        "fill_rule": number_of(FILL_RULE, fill_rule, "fill_rule"),
         "labels": int(bool(labels)),
     }
 

@@ -125,14 +125,9 @@ def voronoi(
     )
     event = call.end(enqueue)
     n, triangles = _sizes(triangulation)
-    made = _Views(result.buffers(), call.queue, event)
-    return DeviceVoronoi(
-        vertices=made.view("circumcentres", (triangles, 2), np.float64),
-        cells=made.view("cells", (3 * triangles,), np.int32),
-        cell_offsets=made.view("cell_offsets", (n + 1,), np.int32),
-        unbounded=made.view("unbounded", (n,), np.uint8),
-        event=event,
-    )
+    places = result.arrays(triangle=triangles, corner=3 * triangles, point=n, point_offset=n + 1)
+    made = {name: view(*place, call.queue, event) for name, place in places.items()}
+    return DeviceVoronoi(vertices=made.pop("circumcentres"), **made, event=event)
 
 
 def clipped_voronoi(
@@ -184,32 +179,14 @@ def clipped_voronoi(
     )
     event = call.end(enqueue)
     n, _ = _sizes(triangulation)
-    made = _Views(result.buffers(), call.queue, event)
-    return DeviceClippedVoronoi(
-        vertices=made.view("vertices", (result.vertex_count, 2), np.float64),
-        offsets=made.view("offsets", (n + 1,), np.int32),
-        areas=made.view("areas", (n,), np.float64),
-        centroids=made.view("centroids", (n, 2), np.float64),
-        bounds=corners,
-        event=event,
-    )
+    places = result.arrays(vertex=result.vertex_count, point=n, point_offset=n + 1)
+    made = {name: view(*place, call.queue, event) for name, place in places.items()}
+    return DeviceClippedVoronoi(**made, bounds=corners, event=event)
 
 
 def _sizes(triangulation: DeviceTriangulation) -> tuple[int, int]:
     """The numbers of points and triangles."""
     return int(triangulation.points.shape[0]), int(triangulation.triangle_offsets[-1])
-
-
-@dataclass
-class _Views:
-    """The arrays over the buffers of one result."""
-
-    buffers: dict[str, int]
-    queue: pyopencl.CommandQueue
-    event: pyopencl.Event
-
-    def view(self, name: str, shape: tuple[int, ...], dtype: Any) -> pyopencl.array.Array:
-        return view(self.buffers[name], shape, dtype, self.queue, self.event)
 
 
 def relax_device(

@@ -8,19 +8,21 @@ from __future__ import annotations
 
 import _thread
 import ctypes
+import operator
 import queue
 import sys
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, Optional, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _library
+from flaunay import _declarations, _library
 from flaunay._arrays import FloatArray
+from flaunay._declarations import PART
 from flaunay._errors import UsageError
-from flaunay._library import PARTS, DeviceHandle, Handle, check, library, text_of
+from flaunay._library import DeviceHandle, Handle, check, library, text_of
 
 _Doubles = npt.NDArray[np.float64]
 _Indices = npt.NDArray[np.int32]
@@ -29,8 +31,27 @@ _Offsets = npt.NDArray[np.int64]
 __version__: str = text_of(library.version())
 
 _INT32, _INT64 = np.dtype(np.int32), np.dtype(np.int64)
-_FLOAT64, _FLOAT32, _UINT8 = np.dtype(np.float64), np.dtype(np.float32), np.dtype(np.uint8)
-_BOOL = np.dtype(np.bool_)
+_FLOAT64, _FLOAT32 = np.dtype(np.float64), np.dtype(np.float32)
+_BOOL, _UINT8 = np.dtype(np.bool_), np.dtype(np.uint8)
+
+# The arrays of results: the type, of what there is one row per thing, the elements of a row, and what asks for them.
+_Arrays = dict[str, tuple[np.dtype[Any], str, int, str]]
+
+
+def _arrays(table: dict[str, tuple[str, str, int, str]]) -> _Arrays:
+    return {name: (np.dtype(kind), *others) for name, (kind, *others) in table.items()}  # type: ignore[misc]
+
+
+_TRIANGULATION = _arrays(_declarations.TRIANGULATION_ARRAYS)
+# In place of who asks for an array its bit, 0 if it is there always.
+_PARTS = [
+    (name, dtype, row, columns, 0 if asked == "always" else PART[name])
+    for name, (dtype, row, columns, asked) in _TRIANGULATION.items()
+]
+_ADDRESSES = operator.attrgetter(*_TRIANGULATION)
+_CONSTRAINED = _arrays(_declarations.CONSTRAINED_ARRAYS)
+_VORONOI = _arrays(_declarations.VORONOI_ARRAYS)
+_CLIPPED_VORONOI = _arrays(_declarations.CLIPPED_VORONOI_ARRAYS)
 
 
 # ---- Arrays
@@ -51,6 +72,24 @@ def _view(
     memory = _Memory.from_address(address)
     memory.owner = owner
     return np.ndarray(shape, dtype, memory)
+
+
+def _shape(rows: int, columns: int) -> tuple[int, ...]:
+    """Rows of one element are an array of one dimension."""
+    return (rows,) if columns == 1 else (rows, columns)
+
+
+def _views(
+    owner: Handle,
+    table: _Arrays,
+    counts: dict[str, int],
+    address_of: Callable[[str], Optional[int]],
+) -> dict[str, Any]:
+    """The arrays of a table. counts: for what has one row per thing, how many there are."""
+    return {
+        name: _view(owner, address_of(name), _shape(counts[row], columns), dtype)
+        for name, (dtype, row, columns, _) in table.items()
+    }
 
 
 def _address_of(array: Any) -> int:
@@ -129,27 +168,24 @@ def _check_changed(status: int) -> None:
 # ---- Structs
 
 
-def _members(struct: ctypes.Structure, names: Iterable[str]) -> dict[str, Any]:
-    return {name: getattr(struct, name) for name in names}
+def _members(struct: type[ctypes.Structure], *without: str) -> Callable[[Any], dict[str, Any]]:
+    """What reads all members of a struct but these."""
+    names = [field[0] for field in struct._fields_ if field[0] not in without]
+    read = operator.attrgetter(*names)
+    return lambda given: dict(zip(names, read(given)))
 
 
-def _names(struct: type[ctypes.Structure], *without: str) -> list[str]:
-    return [field[0] for field in struct._fields_ if field[0] not in without]
-
-
-_STATISTICS = _names(
-    _library.Statistics, "device", "phases", "phase_count", "kernels", "kernel_count", "note"
-)
-_ROUND = _names(_library.ChunkRound)
-_CHUNK_STATISTICS = _names(
-    _library.ChunkStatistics,
+_STATISTICS = _members(_declarations.Statistics, "phase_count", "kernels", "kernel_count")
+_ROUND = _members(_declarations.ChunkRound)
+_CHUNK_STATISTICS = _members(
+    _declarations.ChunkStatistics,
     *("rounds", "round_count", "devices", "device_count", "phases", "phase_count", "seconds"),
     "note",
 )
 _TEXTS_OF_DEVICE = ["name", "platform", "vendor", "driver", "version", "type"]
 _FLAGS_OF_DEVICE = ["fp64", "fixed_point"]
-_NUMBERS_OF_DEVICE = _names(
-    _library.DeviceInfo,
+_NUMBERS_OF_DEVICE = _members(
+    _declarations.DeviceInfo,
     *_TEXTS_OF_DEVICE,
     *_FLAGS_OF_DEVICE,
     *("self_test_passed", "self_test_failure"),
@@ -158,24 +194,22 @@ _NUMBERS_OF_DEVICE = _names(
 
 def _phases_of(statistics: Any) -> dict[str, float]:
     """The seconds of each phase by its name."""
-    phases = (statistics.phases[k] for k in range(statistics.phase_count))
+    phases = statistics.phases[: statistics.phase_count]
     return {text_of(phase.name): phase.seconds for phase in phases}
 
 
 def _statistics_of(statistics: Any) -> dict[str, Any]:
-    return {
-        "device": text_of(statistics.device),
-        **_members(statistics, _STATISTICS),
-        "phases": _phases_of(statistics),
-        "note": text_of(statistics.note),
-    }
+    result = _STATISTICS(statistics)
+    result["device"], result["note"] = text_of(result["device"]), text_of(result["note"])
+    result["phases"] = _phases_of(statistics)
+    return result
 
 
 def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
     devices = (statistics.devices[k] for k in range(statistics.device_count))
     return {
-        **_members(statistics, _CHUNK_STATISTICS),
-        "rounds": [_members(statistics.rounds[k], _ROUND) for k in range(statistics.round_count)],
+        **_CHUNK_STATISTICS(statistics),
+        "rounds": [_ROUND(statistics.rounds[k]) for k in range(statistics.round_count)],
         "devices": [{"device": text_of(row.name), "points": row.points} for row in devices],
         "phases": _phases_of(statistics),
         "seconds": statistics.seconds,
@@ -186,7 +220,7 @@ def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
 def _info_of(info: Any) -> dict[str, Any]:
     return {
         **{name: text_of(getattr(info, name)) for name in _TEXTS_OF_DEVICE},
-        **_members(info, _NUMBERS_OF_DEVICE),
+        **_NUMBERS_OF_DEVICE(info),
         **{name: bool(getattr(info, name)) for name in _FLAGS_OF_DEVICE},
     }
 
@@ -222,16 +256,16 @@ def modes() -> list[dict[str, Any]]:
     ]
 
 
-_options: dict[tuple[str, int], _library.Options] = {}
+_options: dict[tuple[str, int], _declarations.Options] = {}
 
 
-def _options_for(mode: str, parts: int) -> _library.Options:
+def _options_for(mode: str, parts: int) -> _declarations.Options:
     """Options, which calls only read: one struct for all calls with the same ones."""
     found = _options.get((mode, parts))
     if found is None:
         if mode not in _MODE_NUMBERS:
             raise UsageError(f"there is no mode '{mode}'; there are {', '.join(_MODE_NUMBERS)}")
-        found = _library.Options(mode=_MODE_NUMBERS[mode], parts=parts)
+        found = _declarations.Options(mode=_MODE_NUMBERS[mode], parts=parts)
         _options[mode, parts] = found
     return found
 
@@ -239,7 +273,7 @@ def _options_for(mode: str, parts: int) -> _library.Options:
 def _parts_of(wanted: set[str]) -> int:
     parts = 0
     for name in wanted:
-        parts |= PARTS[name]
+        parts |= PART[name]
     return parts
 
 
@@ -249,23 +283,25 @@ def _parts_of(wanted: set[str]) -> int:
 def _arrays_of(owner: Handle, mesh: Any, parts: int) -> dict[str, Any]:
     """What was computed, by its name; None if an array was not asked for."""
     triangles, sets = mesh.triangle_count, mesh.set_count
-    rows = (triangles, 3)
-    return {
-        "triangles": _view(owner, mesh.triangles, rows, _INT32),
-        "neighbors": (
-            _view(owner, mesh.neighbors, rows, _INT32) if parts & PARTS["neighbors"] else None
-        ),
-        "halfedges": (
-            _view(owner, mesh.halfedges, (3 * triangles,), _INT32)
-            if parts & PARTS["halfedges"]
-            else None
-        ),
-        "hull": _view(owner, mesh.hull, (mesh.hull_count,), _INT32),
-        "representatives": _view(owner, mesh.representatives, (mesh.point_count,), _INT32),
-        "triangle_offsets": _view(owner, mesh.triangle_offsets, (sets + 1,), _INT64),
-        "hull_offsets": _view(owner, mesh.hull_offsets, (sets + 1,), _INT64),
-        "statistics": _statistics_of(mesh.statistics[0]),
+    counts = {
+        "triangle": triangles,
+        "halfedge": 3 * triangles,
+        "hull_vertex": mesh.hull_count,
+        "point": mesh.point_count,
     }
+    result: dict[str, Any] = {}
+    # Written out, since for small sets every call counts.
+    for (name, dtype, row, columns, bit), address in zip(_PARTS, _ADDRESSES(mesh)):
+        if bit & ~parts:
+            result[name] = None
+        elif columns == 1:
+            result[name] = _view(owner, address, (counts[row],), dtype)
+        else:
+            result[name] = _view(owner, address, (counts[row], columns), dtype)
+    result["triangle_offsets"] = _view(owner, mesh.triangle_offsets, (sets + 1,), _INT64)
+    result["hull_offsets"] = _view(owner, mesh.hull_offsets, (sets + 1,), _INT64)
+    result["statistics"] = _statistics_of(mesh.statistics[0])
+    return result
 
 
 class _Triangulation(Handle):
@@ -283,24 +319,20 @@ class _Constrained(Handle):
         result = _arrays_of(self, library.constrained_mesh(self.pointer)[0], parts)
         given = library.constrained_get_arrays(self.pointer)[0]
         triangles, sets = len(result["triangles"]), len(result["triangle_offsets"]) - 1
-        shapes: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
-            "added_points": ((given.added_count, 2), _FLOAT64),
-            "added_offsets": ((sets + 1,), _INT64),
-            "constraint_edges": ((given.constraint_count, 2), _INT32),
-            "edge_segments": ((given.constraint_count,), _INT32),
-            "piece_offsets": ((given.segment_count + 1,), _INT32),
-            "piece_edges": ((given.piece_count, 2), _INT32),
-            "constrained": ((triangles, 3), _BOOL),
-            "depths": ((triangles,), _INT32),
-            "regions": ((triangles,), _INT32),
-            "polygons": ((triangles,), _INT32),
+        counts = {
+            "added_point": given.added_count,
+            "set_offset": sets + 1,
+            "constraint": given.constraint_count,
+            "segment_offset": given.segment_count + 1,
+            "piece": given.piece_count,
+            "triangle": triangles,
         }
-        for name, (shape, dtype) in shapes.items():
-            result[name] = _view(self, getattr(given, name), shape, dtype)
-        if not labels:
-            result["depths"] = result["regions"] = None
-        if not is_map:
-            result["polygons"] = None
+        wanted = {"always": True, "labels": labels, "map": is_map}
+        for name, (dtype, row, columns, asked) in _CONSTRAINED.items():
+            shape = _shape(counts[row], columns)
+            result[name] = (
+                _view(self, getattr(given, name), shape, dtype) if wanted[asked] else None
+            )
         return result
 
 
@@ -310,7 +342,7 @@ def triangulate_without_device(
     """Triangulates points in a mode that runs on the host. wanted: names of the optional arrays."""
     n = _count_points(points)
     # The triangles' bit keeps the number from being 0, which means the default.
-    parts = _parts_of(wanted) | PARTS["triangles"]
+    parts = _parts_of(wanted) | PART["triangles"]
     options = _options_for(mode, parts)
     points = _as_doubles(points)
     offsets, sets = _as_offsets(given_offsets, n)
@@ -371,7 +403,7 @@ class Triangulator(DeviceHandle):
     ) -> dict[str, Any]:
         """Triangulates points in host memory. wanted: names of the optional arrays."""
         n = _count_points(points)
-        parts = _parts_of(wanted) | PARTS["triangles"]
+        parts = _parts_of(wanted) | PART["triangles"]
         options = _options_for(mode, parts)
         coordinates: FloatArray
         if points.dtype == _FLOAT32:
@@ -407,13 +439,13 @@ class Triangulator(DeviceHandle):
     ) -> dict[str, Any]:
         """Triangulates points with segments. rules: members of flaunay_constraints that are no arrays."""
         n = _count_points(points)
-        parts = _parts_of(wanted) | PARTS["triangles"]
+        parts = _parts_of(wanted) | PART["triangles"]
         offsets, sets = _as_offsets(given_offsets, n)
         kept_holes, hole_sets = _as_offsets(hole_offsets, len(holes), "hole_offsets", "holes")
         if kept_holes is not None and hole_sets != max(sets, 1):
             raise UsageError(f"hole_offsets are of {hole_sets} sets, but there are {max(sets, 1)}")
         points, holes = _as_doubles(points), _as_doubles(holes)
-        constraints = _library.Constraints(
+        constraints = _declarations.Constraints(
             segments=_address_of(segments),
             segment_count=len(segments),
             holes=_address_of(holes),
@@ -447,12 +479,12 @@ class Triangulator(DeviceHandle):
         wanted: set[str],
     ) -> dict[str, Any]:
         """Triangulates polygons. rules: members of flaunay_polygons that are no arrays."""
-        parts = _parts_of(wanted) | PARTS["triangles"]
+        parts = _parts_of(wanted) | PART["triangles"]
         rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
         outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
         inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
         points = _as_doubles(points)
-        polygons = _library.Polygons(
+        polygons = _declarations.Polygons(
             coordinates=_address_of(points),
             ring_offsets=_address_or_none(rings),
             ring_count=ring_count,
@@ -569,10 +601,12 @@ class DevicePoints:
         device_offsets: int = 0,
         sets: int = 0,
     ) -> None:
-        self.struct = _library.DevicePoints(
+        self.struct = _declarations.DevicePoints(
             memory=memory or None,
             count=count,
-            precision=_library.FLOAT32 if single else _library.FLOAT64,
+            precision=(
+                _declarations.PRECISION["float32"] if single else _declarations.PRECISION["float64"]
+            ),
             first=first,
             device_offsets=device_offsets or None,
             sets=sets,
@@ -588,7 +622,7 @@ class Enqueue:
     def __init__(self, queue: int, wait_for: list[int]) -> None:
         self._wait_for = (ctypes.c_void_p * len(wait_for))(*wait_for)
         self._event = ctypes.c_void_p()
-        self.struct = _library.Enqueue(
+        self.struct = _declarations.Enqueue(
             queue=queue or None,
             wait_for=ctypes.addressof(self._wait_for) if wait_for else None,
             wait_for_count=len(wait_for),
@@ -611,24 +645,27 @@ class DeviceResult(DeviceHandle):
         self._triangulator = triangulator
         check(library.device_triangulation_create(self.place))
 
-    def arrays(self) -> dict[str, Optional[tuple[int, tuple[int, ...]]]]:
-        """For each array by its name the handle of its buffer and its shape; None if it was not computed."""
+    def arrays(self) -> dict[str, Optional[tuple[int, tuple[int, ...], np.dtype[Any]]]]:
+        """For each array the handle of its buffer, its shape and its type; None if it was not computed."""
         triangles: int = library.device_triangulation_triangle_count(self.pointer)
-        shapes: dict[str, tuple[int, ...]] = {
-            "triangles": (triangles, 3),
-            "neighbors": (triangles, 3),
-            "halfedges": (3 * triangles,),
-            "hull": (library.device_triangulation_hull_count(self.pointer),),
-            "representatives": (library.device_triangulation_point_count(self.pointer),),
+        counts = {
+            "triangle": triangles,
+            "halfedge": 3 * triangles,
+            "hull_vertex": library.device_triangulation_hull_count(self.pointer),
+            "point": library.device_triangulation_point_count(self.pointer),
         }
         computed = library.device_triangulation_parts(self.pointer)
         return {
             name: (
-                (library.device_triangulation_buffer(self.pointer, PARTS[name]) or 0, shape)
-                if computed & PARTS[name]
+                (
+                    library.device_triangulation_buffer(self.pointer, PART[name]) or 0,
+                    _shape(counts[row], columns),
+                    dtype,
+                )
+                if computed & PART[name]
                 else None
             )
-            for name, shape in shapes.items()
+            for name, (dtype, row, columns, _) in _TRIANGULATION.items()
         }
 
     def _offsets(self, address: Optional[int]) -> _Offsets:
@@ -673,21 +710,33 @@ class _DeviceArrays(DeviceHandle):
     _create: Any
     _buffer: Any
     _parts: dict[str, int]
+    _table: _Arrays
 
     def __init__(self) -> None:
         super().__init__()
         check(self._create(self.place))
 
-    def buffers(self) -> dict[str, int]:
-        """For each array by its name the handle of its buffer, 0 if it is empty."""
-        return {name: self._buffer(self.pointer, part) or 0 for name, part in self._parts.items()}
+    def arrays(self, **counts: int) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
+        """For each array the handle of its buffer, 0 if it is empty, its shape and its type.
+
+        counts: for what has one row per thing, how many there are. Flags are numbers in device memory.
+        """
+        return {
+            name: (
+                self._buffer(self.pointer, self._parts[name]) or 0,
+                _shape(counts[row], columns),
+                _UINT8 if dtype == _BOOL else dtype,
+            )
+            for name, (dtype, row, columns, _) in self._table.items()
+        }
 
 
 class DeviceVoronoi(_DeviceArrays):
     """The dual of a triangulation in device memory."""
 
     _create, _destroy = library.device_voronoi_create, library.device_voronoi_destroy
-    _buffer, _parts = library.device_voronoi_buffer, _library.VORONOI_PARTS
+    _buffer, _parts = library.device_voronoi_buffer, _declarations.VORONOI_PART
+    _table = _VORONOI
 
 
 class DeviceClippedVoronoi(_DeviceArrays):
@@ -695,7 +744,8 @@ class DeviceClippedVoronoi(_DeviceArrays):
 
     _create = library.device_clipped_voronoi_create
     _destroy = library.device_clipped_voronoi_destroy
-    _buffer, _parts = library.device_clipped_voronoi_buffer, _library.CLIPPED_VORONOI_PARTS
+    _buffer, _parts = library.device_clipped_voronoi_buffer, _declarations.CLIPPED_VORONOI_PART
+    _table = _CLIPPED_VORONOI
 
     @property
     def vertex_count(self) -> int:
@@ -781,23 +831,31 @@ class _ChunkCall:
         points: FloatArray,
         wanted: dict[str, Optional[bytes]],
         wide: bool,
-        options: _library.ChunkOptions,
+        options: _declarations.ChunkOptions,
         names: list[bytes],
     ) -> None:
         n = _count_points(points)
         if points.dtype not in (_FLOAT64, _FLOAT32):
             raise UsageError("points must be float64 or float32")
         self._points = points
-        self._struct = _library.StridedPoints(
+        self._struct = _declarations.StridedPoints(
             coordinates=points.__array_interface__["data"][0] if n else None,
             count=n,
-            precision=_library.FLOAT64 if points.dtype == _FLOAT64 else _library.FLOAT32,
+            precision=(
+                _declarations.PRECISION["float64"]
+                if points.dtype == _FLOAT64
+                else _declarations.PRECISION["float32"]
+            ),
             point_stride=points.strides[0],
             coordinate_stride=points.strides[1],
         )
         self.arrays: dict[str, npt.NDArray[Any]] = {}
-        self._places = _library.MeshArrays(index_type=_library.INT64 if wide else _library.INT32)
-        self._files = _library.MeshFiles()
+        self._places = _declarations.MeshArrays(
+            index_type=(
+                _declarations.INDEX_TYPE["int64"] if wide else _declarations.INDEX_TYPE["int32"]
+            )
+        )
+        self._files = _declarations.MeshFiles()
         for name, path in wanted.items():
             if path is not None:
                 setattr(self._files, name, path)
@@ -810,7 +868,7 @@ class _ChunkCall:
         self._options = options
         options.devices = ctypes.addressof(self._names) if names else None
         options.device_count = len(names)
-        options.progress = _library.ChunkProgress(self._progress)
+        options.progress = _declarations.ChunkOptionsProgress(self._progress)
         self.report = _ChunkReport()
         self.error: Optional[Exception] = None
         self.is_over = False
@@ -871,7 +929,9 @@ def triangulate_chunks(
     one that a signal raises, as Ctrl-C does, is never in the library's way: Python runs handlers of signals on the
     main thread anywhere, and what one raised as the library calls back would be lost.
     """
-    options = _library.ChunkOptions(memory_bytes=memory, scratch=scratch, chunk_points=chunk_points)
+    options = _declarations.ChunkOptions(
+        memory_bytes=memory, scratch=scratch, chunk_points=chunk_points
+    )
     call = _ChunkCall(points, wanted, wide, options, [_encoded(name) for name in devices])
     raised: Optional[BaseException] = None
     is_started = False
@@ -933,8 +993,8 @@ def voronoi(
     neighbors: _Indices,
     hull: _Indices,
     representatives: _Indices,
-) -> tuple[_Doubles, _Indices, _Indices, npt.NDArray[np.uint8]]:
-    """The circumcentres of triangles, the offsets of cells, their corners, and which are unbounded."""
+) -> dict[str, Any]:
+    """The circumcentres of triangles, the cell_offsets, the corners of cells, and which are unbounded."""
     n = _count_points(points)
     points = _as_doubles(points)
     primal = _triangulation_of(n, triangles, neighbors, hull, representatives)
@@ -946,14 +1006,13 @@ def voronoi(
             )
         )
     of = result.pointer
-    centres = (library.voronoi_triangle_count(of), 2)
-    corners = (library.voronoi_corner_count(of),)
-    return (
-        _view(result, library.voronoi_circumcentres(of), centres, _FLOAT64),
-        _view(result, library.voronoi_cell_offsets(of), (n + 1,), _INT32),
-        _view(result, library.voronoi_cells(of), corners, _INT32),
-        _view(result, library.voronoi_unbounded(of), (n,), _UINT8),
-    )
+    counts = {
+        "triangle": library.voronoi_triangle_count(of),
+        "point_offset": n + 1,
+        "corner": library.voronoi_corner_count(of),
+        "point": n,
+    }
+    return _views(result, _VORONOI, counts, lambda name: getattr(library, f"voronoi_{name}")(of))
 
 
 class _ClippedVoronoi(Handle):
@@ -968,7 +1027,7 @@ def clipped_voronoi(
     hull: _Indices,
     representatives: _Indices,
     corners: _Doubles,
-) -> tuple[_Doubles, _Indices, _Doubles, _Doubles]:
+) -> dict[str, Any]:
     """The vertices of clipped cells, their offsets, the cells' areas and centroids."""
     n = _count_points(points)
     points, corners = _as_doubles(points), _as_doubles(corners)
@@ -987,12 +1046,16 @@ def clipped_voronoi(
             )
         )
     of = result.pointer
-    vertices = (library.clipped_voronoi_vertex_count(of), 2)
-    return (
-        _view(result, library.clipped_voronoi_vertices(of), vertices, _FLOAT64),
-        _view(result, library.clipped_voronoi_offsets(of), (n + 1,), _INT32),
-        _view(result, library.clipped_voronoi_areas(of), (n,), _FLOAT64),
-        _view(result, library.clipped_voronoi_centroids(of), (n, 2), _FLOAT64),
+    counts = {
+        "vertex": library.clipped_voronoi_vertex_count(of),
+        "point_offset": n + 1,
+        "point": n,
+    }
+    return _views(
+        result,
+        _CLIPPED_VORONOI,
+        counts,
+        lambda name: getattr(library, f"clipped_voronoi_{name}")(of),
     )
 
 
@@ -1098,8 +1161,11 @@ class Locator(_Locator):
         values = _as_doubles(values)
         m = _count_points(queries)
         queries = _as_doubles(queries)
-        options = _library.InterpolationOptions(
-            method=_library.INTERPOLATIONS[method], columns=values.shape[1], has_fill=1, fill=fill
+        options = _declarations.InterpolationOptions(
+            method=_declarations.INTERPOLATION[method],
+            columns=values.shape[1],
+            has_fill=1,
+            fill=fill,
         )
         if gradients is not None:
             if gradients.shape != (*values.shape, 2):
@@ -1128,7 +1194,7 @@ class Locator(_Locator):
         """The estimated gradients, x and y for each of the values: a row of some for each point."""
         self._check_rows(values)
         values = _as_doubles(values)
-        options = _library.InterpolationOptions(
+        options = _declarations.InterpolationOptions(
             columns=values.shape[1], gradient_tolerance=tolerance, gradient_iterations=iterations
         )
         results = np.empty((*values.shape, 2))
@@ -1184,8 +1250,8 @@ class DeviceLocator(_Locator):
         enqueue: Enqueue,
     ) -> int:
         """A row of interpolated values at each query. gradients: 0 if they are to be estimated."""
-        options = _library.InterpolationOptions(
-            method=_library.INTERPOLATIONS[method],
+        options = _declarations.InterpolationOptions(
+            method=_declarations.INTERPOLATION[method],
             columns=columns,
             has_fill=1,
             fill=fill,
@@ -1203,7 +1269,7 @@ class DeviceLocator(_Locator):
         self, values: int, columns: int, tolerance: float, iterations: int, enqueue: Enqueue
     ) -> int:
         """The estimated gradients, x and y for each of the values."""
-        options = _library.InterpolationOptions(
+        options = _declarations.InterpolationOptions(
             columns=columns, gradient_tolerance=tolerance, gradient_iterations=iterations
         )
         ask = library.locator_gradients_device

@@ -185,7 +185,7 @@ def triangulate_device(
     )
     event = call.end(enqueue)
     views = {
-        name: None if place is None else view(*place, np.int32, call.queue, event)
+        name: None if place is None else view(*place, call.queue, event)
         for name, place in result.arrays().items()
     }
     return DeviceTriangulation(

@@ -18,8 +18,8 @@ from flaunay._constrained import (
     rules_of,
     with_points,
 )
+from flaunay._declarations import OVERLAPS
 from flaunay._errors import UsageError
-from flaunay._library import OVERLAPS
 from flaunay._optional import optional
 
 Doubles = npt.NDArray[np.float64]

@@ -103,7 +103,7 @@ class Voronoi(VoronoiPlots):
         )
         self.points: FloatArray = tri.points
         coordinates = np.asarray(tri.points, np.float64)
-        vertices, offsets, cells, unbounded = _flaunay.voronoi(
+        arrays = _flaunay.voronoi(
             _triangulators.of_device(device),
             coordinates,
             tri.simplices,
@@ -111,7 +111,9 @@ class Voronoi(VoronoiPlots):
             tri.hull,
             tri.representatives,
         )
-        self.unbounded: npt.NDArray[np.bool_] = frozen(unbounded.view(np.bool_))
+        vertices, cells = arrays["circumcentres"], arrays["cells"]
+        offsets = arrays["cell_offsets"]
+        self.unbounded: npt.NDArray[np.bool_] = frozen(arrays["unbounded"])
         # The vertex of each triangle; None if it has its triangle's index.
         self._vertex_of: Optional[Indices] = None
         if merge:
