@@ -28,14 +28,14 @@ from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
-from flaunay._flaunay import __version__
+from flaunay._calls import __version__
 from flaunay._interpolate import (
     CloughTocherInterpolator,
     LinearInterpolator,
+    NaturalNeighborInterpolator,
     NearestInterpolator,
     griddata,
 )
-from flaunay._natural import NaturalNeighborInterpolator
 from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._triangulate import triangulate

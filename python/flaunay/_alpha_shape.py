@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay
+from flaunay import _calls
 from flaunay._arrays import ArrayLike, Fixed, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -177,7 +177,7 @@ class AlphaShape(Fixed):
         starts = np.cumsum(sizes) - sizes
         smallest = order[starts]
         turns = [members[starts + (smallest - starts + step) % sizes] for step in (-1, 0, 1)]
-        outer: Mask = _flaunay.turns(points, np.stack(turns, axis=1)) > 0
+        outer: Mask = _calls.turns(points, np.stack(turns, axis=1)) > 0
         return outer
 
     def rings(self) -> list[Indices]:
@@ -299,7 +299,9 @@ class AlphaShape(Fixed):
         ImportError
             Without Matplotlib.
         """
-        return draw_alpha_shape(self, ax, style)
+        return draw_alpha_shape(
+            self.delaunay.points, self.rings(), self.singular_edges, self.isolated, ax, style
+        )
 
 
 def _inner_sides(tri: Delaunay) -> Indices:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from typing_extensions import TypeGuard
 
 FloatArray = Union[npt.NDArray[np.float32], npt.NDArray[np.float64]]
+Indices = npt.NDArray[np.int32]
+Doubles = npt.NDArray[np.float64]
 _Array = TypeVar("_Array", bound=npt.NDArray[Any])
 
 
@@ -26,6 +28,28 @@ class SupportsDLPack(Protocol):
 
 
 ArrayLike = Union[npt.ArrayLike, SupportsDLPack]
+
+
+class Triangles(Protocol):
+    """Triangles of points, as functions below the classes see them."""
+
+    @property
+    def points(self) -> FloatArray: ...
+    @property
+    def simplices(self) -> Indices: ...
+
+
+class Mesh(Triangles, Protocol):
+    """A Delaunay triangulation, as functions below its class see it."""
+
+    neighbors: Indices
+    hull: Indices
+    representatives: Indices
+    edges: Indices
+    edge_lengths: Doubles
+    edge_simplices: Indices
+    vertex_neighbor_vertices: tuple[Indices, Indices]
+
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
 

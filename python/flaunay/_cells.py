@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import operator
-from typing import TYPE_CHECKING, Any, Optional
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import as_floats, as_points, freeze_all, frozen, summary
+from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._optional import optional
-
-if TYPE_CHECKING:
-    from flaunay._voronoi import Voronoi
 
 _Doubles = npt.NDArray[np.float64]
 
@@ -135,42 +133,10 @@ class ClippedVoronoi:
         return polygons
 
 
-def clipped(voronoi: Voronoi, bounds: Any) -> ClippedVoronoi:
-    """The cells, clipped to a box or a convex polygon.
-
-    Parameters
-    ----------
-    bounds : array_like or shapely.Polygon
-        ``(xmin, ymin, xmax, ymax)``, or the corners of a convex polygon, shape (m, 2), in either
-        direction; a last corner that repeats the first does not count.
-
-    Returns
-    -------
-    ClippedVoronoi
-
-    Raises
-    ------
-    UsageError
-        If the bounds are neither.
-    InputError
-        If the polygon is not convex, or not finite; the message names a corner.
-
-    Notes
-    -----
-    Points may lie outside, on one line, or be few: one point has the whole polygon.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> vor = flaunay.Voronoi([[1, 1], [3, 1], [2, 4]])
-    >>> cells = vor.clipped((0, 0, 4, 4))
-    >>> float(cells.areas.sum())
-    16.0
-    >>> len(cells.polygon(0))
-    4
-    """
-    tri, corners = voronoi.delaunay, corners_of(bounds)
-    arrays = _flaunay.clipped_voronoi(
+def clip(tri: Delaunay, bounds: Any) -> ClippedVoronoi:
+    """As `Voronoi.clipped` says, of the cells of a triangulation's points."""
+    corners = corners_of(bounds)
+    arrays = _calls.clipped_voronoi(
         _triangulators.of_device(tri._device),
         np.asarray(tri.points, np.float64),
         tri.simplices,
@@ -213,9 +179,7 @@ def voronoi_polygons(
     [[2.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0]]
     [[2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0]]
     """
-    from flaunay._voronoi import Voronoi
-
-    cells = clipped(Voronoi(points, device=device), bounds)
+    cells = clip(Delaunay(points, device=device), bounds)
     return cells.to_shapely() if as_shapely else cells.polygons()
 
 
@@ -250,4 +214,4 @@ def relax(
     """
     times = as_iterations(iterations)
     given = np.asarray(as_points(points), np.float64)
-    return _flaunay.relax(_triangulators.of_device(device), given, corners_of(bounds), times)
+    return _calls.relax(_triangulators.of_device(device), given, corners_of(bounds), times)

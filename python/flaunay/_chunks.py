@@ -12,7 +12,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import FloatArray, as_points, check_points_shape, is_masked, summary
 from flaunay._errors import UsageError
 
@@ -247,7 +247,7 @@ def triangulate_chunks(
     )
     if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
         raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
-    in_memory, statistics = _flaunay.triangulate_chunks(
+    in_memory, statistics = _calls.triangulate_chunks(
         source,
         {name: None if path is None else os.fsencode(path) for name, path in wanted.items()},
         _is_wide(index, len(source), wanted),

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _triangulators
+from flaunay import _export, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
-from flaunay._export import TriangleExports
 from flaunay._optional import optional
 from flaunay._plot import ConstrainedArtists, draw_constrained
 from flaunay._triangulation import Triangulation
@@ -27,7 +26,7 @@ Doubles = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstrainedTriangulation(Triangulation, TriangleExports):
+class ConstrainedTriangulation(Triangulation):
     """Triangulations with segments as edges: `triangulate` makes them if there are segments.
 
     Every edge that is no constraint is locally Delaunay, and of cocircular points the triangles are
@@ -93,6 +92,10 @@ class ConstrainedTriangulation(Triangulation, TriangleExports):
             constraint_edges=len(self.constraint_edges),
             sets=len(self.hull_offsets) - 1,
         )
+
+    to_matplotlib = _export.to_matplotlib
+    to_meshio = _export.to_meshio
+    to_pyvista = _export.to_pyvista
 
     @property
     def simplices(self) -> Indices:
@@ -178,7 +181,8 @@ class ConstrainedTriangulation(Triangulation, TriangleExports):
         >>> len(edges.get_segments()), len(constraints.get_segments())
         (4, 1)
         """
-        return draw_constrained(self, ax, style)
+        purpose = f"{type(self).__name__}.plot"
+        return draw_constrained(self.points, self.edges, self.constraint_edges, ax, style, purpose)
 
     def to_shapely(self) -> npt.NDArray[Any]:
         """The triangles as geometries of Shapely, one collection for each set.
@@ -193,15 +197,18 @@ class ConstrainedTriangulation(Triangulation, TriangleExports):
         ImportError
             Without Shapely 2.
         """
-        shapely = optional("shapely", f"{type(self).__name__}.to_shapely")
-        rings = self.points[self.triangles[:, [0, 1, 2, 0]]]
         sizes = np.diff(self.triangle_offsets)
-        collections: npt.NDArray[Any] = np.full(len(sizes), shapely.GeometryCollection(), object)
-        shapely.geometrycollections(
-            shapely.polygons(rings),
-            indices=np.repeat(np.arange(len(sizes)), sizes),
-            out=collections,
-        )
+        owners = np.repeat(np.arange(len(sizes)), sizes)
+        return self._collections(self.triangles, owners, len(sizes))
+
+    def _collections(
+        self, triangles: Indices, owners: npt.NDArray[Any], count: int
+    ) -> npt.NDArray[Any]:
+        """Collections of triangles as polygons of Shapely. owners: that of each triangle, in increasing order."""
+        shapely = optional("shapely", f"{type(self).__name__}.to_shapely")
+        shapes = shapely.polygons(self.points[triangles[:, [0, 1, 2, 0]]])
+        collections: npt.NDArray[Any] = np.full(count, shapely.GeometryCollection(), object)
+        shapely.geometrycollections(shapes, indices=owners.astype(np.intp), out=collections)
         return collections
 
     def find_simplex(self, xi: object = None, *_: object, **__: object) -> Indices:
@@ -224,17 +231,6 @@ class ConstrainedTriangulation(Triangulation, TriangleExports):
             "constraints do not change which point is nearest: "
             "flaunay.Delaunay(result.points).nearest finds it"
         )
-
-
-def collections_of(
-    result: ConstrainedTriangulation, triangles: Indices, owners: Indices, count: int
-) -> npt.NDArray[Any]:
-    """Collections of triangles as polygons of Shapely. owners: that of each triangle, in increasing order."""
-    shapely = optional("shapely", f"{type(result).__name__}.to_shapely")
-    shapes = shapely.polygons(result.points[triangles[:, [0, 1, 2, 0]]])
-    collections: npt.NDArray[Any] = np.full(count, shapely.GeometryCollection(), object)
-    shapely.geometrycollections(shapes, indices=owners.astype(np.intp), out=collections)
-    return collections
 
 
 def _unique_pairs(first: Indices, second: Indices, n: int) -> Indices:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _scipy, _triangulators
+from flaunay import _calls, _export, _graphs, _scipy, _triangulators
 from flaunay._arrays import (
     ArrayLike,
     FloatArray,
@@ -24,11 +24,12 @@ from flaunay._arrays import (
     summary,
 )
 from flaunay._errors import InputError, UsageError
-from flaunay._export import TriangleExports
-from flaunay._plot import TrianglePlots
+from flaunay._plot import draw_edges
 from flaunay._triangulation import arrays_of_mesh
 
 if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.collections
     import scipy.spatial
 
 Indices = npt.NDArray[np.int32]
@@ -85,7 +86,7 @@ def _given(answers: _Answers, out: Optional[_Answers]) -> _Answers:
     return out
 
 
-class Delaunay(TrianglePlots, TriangleExports):
+class Delaunay:
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
     `scipy.spatial.Delaunay` can be replaced by it, in two dimensions; where both give an answer, this one
@@ -151,6 +152,23 @@ class Delaunay(TrianglePlots, TriangleExports):
     ndim = 2
     furthest_site = False
 
+    # Its edges, and what is computed of triangles.
+    edges = cached_property(_graphs.edges)
+    edge_lengths = cached_property(_graphs.edge_lengths)
+    edge_simplices = cached_property(_graphs.edge_simplices)
+    is_gabriel = cached_property(_graphs.is_gabriel)
+    vertex_neighbor_vertices = cached_property(_graphs.vertex_neighbor_vertices)
+    spanning_tree = cached_property(_graphs.spanning_tree)
+    circumradii = cached_property(_graphs.circumradii)
+
+    # For other packages.
+    adjacency = _graphs.adjacency
+    simplex_adjacency = _graphs.simplex_adjacency
+    to_networkx = _graphs.to_networkx
+    to_matplotlib = _export.to_matplotlib
+    to_meshio = _export.to_meshio
+    to_pyvista = _export.to_pyvista
+
     def __init__(
         self,
         points: ArrayLike,
@@ -165,7 +183,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         self.points: FloatArray = frozen(as_points(points).copy())
         self._device = device
         # With the process that made it.
-        self._locator_or_none: Optional[tuple[_flaunay.Locator, int]] = None
+        self._locator_or_none: Optional[tuple[_calls.Locator, int]] = None
         # Two threads that ask at the same time should not both make a locator.
         self._locator_lock = threading.Lock()
         mesh = arrays_of_mesh(self.points, None, {"neighbors"}, device, mode)
@@ -226,7 +244,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         _check_points(self.representatives, self.npoints, "representatives")
         points = np.flatnonzero(self.representatives != np.arange(self.npoints))
         equal = self.representatives[points]
-        simplices = _flaunay.first_triangles(self.simplices, self.npoints)[equal]
+        simplices = _calls.first_triangles(self.simplices, self.npoints)[equal]
         rows: Indices = np.stack([points, simplices, equal], axis=1).astype(np.int32)
         return frozen(rows)
 
@@ -238,17 +256,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         if there are no simplices.
         """
         _check_points(self.representatives, self.npoints, "representatives")
-        return frozen(_flaunay.first_triangles(self.simplices, self.npoints)[self.representatives])
-
-    @cached_property
-    def vertex_neighbor_vertices(self) -> tuple[Indices, Indices]:
-        """The points to which each point has edges: `indptr` and `indices`, int32.
-
-        Those of point k are ``indices[indptr[k]:indptr[k + 1]]``, in increasing order. A point that
-        another represents has none.
-        """
-        starts, indices = _flaunay.vertex_neighbors(self.simplices, self.hull, self.npoints)
-        return frozen(starts), frozen(indices)
+        return frozen(_calls.first_triangles(self.simplices, self.npoints)[self.representatives])
 
     def _doubles(self) -> Doubles:
         return np.asarray(self.points, np.float64)
@@ -330,6 +338,38 @@ class Delaunay(TrianglePlots, TriangleExports):
         distances: Doubles = heights + self.equations[:, 3]
         return distances.reshape(*shape, self.nsimplex)
 
+    def plot(
+        self, ax: Optional[matplotlib.axes.Axes] = None, **style: Any
+    ) -> matplotlib.collections.LineCollection:
+        """Draws the edges, each once.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        **style
+            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
+
+        Returns
+        -------
+        matplotlib.collections.LineCollection
+            One line for each of `edges`, in their order, so ``array=tri.edge_lengths`` colours them.
+
+        Raises
+        ------
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay, matplotlib
+        >>> matplotlib.use("Agg")
+        >>> lines = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]]).plot(color="tab:red")
+        >>> len(lines.get_segments())
+        3
+        """
+        return draw_edges(self.points, self.edges, ax, style)
+
     def close(self) -> None:
         """Gives back what queries hold in device memory; the next query makes it again."""
         with self._locator_lock:
@@ -367,7 +407,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         return _scipy.to_scipy(self)
 
     @property
-    def _locator(self) -> _flaunay.Locator:
+    def _locator(self) -> _calls.Locator:
         cached = self._locator_or_none
         if cached is not None and cached[1] == os.getpid():
             return cached[0]
@@ -375,7 +415,7 @@ class Delaunay(TrianglePlots, TriangleExports):
             if self._locator_or_none is None or self._locator_or_none[1] != os.getpid():
                 # A forked child must not use its parent's device, not even to release memory.
                 _triangulators.keep(self._locator_or_none)
-                locator = _flaunay.Locator(
+                locator = _calls.Locator(
                     _triangulators.of_device(self._device),
                     np.asarray(self.points, np.float64),
                     self.simplices,
@@ -385,12 +425,6 @@ class Delaunay(TrianglePlots, TriangleExports):
                 )
                 self._locator_or_none = locator, os.getpid()
             return self._locator_or_none[0]
-
-    def _locate(self, queries: Doubles) -> Indices:
-        return self._locator.locate(queries)
-
-    def _nearest(self, queries: Doubles) -> Indices:
-        return self._locator.nearest(queries)
 
     def __getstate__(self) -> dict[str, Any]:
         # What is in device memory is made again where it is needed; a lock is the object's own.
@@ -453,7 +487,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         queries, shape = _as_queries(xi)
         if out is not None:
             check_out(out, np.int32, shape, "out")
-        found = _answers(self._locate, queries, -1)
+        found = _answers(self._locator.locate, queries, -1)
         if tol and self.nsimplex:
             outside = np.flatnonzero((found < 0) & _are_finite(queries))
             found[outside] = _scipy.simplices_near_hull(self, queries[outside], tol)
@@ -490,7 +524,7 @@ class Delaunay(TrianglePlots, TriangleExports):
         queries, shape = _as_queries(xi)
         if out is not None:
             check_out(out, np.int32, shape, "out")
-        return _given(_answers(self._nearest, queries, -1).reshape(shape), out)
+        return _given(_answers(self._locator.nearest, queries, -1).reshape(shape), out)
 
     def interpolate(
         self, values: ArrayLike, xi: ArrayLike, out: Optional[Doubles] = None

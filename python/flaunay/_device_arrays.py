@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay
+from flaunay import _calls
 from flaunay._arrays import as_offsets
 from flaunay._errors import UsageError
 
@@ -113,7 +113,7 @@ class DeviceCall:
         """Makes the call wait for what these arrays wait for, and these know the call's event."""
         self._arrays += [array for array in arrays if array is not None]
 
-    def points(self, points: Any, offsets: Offsets, name: str) -> _flaunay.DevicePoints:
+    def points(self, points: Any, offsets: Offsets, name: str) -> _calls.DevicePoints:
         """Points as the library takes them."""
         _check_points(points, name)
         self.reads(points)
@@ -124,12 +124,12 @@ class DeviceCall:
             _first_point(points, name),
         )
         if offsets is None:
-            return _flaunay.DevicePoints(*place)
+            return _calls.DevicePoints(*place)
         if not isinstance(offsets, import_pyopencl().array.Array):
-            return _flaunay.DevicePoints(*place, given_offsets=as_offsets(offsets))
+            return _calls.DevicePoints(*place, given_offsets=as_offsets(offsets))
         _check_offsets(offsets)
         sets = int(offsets.size) - 1
-        return _flaunay.DevicePoints(*place, device_offsets=self._buffer(offsets), sets=sets)
+        return _calls.DevicePoints(*place, device_offsets=self._buffer(offsets), sets=sets)
 
     def numbers(self, array: Any, shapes: list[tuple[int, ...]], name: str) -> int:
         """The buffer of an array of doubles of one of some shapes, in which -1 is any size but 0."""
@@ -171,14 +171,14 @@ class DeviceCall:
         self.reads(copy)
         return _handle(copy)
 
-    def begin(self) -> _flaunay.Enqueue:
+    def begin(self) -> _calls.Enqueue:
         """What the library takes; to be made when all that is read is known."""
         self._events = self._wait_for + [event for array in self._arrays for event in array.events]
-        return _flaunay.Enqueue(
+        return _calls.Enqueue(
             int(self.queue.int_ptr), [int(event.int_ptr) for event in self._events]
         )
 
-    def end(self, enqueue: _flaunay.Enqueue) -> pyopencl.Event:
+    def end(self, enqueue: _calls.Enqueue) -> pyopencl.Event:
         """The event of the call, which the arrays that it reads know from then on."""
         event = import_pyopencl().Event.from_int_ptr(enqueue.event, retain=False)
         for array in self._arrays:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from flaunay import _flaunay, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
@@ -15,8 +15,6 @@ from flaunay._errors import UsageError
 if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
-
-    from flaunay._on_device import DeviceTriangulation
 
 # The methods by their names, and those that the library has for them.
 _METHODS = {
@@ -61,15 +59,21 @@ class DeviceLocator:
         Complete when the points and the triangulation have been read.
     """
 
-    def __init__(self, handle: _flaunay.DeviceLocator, npoints: int, event: pyopencl.Event) -> None:
-        self._handle: Optional[_flaunay.DeviceLocator] = handle
-        self.npoints = npoints
-        self.event = event
+    def __init__(
+        self, call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceResult
+    ) -> None:
+        enqueue = call.begin()
+        triangulator = _triangulators.of_queue(call.queue)
+        self._handle: Optional[_calls.DeviceLocator] = _calls.DeviceLocator(
+            triangulator, points, mesh, enqueue
+        )
+        self.npoints, _ = mesh.sizes
+        self.event: pyopencl.Event = call.end(enqueue)
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints)
 
-    def _opened(self) -> _flaunay.DeviceLocator:
+    def _opened(self) -> _calls.DeviceLocator:
         _triangulators.check_process()
         handle = self._handle
         if handle is None:
@@ -237,54 +241,9 @@ class DeviceLocator:
 
 def _answers(
     call: DeviceCall,
-    enqueue: _flaunay.Enqueue,
+    enqueue: _calls.Enqueue,
     buffer: int,
     shape: tuple[int, ...],
     dtype: Any,
 ) -> pyopencl.array.Array:
     return view(buffer, shape, dtype, call.queue, call.end(enqueue), retain=False)
-
-
-def locator(
-    triangulation: DeviceTriangulation,
-    queue: Optional[pyopencl.CommandQueue] = None,
-    wait_for: Optional[Sequence[pyopencl.Event]] = None,
-) -> DeviceLocator:
-    """What answers queries on the triangulation, in device memory.
-
-    Parameters
-    ----------
-    queue : pyopencl.CommandQueue, optional
-        As of `triangulate_device`. Without it, the one that the triangulation was made on.
-    wait_for : sequence of pyopencl.Event, optional
-        As of `triangulate_device`.
-
-    Returns
-    -------
-    DeviceLocator
-        It may outlive the triangulation and the points, and these may change after its ``event``.
-
-    Raises
-    ------
-    UsageError
-        If neighbors, hull or representatives were not asked for, or for a queue of another context.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> import numpy as np
-    >>> import pyopencl as cl
-    >>> import pyopencl.array
-    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-    >>> points = cl.array.to_device(queue, np.array([[0, 0], [4, 0], [4, 3], [0, 4.0]]))
-    >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-    >>> locator = tri.locator()
-    >>> locator.nearest(cl.array.to_device(queue, np.array([[1, 3], [9, 9.0]])))
-    cl.Array([3, 2], dtype=int32)
-    """
-    call, points = triangulation._begin("a locator", queue, wait_for)
-    enqueue = call.begin()
-    handle = _flaunay.DeviceLocator(
-        _triangulators.of_queue(call.queue), points, triangulation._mesh, enqueue
-    )
-    return DeviceLocator(handle, int(triangulation.points.shape[0]), call.end(enqueue))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
 from flaunay._cells import ClippedVoronoi, as_iterations, corners_of
 from flaunay._device_arrays import DeviceCall, queue_for, view
@@ -17,8 +17,6 @@ from flaunay._device_arrays import DeviceCall, queue_for, view
 if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
-
-    from flaunay._on_device import DeviceTriangulation
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,107 +84,34 @@ class DeviceClippedVoronoi:
 
 
 def voronoi(
-    triangulation: DeviceTriangulation,
-    queue: Optional[pyopencl.CommandQueue] = None,
-    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceResult
 ) -> DeviceVoronoi:
-    """The dual of the triangulation, in device memory.
-
-    Parameters
-    ----------
-    queue, wait_for : optional
-        As of `locator`.
-
-    Returns
-    -------
-    DeviceVoronoi
-
-    Raises
-    ------
-    UsageError
-        As of `locator`.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> import numpy as np
-    >>> import pyopencl as cl
-    >>> import pyopencl.array
-    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-    >>> points = cl.array.to_device(queue, np.array([[0, 0], [2, 0], [0, 2.0]]))
-    >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-    >>> tri.voronoi().vertices
-    cl.Array([[1., 1.]])
-    """
-    call, points = triangulation._begin("a Voronoi diagram", queue, wait_for)
+    """As `DeviceTriangulation.voronoi` says."""
     enqueue = call.begin()
-    result = _flaunay.voronoi_device(
-        _triangulators.of_queue(call.queue), points, triangulation._mesh, enqueue
-    )
+    triangulator = _triangulators.of_queue(call.queue)
+    result = _calls.voronoi_device(triangulator, points, mesh, enqueue)
     event = call.end(enqueue)
-    n, triangles = _sizes(triangulation)
+    n, triangles = mesh.sizes
     places = result.arrays(triangle=triangles, corner=3 * triangles, point=n, point_offset=n + 1)
     made = {name: view(*place, call.queue, event) for name, place in places.items()}
     return DeviceVoronoi(vertices=made.pop("circumcentres"), **made, event=event)
 
 
 def clipped_voronoi(
-    triangulation: DeviceTriangulation,
-    bounds: Any,
-    queue: Optional[pyopencl.CommandQueue] = None,
-    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    call: DeviceCall,
+    points: _calls.DevicePoints,
+    mesh: _calls.DeviceResult,
+    corners: npt.NDArray[np.float64],
 ) -> DeviceClippedVoronoi:
-    """The Voronoi cells, clipped to a box or a convex polygon, with their areas and centroids.
-
-    Of several sets, each has cells of its own, that cover the polygon.
-
-    Parameters
-    ----------
-    bounds : array_like or shapely.Polygon
-        As of `Voronoi.clipped`, in host memory.
-    queue, wait_for : optional
-        As of `locator`.
-
-    Returns
-    -------
-    DeviceClippedVoronoi
-
-    Raises
-    ------
-    UsageError
-        As of `locator`, and if the bounds are neither.
-    InputError
-        If the polygon is not convex, or not finite; the message names a corner.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> import numpy as np
-    >>> import pyopencl as cl
-    >>> import pyopencl.array
-    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-    >>> points = cl.array.to_device(queue, np.array([[1, 1], [3, 1], [2, 4.0]]))
-    >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-    >>> cells = tri.clipped_voronoi((0, 0, 4, 4))
-    >>> float(cl.array.sum(cells.areas).get())
-    16.0
-    """
-    corners = corners_of(bounds)
-    call, points = triangulation._begin("a Voronoi diagram", queue, wait_for)
+    """As `DeviceTriangulation.clipped_voronoi` says."""
     enqueue = call.begin()
-    result = _flaunay.clipped_voronoi_device(
-        _triangulators.of_queue(call.queue), points, triangulation._mesh, corners, enqueue
-    )
+    triangulator = _triangulators.of_queue(call.queue)
+    result = _calls.clipped_voronoi_device(triangulator, points, mesh, corners, enqueue)
     event = call.end(enqueue)
-    n, _ = _sizes(triangulation)
+    n, _ = mesh.sizes
     places = result.arrays(vertex=result.vertex_count, point=n, point_offset=n + 1)
     made = {name: view(*place, call.queue, event) for name, place in places.items()}
     return DeviceClippedVoronoi(**made, bounds=corners, event=event)
-
-
-def _sizes(triangulation: DeviceTriangulation) -> tuple[int, int]:
-    """The numbers of points and triangles."""
-    return int(triangulation.points.shape[0]), int(triangulation.triangle_offsets[-1])
 
 
 def relax_device(
@@ -235,7 +160,7 @@ def relax_device(
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     given = call.points(points, None, "points")
     enqueue = call.begin()
-    buffer = _flaunay.relax_device(
+    buffer = _calls.relax_device(
         _triangulators.of_queue(call.queue), given, corners, times, enqueue
     )
     return view(buffer, points.shape, np.float64, call.queue, call.end(enqueue), retain=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import FloatArray
+from flaunay._arrays import Triangles
 from flaunay._errors import UsageError
 from flaunay._optional import optional
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import meshio
     import pyvista
 
-Indices = npt.NDArray[np.int32]
 Data = Mapping[str, npt.ArrayLike]
 
 
@@ -29,120 +28,109 @@ def _checked(data: Optional[Data], n: int, name: str) -> dict[str, npt.NDArray[A
     return arrays
 
 
-class TriangleExports:
-    """Triangulations for other packages, each imported when it is asked for."""
+def to_matplotlib(tri: Triangles) -> matplotlib.tri.Triangulation:
+    """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
 
-    points: FloatArray
+    Returns
+    -------
+    matplotlib.tri.Triangulation
+        Made of these triangles, so Matplotlib runs no triangulation of its own. It has none if
+        there are no simplices, which Matplotlib refuses.
 
-    if TYPE_CHECKING:
+    Raises
+    ------
+    UsageError
+        If there are no simplices.
+    ImportError
+        Without Matplotlib.
 
-        @property
-        def simplices(self) -> Indices: ...
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+    >>> tri.to_matplotlib().triangles
+    array([[0, 1, 2]], dtype=int32)
+    """
+    if len(tri.simplices) == 0:
+        raise UsageError("Matplotlib takes no triangulation without triangles")
+    triangulations = optional("matplotlib.tri", f"{type(tri).__name__}.to_matplotlib")
+    x, y = tri.points.T
+    result: matplotlib.tri.Triangulation = triangulations.Triangulation(x, y, tri.simplices)
+    return result
 
-    def _purpose(self, method: str) -> str:
-        return f"{type(self).__name__}.{method}"
 
-    def to_matplotlib(self) -> matplotlib.tri.Triangulation:
-        """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
+def to_meshio(
+    tri: Triangles, point_data: Optional[Data] = None, cell_data: Optional[Data] = None
+) -> meshio.Mesh:
+    """The triangulation as a mesh of meshio, which writes VTK, XDMF, Gmsh, STL and other files.
 
-        Returns
-        -------
-        matplotlib.tri.Triangulation
-            Made of these triangles, so Matplotlib runs no triangulation of its own. It has none if
-            there are no simplices, which Matplotlib refuses.
+    Parameters
+    ----------
+    point_data, cell_data : mapping of str to array_like, optional
+        What points and simplices have, one row for each.
 
-        Raises
-        ------
-        UsageError
-            If there are no simplices.
-        ImportError
-            Without Matplotlib.
+    Returns
+    -------
+    meshio.Mesh
+        With copies of the arrays, points in two dimensions, and one block of triangles.
 
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-        >>> tri.to_matplotlib().triangles
-        array([[0, 1, 2]], dtype=int32)
-        """
-        if len(self.simplices) == 0:
-            raise UsageError("Matplotlib takes no triangulation without triangles")
-        triangulations = optional("matplotlib.tri", self._purpose("to_matplotlib"))
-        x, y = self.points.T
-        result: matplotlib.tri.Triangulation = triangulations.Triangulation(x, y, self.simplices)
-        return result
+    Raises
+    ------
+    UsageError
+        For data of another length.
+    ImportError
+        Without meshio.
 
-    def to_meshio(
-        self, point_data: Optional[Data] = None, cell_data: Optional[Data] = None
-    ) -> meshio.Mesh:
-        """The triangulation as a mesh of meshio, which writes VTK, XDMF, Gmsh, STL and other files.
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+    >>> tri.to_meshio(point_data={"height": [1, 2, 3]}).write("hills.vtk")  # doctest: +SKIP
+    """
+    of_points = _checked(point_data, len(tri.points), "point_data")
+    of_cells = _checked(cell_data, len(tri.simplices), "cell_data")
+    mesh: meshio.Mesh = optional("meshio", f"{type(tri).__name__}.to_meshio").Mesh(
+        tri.points.copy(),
+        [("triangle", tri.simplices.copy())],
+        point_data=of_points,
+        cell_data={name: [array] for name, array in of_cells.items()},
+    )
+    return mesh
 
-        Parameters
-        ----------
-        point_data, cell_data : mapping of str to array_like, optional
-            What points and simplices have, one row for each.
 
-        Returns
-        -------
-        meshio.Mesh
-            With copies of the arrays, points in two dimensions, and one block of triangles.
+def to_pyvista(tri: Triangles, z: Optional[npt.ArrayLike] = None) -> pyvista.PolyData:
+    """The triangulation as a surface of PyVista.
 
-        Raises
-        ------
-        UsageError
-            For data of another length.
-        ImportError
-            Without meshio.
+    Parameters
+    ----------
+    z : array_like, shape (npoints,), optional
+        Heights of the points; zero without.
 
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-        >>> tri.to_meshio(point_data={"height": [1, 2, 3]}).write("hills.vtk")  # doctest: +SKIP
-        """
-        of_points = _checked(point_data, len(self.points), "point_data")
-        of_cells = _checked(cell_data, len(self.simplices), "cell_data")
-        mesh: meshio.Mesh = optional("meshio", self._purpose("to_meshio")).Mesh(
-            self.points.copy(),
-            [("triangle", self.simplices.copy())],
-            point_data=of_points,
-            cell_data={name: [array] for name, array in of_cells.items()},
-        )
-        return mesh
+    Returns
+    -------
+    pyvista.PolyData
+        With copies of the arrays.
 
-    def to_pyvista(self, z: Optional[npt.ArrayLike] = None) -> pyvista.PolyData:
-        """The triangulation as a surface of PyVista.
+    Raises
+    ------
+    UsageError
+        For another number of heights than of points.
+    ImportError
+        Without PyVista.
 
-        Parameters
-        ----------
-        z : array_like, shape (npoints,), optional
-            Heights of the points; zero without.
-
-        Returns
-        -------
-        pyvista.PolyData
-            With copies of the arrays.
-
-        Raises
-        ------
-        UsageError
-            For another number of heights than of points.
-        ImportError
-            Without PyVista.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-        >>> tri.to_pyvista(z=[0, 1, 2]).plot()  # doctest: +SKIP
-        """
-        n = len(self.points)
-        heights = np.zeros(n) if z is None else np.asarray(z)
-        if heights.shape != (n,):
-            raise UsageError(f"z must have the shape ({n},), not {heights.shape}")
-        sizes = np.full((len(self.simplices), 1), 3, np.int32)
-        surface: pyvista.PolyData = optional("pyvista", self._purpose("to_pyvista")).PolyData(
-            np.column_stack([self.points, heights]),
-            faces=np.hstack([sizes, self.simplices]).ravel(),
-        )
-        return surface
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+    >>> tri.to_pyvista(z=[0, 1, 2]).plot()  # doctest: +SKIP
+    """
+    n = len(tri.points)
+    heights = np.zeros(n) if z is None else np.asarray(z)
+    if heights.shape != (n,):
+        raise UsageError(f"z must have the shape ({n},), not {heights.shape}")
+    sizes = np.full((len(tri.simplices), 1), 3, np.int32)
+    surface: pyvista.PolyData = optional("pyvista", f"{type(tri).__name__}.to_pyvista").PolyData(
+        np.column_stack([tri.points, heights]),
+        faces=np.hstack([sizes, tri.simplices]).ravel(),
+    )
+    return surface

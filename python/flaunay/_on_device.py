@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _device_queries, _device_voronoi, _flaunay, _triangulators
+from flaunay import _calls, _device_voronoi, _triangulators
 from flaunay._arrays import names_of, summary
+from flaunay._cells import corners_of
 from flaunay._device_arrays import DeviceCall, Offsets, import_pyopencl, queue_for, view
+from flaunay._device_queries import DeviceLocator
+from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation
 
@@ -52,12 +55,8 @@ class DeviceTriangulation:
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
     event: pyopencl.Event
-    _mesh: _flaunay.DeviceResult = field(repr=False)
+    _mesh: _calls.DeviceResult = field(repr=False)
     _queue: pyopencl.CommandQueue = field(repr=False)
-
-    locator = _device_queries.locator
-    voronoi = _device_voronoi.voronoi
-    clipped_voronoi = _device_voronoi.clipped_voronoi
 
     def __repr__(self) -> str:
         # Of the sizes alone, since the arrays are in device memory.
@@ -88,12 +87,133 @@ class DeviceTriangulation:
             }
         )
 
+    def locator(
+        self,
+        queue: Optional[pyopencl.CommandQueue] = None,
+        wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    ) -> DeviceLocator:
+        """What answers queries on the triangulation, in device memory.
+
+        Parameters
+        ----------
+        queue : pyopencl.CommandQueue, optional
+            As of `triangulate_device`. Without it, the one that the triangulation was made on.
+        wait_for : sequence of pyopencl.Event, optional
+            As of `triangulate_device`.
+
+        Returns
+        -------
+        DeviceLocator
+            It may outlive the triangulation and the points, and these may change after its ``event``.
+
+        Raises
+        ------
+        UsageError
+            If neighbors, hull or representatives were not asked for, or for a queue of another context.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> import numpy as np
+        >>> import pyopencl as cl
+        >>> import pyopencl.array
+        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+        >>> points = cl.array.to_device(queue, np.array([[0, 0], [4, 0], [4, 3], [0, 4.0]]))
+        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+        >>> locator = tri.locator()
+        >>> locator.nearest(cl.array.to_device(queue, np.array([[1, 3], [9, 9.0]])))
+        cl.Array([3, 2], dtype=int32)
+        """
+        call, points = self._begin("a locator", queue, wait_for)
+        return DeviceLocator(call, points, self._mesh)
+
+    def voronoi(
+        self,
+        queue: Optional[pyopencl.CommandQueue] = None,
+        wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    ) -> DeviceVoronoi:
+        """The dual of the triangulation, in device memory.
+
+        Parameters
+        ----------
+        queue, wait_for : optional
+            As of `locator`.
+
+        Returns
+        -------
+        DeviceVoronoi
+
+        Raises
+        ------
+        UsageError
+            As of `locator`.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> import numpy as np
+        >>> import pyopencl as cl
+        >>> import pyopencl.array
+        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+        >>> points = cl.array.to_device(queue, np.array([[0, 0], [2, 0], [0, 2.0]]))
+        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+        >>> tri.voronoi().vertices
+        cl.Array([[1., 1.]])
+        """
+        call, points = self._begin("a Voronoi diagram", queue, wait_for)
+        return _device_voronoi.voronoi(call, points, self._mesh)
+
+    def clipped_voronoi(
+        self,
+        bounds: Any,
+        queue: Optional[pyopencl.CommandQueue] = None,
+        wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    ) -> DeviceClippedVoronoi:
+        """The Voronoi cells, clipped to a box or a convex polygon, with their areas and centroids.
+
+        Of several sets, each has cells of its own, that cover the polygon.
+
+        Parameters
+        ----------
+        bounds : array_like or shapely.Polygon
+            As of `Voronoi.clipped`, in host memory.
+        queue, wait_for : optional
+            As of `locator`.
+
+        Returns
+        -------
+        DeviceClippedVoronoi
+
+        Raises
+        ------
+        UsageError
+            As of `locator`, and if the bounds are neither.
+        InputError
+            If the polygon is not convex, or not finite; the message names a corner.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> import numpy as np
+        >>> import pyopencl as cl
+        >>> import pyopencl.array
+        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+        >>> points = cl.array.to_device(queue, np.array([[1, 1], [3, 1], [2, 4.0]]))
+        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+        >>> cells = tri.clipped_voronoi((0, 0, 4, 4))
+        >>> float(cl.array.sum(cells.areas).get())
+        16.0
+        """
+        corners = corners_of(bounds)
+        call, points = self._begin("a Voronoi diagram", queue, wait_for)
+        return _device_voronoi.clipped_voronoi(call, points, self._mesh, corners)
+
     def _begin(
         self,
         what: str,
         queue: Optional[pyopencl.CommandQueue],
         wait_for: Optional[Sequence[pyopencl.Event]],
-    ) -> tuple[DeviceCall, _flaunay.DevicePoints]:
+    ) -> tuple[DeviceCall, _calls.DevicePoints]:
         """A call that reads the triangulation, and its points. what: what it makes, for errors."""
         arrays = {name: getattr(self, name) for name in ("neighbors", "hull", "representatives")}
         missing = [name for name, array in arrays.items() if array is None]
@@ -180,7 +300,7 @@ def triangulate_device(
         representatives=representatives,
     )
     enqueue = call.begin()
-    result = _flaunay.triangulate_device(
+    result = _calls.triangulate_device(
         _triangulators.of_queue(call.queue), device_points, wanted, enqueue
     )
     event = call.end(enqueue)

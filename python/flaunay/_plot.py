@@ -9,7 +9,6 @@ import numpy.typing as npt
 
 from flaunay._arrays import FloatArray
 from flaunay._errors import UsageError
-from flaunay._graphs import TriangleGraphs
 from flaunay._optional import optional
 
 if TYPE_CHECKING:
@@ -17,10 +16,6 @@ if TYPE_CHECKING:
     import matplotlib.collections
     import matplotlib.lines
     import matplotlib.patches
-
-    from flaunay._alpha_shape import AlphaShape
-    from flaunay._constrained import ConstrainedTriangulation
-    from flaunay._delaunay import Delaunay
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -48,54 +43,22 @@ def _with_defaults(style: dict[str, Any], defaults: dict[tuple[str, ...], Any]) 
 
 
 def _segments(
-    points: FloatArray, edges: Indices, style: dict[str, Any]
+    ends: npt.NDArray[Any], style: dict[str, Any]
 ) -> matplotlib.collections.LineCollection:
     collections = optional("matplotlib.collections", "plot")
-    lines: matplotlib.collections.LineCollection = collections.LineCollection(
-        points[edges], **style
-    )
+    lines: matplotlib.collections.LineCollection = collections.LineCollection(ends, **style)
     return lines
 
 
-class TrianglePlots(TriangleGraphs):
-    """`Delaunay` on Matplotlib's axes."""
-
-    def plot(
-        self, ax: Optional[matplotlib.axes.Axes] = None, **style: Any
-    ) -> matplotlib.collections.LineCollection:
-        """Draws the edges, each once.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw. Without it, on the current axes, whose aspect becomes equal.
-        **style
-            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
-
-        Returns
-        -------
-        matplotlib.collections.LineCollection
-            One line for each of `edges`, in their order, so ``array=tri.edge_lengths`` colours them.
-
-        Raises
-        ------
-        ImportError
-            Without Matplotlib.
-
-        Examples
-        --------
-        >>> import flaunay, matplotlib
-        >>> matplotlib.use("Agg")
-        >>> lines = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]]).plot(color="tab:red")
-        >>> len(lines.get_segments())
-        3
-        """
-        axes = _axes(ax, "Delaunay.plot")
-        look = _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:blue"})
-        lines = _segments(self.points, self.edges, look)
-        axes.add_collection(lines)
-        axes.autoscale_view()
-        return lines
+def draw_edges(
+    points: FloatArray, edges: Indices, ax: Optional[matplotlib.axes.Axes], style: dict[str, Any]
+) -> matplotlib.collections.LineCollection:
+    """As `Delaunay.plot` says."""
+    axes = _axes(ax, "Delaunay.plot")
+    lines = _segments(points[edges], _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:blue"}))
+    axes.add_collection(lines)
+    axes.autoscale_view()
+    return lines
 
 
 Bounds = Sequence[float]
@@ -145,93 +108,53 @@ def _bisectors(a: Doubles, b: Doubles) -> tuple[Doubles, Doubles]:
     return (a + b) / 2, np.stack([across[:, 1], -across[:, 0]], axis=1)
 
 
-def _ridges_in_box(vor: VoronoiPlots, box: tuple[Doubles, Doubles]) -> Doubles:
+def _ridges_in_box(
+    points: Doubles,
+    hull: Indices,
+    vertices: Doubles,
+    ridge_points: Indices,
+    ridge_vertices: Indices,
+    box: tuple[Doubles, Doubles],
+) -> Doubles:
     """The Voronoi edges in a box, shape (k, 2, 2)."""
-    tri = vor.delaunay
-    points = np.asarray(tri.points, np.float64)
-    if tri.nsimplex == 0:
+    if len(vertices) == 0:
         # Of points on one line, edges are lines.
-        start, step = _bisectors(points[tri.hull[:-1]], points[tri.hull[1:]])
+        start, step = _bisectors(points[hull[:-1]], points[hull[1:]])
         everywhere = np.full(len(start), np.inf)
         return _clipped_to_box(start, step, -everywhere, everywhere, box)
-    ends = np.asarray(vor.ridge_vertices)
-    endless = ends[:, 0] < 0
-    a, b = (points[np.asarray(vor.ridge_points)[endless, k]] for k in range(2))
+    endless = ridge_vertices[:, 0] < 0
     # Ridge points are in the order of a counter-clockwise triangle, so that outside is to the right.
-    _, outward = _bisectors(a, b)
-    start = vor.vertices[ends[:, 1]]
-    step = vor.vertices[ends[:, 0]] - start
+    _, outward = _bisectors(*points[ridge_points[endless].T])
+    start = vertices[ridge_vertices[:, 1]]
+    step = vertices[ridge_vertices[:, 0]] - start
     step[endless] = outward
     last = np.where(endless, np.inf, 1.0)
-    return _clipped_to_box(start, step, np.zeros(len(ends)), last, box)
+    return _clipped_to_box(start, step, np.zeros(len(last)), last, box)
 
 
-class VoronoiPlots:
-    """`Voronoi` on Matplotlib's axes."""
-
-    points: FloatArray
-    vertices: Doubles
-
-    if TYPE_CHECKING:
-        delaunay: Delaunay
-
-        @property
-        def ridge_points(self) -> Indices: ...
-        @property
-        def ridge_vertices(self) -> Indices: ...
-
-    def plot(
-        self,
-        ax: Optional[matplotlib.axes.Axes] = None,
-        bounds: Optional[Bounds] = None,
-        **style: Any,
-    ) -> matplotlib.collections.LineCollection:
-        """Draws the edges of the cells, each once, clipped to a box.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw. Without it, on the current axes, whose aspect becomes equal.
-        bounds : (xmin, ymin, xmax, ymax), optional
-            The box. Without it, that of the points with a margin of a tenth.
-        **style
-            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
-
-        Returns
-        -------
-        matplotlib.collections.LineCollection
-            The parts of the edges that lie in the box.
-
-        Raises
-        ------
-        UsageError
-            For bounds that are none.
-        ImportError
-            Without Matplotlib.
-
-        Examples
-        --------
-        >>> import flaunay, matplotlib
-        >>> matplotlib.use("Agg")
-        >>> vor = flaunay.Voronoi([[0, 0], [2, 0], [0, 2]])
-        >>> lines = vor.plot(bounds=(0, 0, 2, 2))
-        >>> [line.tolist() for line in lines.get_segments()]
-        [[[1.0, 1.0], [2.0, 2.0]], [[1.0, 1.0], [0.0, 1.0]], [[1.0, 1.0], [1.0, 0.0]]]
-        """
-        axes = _axes(ax, "Voronoi.plot")
-        points = np.asarray(self.points, np.float64)
-        if bounds is not None:
-            box = _checked_bounds(bounds)
-        else:
-            box = _box_around(points if len(points) else np.zeros((1, 2)))
-        look = _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:green"})
-        lines: matplotlib.collections.LineCollection = optional(
-            "matplotlib.collections", "Voronoi.plot"
-        ).LineCollection(_ridges_in_box(self, box), **look)
-        axes.add_collection(lines)
-        axes.update_datalim(np.stack(box))
-        axes.autoscale_view()
-        return lines
+def draw_voronoi(
+    points: FloatArray,
+    hull: Indices,
+    vertices: Doubles,
+    ridge_points: Indices,
+    ridge_vertices: Indices,
+    ax: Optional[matplotlib.axes.Axes],
+    bounds: Optional[Bounds],
+    style: dict[str, Any],
+) -> matplotlib.collections.LineCollection:
+    """As `Voronoi.plot` says."""
+    axes = _axes(ax, "Voronoi.plot")
+    places = np.asarray(points, np.float64)
+    if bounds is not None:
+        box = _checked_bounds(bounds)
+    else:
+        box = _box_around(places if len(places) else np.zeros((1, 2)))
+    ridges = _ridges_in_box(places, hull, vertices, ridge_points, ridge_vertices, box)
+    lines = _segments(ridges, _with_defaults(style, {_WIDTH: 0.7, _COLOR: "tab:green"}))
+    axes.add_collection(lines)
+    axes.update_datalim(np.stack(box))
+    axes.autoscale_view()
+    return lines
 
 
 AlphaShapeArtists = tuple[
@@ -242,13 +165,17 @@ AlphaShapeArtists = tuple[
 
 
 def draw_alpha_shape(
-    shape: AlphaShape, ax: Optional[matplotlib.axes.Axes], style: dict[str, Any]
+    points: FloatArray,
+    rings: list[Indices],
+    singular_edges: Indices,
+    isolated: Indices,
+    ax: Optional[matplotlib.axes.Axes],
+    style: dict[str, Any],
 ) -> AlphaShapeArtists:
     """As `AlphaShape.plot` says."""
     axes = _axes(ax, "AlphaShape.plot")
     paths = optional("matplotlib.path", "AlphaShape.plot")
     patches = optional("matplotlib.patches", "AlphaShape.plot")
-    points = shape.delaunay.points
     look = {
         "facecolor": "tab:blue",
         "alpha": 0.6,
@@ -257,7 +184,6 @@ def draw_alpha_shape(
         **style,
     }
     # One path of all rings: holes turn the other way, so they stay empty.
-    rings = shape.rings()
     closed = [points[np.append(ring, ring[0])] for ring in rings]
     codes = [
         [paths.Path.MOVETO] + [paths.Path.LINETO] * (len(r) - 1) + [paths.Path.CLOSEPOLY]
@@ -269,9 +195,9 @@ def draw_alpha_shape(
     patch: matplotlib.patches.PathPatch = patches.PathPatch(path, **look)
     axes.add_patch(patch)
     plain = {"color": look["edgecolor"], "linewidth": look["linewidth"]}
-    lines = _segments(points, shape.singular_edges, plain)
+    lines = _segments(points[singular_edges], plain)
     axes.add_collection(lines)
-    (dots,) = axes.plot(*points[shape.isolated].T, ".", color=look["edgecolor"], markersize=3)
+    (dots,) = axes.plot(*points[isolated].T, ".", color=look["edgecolor"], markersize=3)
     axes.autoscale_view()
     return patch, lines, dots
 
@@ -282,26 +208,31 @@ ConstrainedArtists = tuple[
 
 
 def draw_constrained(
-    result: ConstrainedTriangulation, ax: Optional[matplotlib.axes.Axes], style: dict[str, Any]
+    points: Doubles,
+    edges: Indices,
+    constraint_edges: Indices,
+    ax: Optional[matplotlib.axes.Axes],
+    style: dict[str, Any],
+    purpose: str,
 ) -> ConstrainedArtists:
     """As `ConstrainedTriangulation.plot` says."""
-    axes = _axes(ax, f"{type(result).__name__}.plot")
+    axes = _axes(ax, purpose)
     look = _with_defaults(style, {_WIDTH: 0.5, _COLOR: "tab:blue"})
     strong = {
         "color": look.pop("constraint_color", "tab:red"),
         "linewidth": look.pop("constraint_linewidth", 1.6),
         "capstyle": "round",
     }
-    n = max(len(result.points), 1)
+    n = max(len(points), 1)
 
     def keys_of(edges: Indices) -> npt.NDArray[np.int64]:
         ends = np.sort(edges, axis=1).astype(np.int64)
         keys: npt.NDArray[np.int64] = ends[:, 0] * n + ends[:, 1]
         return keys
 
-    is_constraint = np.isin(keys_of(result.edges), keys_of(result.constraint_edges))
-    lines = _segments(result.points, result.edges[~is_constraint], look)
-    constraints = _segments(result.points, result.edges[is_constraint], strong)
+    is_constraint = np.isin(keys_of(edges), keys_of(constraint_edges))
+    lines = _segments(points[edges[~is_constraint]], look)
+    constraints = _segments(points[edges[is_constraint]], strong)
     for collection in (lines, constraints):
         axes.add_collection(collection)
     axes.autoscale_view()

@@ -13,7 +13,6 @@ from flaunay import _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen, names_of, summary
 from flaunay._constrained import (
     ConstrainedTriangulation,
-    collections_of,
     number_of,
     rules_of,
     with_points,
@@ -114,7 +113,7 @@ class PolygonTriangulation(ConstrainedTriangulation):
         inside = np.flatnonzero(of >= 0)
         order = inside[np.argsort(of[inside], kind="stable")]
         count = len(self.polygon_offsets) - 1
-        return collections_of(self, self.triangles[order], of[order], count)
+        return self._collections(self.triangles[order], of[order], count)
 
 
 def _offsets_of(owners: npt.NDArray[np.intp], count: int) -> Offsets:
@@ -406,7 +405,9 @@ def polygons(
         try:
             points, rings, outer, parts = _rings_of(geometries)
         except RecursionError:
-            raise UsageError("geometries have collections inside of collections, too deep") from None
+            raise UsageError(
+                "geometries have collections inside of collections, too deep"
+            ) from None
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     triangulator = _triangulators.of_device(device)
     result = triangulator.triangulate_polygons(points, rings, outer, parts, rules, wanted)

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import slices
+from flaunay._arrays import Mesh, slices
 from flaunay._errors import UsageError
 
 if TYPE_CHECKING:
     import scipy.spatial
-
-    from flaunay._delaunay import Delaunay
 
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
@@ -62,14 +60,14 @@ def check_options(furthest_site: bool, incremental: bool, qhull_options: Optiona
     return joggle
 
 
-def check_all_are_vertices(tri: Delaunay) -> None:
+def check_all_are_vertices(tri: Mesh) -> None:
     """UsageError where Qhull's option QJ would have joggled points into the triangulation."""
-    if tri.npoints and tri.nsimplex == 0:
+    if len(tri.points) and len(tri.simplices) == 0:
         raise UsageError(
             "Qhull's option QJ asks for every point to be a vertex, but the points have no triangles, "
             "as they are on one line or fewer than three"
         )
-    equal = np.flatnonzero(tri.representatives != np.arange(tri.npoints))
+    equal = np.flatnonzero(tri.representatives != np.arange(len(tri.points)))
     if len(equal):
         raise UsageError(
             f"Qhull's option QJ asks for every point to be a vertex, but point {equal[0]} equals point "
@@ -155,16 +153,16 @@ def _write_transforms(corners: Doubles, transforms: Doubles) -> None:
     transforms[~(sides * gradients <= _LARGEST_CONDITION)] = np.nan
 
 
-def _hull_simplices(tri: Delaunay) -> Indices:
+def _hull_simplices(tri: Mesh) -> Indices:
     """For each edge of the hull, by its first point, the simplex that has it."""
     simplex, corner = np.nonzero(tri.neighbors < 0)
-    by_point = np.empty(tri.npoints, np.int32)
+    by_point = np.empty(len(tri.points), np.int32)
     by_point[tri.simplices[simplex, (corner + 1) % 3]] = simplex
     simplices: Indices = by_point[tri.hull]
     return simplices
 
 
-def simplices_near_hull(tri: Delaunay, outside: Doubles, tolerance: float) -> Indices:
+def simplices_near_hull(tri: Mesh, outside: Doubles, tolerance: float) -> Indices:
     """For points outside of the hull a simplex at the hull that they are in but for the tolerance, or -1.
 
     The simplices are those of three edges of the hull: the one that is between a point and the centre,
@@ -190,28 +188,27 @@ def simplices_near_hull(tri: Delaunay, outside: Doubles, tolerance: float) -> In
     return found
 
 
-def to_scipy(tri: Delaunay) -> scipy.spatial.Delaunay:
+def to_scipy(tri: Mesh) -> scipy.spatial.Delaunay:
     """A scipy.spatial.Delaunay that Qhull has not made."""
     try:
         import scipy.spatial
     except ImportError as error:
         raise ImportError("to_scipy needs SciPy, which cannot be imported") from error
-    if tri.nsimplex == 0:
+    if len(tri.simplices) == 0:
         raise UsageError("SciPy has no triangulations without simplices")
     made: Any = object.__new__(scipy.spatial.Delaunay)
     # SciPy's compiled code takes pointers of these arrays, and its users may write to them.
     made._points = np.array(tri.points, np.float64)
-    made.simplices = np.array(tri.simplices, np.intc)
-    made.neighbors = np.array(tri.neighbors, np.intc)
-    made.equations = np.array(tri.equations)
-    made.coplanar = np.array(tri.coplanar, np.intc)
-    made.good = np.array(tri.good)
+    for name in ("simplices", "neighbors", "coplanar"):
+        setattr(made, name, np.array(getattr(tri, name), np.intc))
+    for name in ("equations", "good"):
+        setattr(made, name, np.array(getattr(tri, name)))
+    for name in ("paraboloid_scale", "paraboloid_shift", "ndim", "npoints", "nsimplex"):
+        setattr(made, name, getattr(tri, name))
     made.min_bound, made.max_bound = made._points.min(axis=0), made._points.max(axis=0)
-    made.paraboloid_scale, made.paraboloid_shift = tri.paraboloid_scale, tri.paraboloid_shift
-    made.ndim, made.npoints, made.nsimplex = tri.ndim, tri.npoints, tri.nsimplex
     made.furthest_site = False
-    # The same as SciPy's, which calls LAPACK for each simplex.
-    made._transform = np.array(tri.transform)
+    # As SciPy's, which calls LAPACK for each simplex.
+    made._transform = barycentric_transforms(made._points, tri.simplices)
     # SciPy computes these when they are asked for.
     made._vertex_to_simplex = made._vertex_neighbor_vertices = None
     made._qhull = None

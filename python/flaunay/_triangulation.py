@@ -8,11 +8,11 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _flaunay, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import FloatArray, summary
 from flaunay._errors import UsageError
 
-_MODES_ON_HOST = {mode["name"] for mode in _flaunay.modes() if mode["on_host"]}
+_MODES_ON_HOST = {mode["name"] for mode in _calls.modes() if mode["on_host"]}
 
 
 # Without __eq__ and __repr__ of all fields: arrays have no single truth value, and can be long.
@@ -73,13 +73,13 @@ def arrays_of_mesh(
 ) -> dict[str, Any]:
     """What a `Triangulation` consists of, by its names. wanted: the optional arrays to compute."""
     if not isinstance(mode, str):
-        names = ", ".join(row["name"] for row in _flaunay.modes())
+        names = ", ".join(row["name"] for row in _calls.modes())
         raise UsageError(f"there is no mode {mode!r}; there are {names}")
     if mode in _MODES_ON_HOST:
         if device is not None:
             raise UsageError(f"mode {mode} runs on the host and takes no device")
         doubles = np.asarray(coordinates, dtype=np.float64)
-        return _flaunay.triangulate_without_device(doubles, offsets, mode, wanted)
+        return _calls.triangulate_without_device(doubles, offsets, mode, wanted)
     triangulator = _triangulators.of_device(device, may_be_host=mode == "blocks")
     return triangulator.triangulate(coordinates, offsets, mode, wanted)
 
@@ -99,4 +99,4 @@ def modes() -> list[dict[str, Any]]:
     >>> flaunay.modes()[0]["name"]
     'blocks'
     """
-    return _flaunay.modes()
+    return _calls.modes()

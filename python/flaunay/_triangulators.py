@@ -9,7 +9,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-from flaunay import _drivers, _flaunay
+from flaunay import _calls, _drivers
 from flaunay._errors import DeviceError
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ _log = logging.getLogger("flaunay")
 _HOST = "host"
 
 _lock = threading.Lock()
-_by_name: dict[str, _flaunay.Triangulator] = {}
-_by_handles: OrderedDict[tuple[int, int], _flaunay.Triangulator] = OrderedDict()
+_by_name: dict[str, _calls.Triangulator] = {}
+_by_handles: OrderedDict[tuple[int, int], _calls.Triangulator] = OrderedDict()
 _inherited: list[Any] = []
 _used = False
 _forked = False
@@ -64,14 +64,14 @@ def check_process() -> None:
     _drivers.add_drivers()
 
 
-def of_device(device: Optional[str], may_be_host: bool = True) -> _flaunay.Triangulator:
+def of_device(device: Optional[str], may_be_host: bool = True) -> _calls.Triangulator:
     """The triangulator of a device; in a forked child the host's, if flaunay may choose."""
     name = _name_of(device)
     if _forked and not name and may_be_host:
         name = _HOST
     if name != _HOST:
         check_process()
-    dropped: list[_flaunay.Triangulator] = []
+    dropped: list[_calls.Triangulator] = []
     with _lock:
         found = _by_name.get(name)
         if found is None:
@@ -80,7 +80,7 @@ def of_device(device: Optional[str], may_be_host: bool = True) -> _flaunay.Trian
                     "opening %s: kernels that it has not compiled before take seconds, once", name
                 )
             # The environment is left to the triangulator, which names it in its errors.
-            found = _flaunay.Triangulator(_HOST if name == _HOST else device or "")
+            found = _calls.Triangulator(_HOST if name == _HOST else device or "")
             # A device has more than one name; what it holds, it should hold once.
             for other_name, other in _by_name.items():
                 if {name, other_name} & {"", _HOST}:
@@ -110,16 +110,16 @@ def keep(inherited: Any) -> None:
     _inherited.append(inherited)
 
 
-def of_queue(queue: pyopencl.CommandQueue) -> _flaunay.Triangulator:
+def of_queue(queue: pyopencl.CommandQueue) -> _calls.Triangulator:
     """The triangulator in a queue's context."""
     check_process()
     handles = (queue.context.int_ptr, queue.device.int_ptr)
     # Its end waits for queues of the caller, so that it must not come under the lock.
-    dropped: list[_flaunay.Triangulator] = []
+    dropped: list[_calls.Triangulator] = []
     with _lock:
         found = _by_handles.get(handles)
         if found is None:
-            found = _flaunay.Triangulator.from_handles(*handles)
+            found = _calls.Triangulator.from_handles(*handles)
             _by_handles[handles] = found
             if len(_by_handles) > _MOST_CONTEXTS:
                 dropped.append(_by_handles.popitem(last=False)[1])
@@ -151,4 +151,4 @@ def devices() -> list[dict[str, Any]]:
     True
     """
     check_process()
-    return _flaunay.devices()
+    return _calls.devices()

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _cells, _flaunay, _triangulators
+from flaunay import _calls, _cells, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
-from flaunay._plot import VoronoiPlots
+from flaunay._plot import Bounds, draw_voronoi
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.collections
 
 Indices = npt.NDArray[np.int32]
 
 
-class Voronoi(VoronoiPlots):
+class Voronoi:
     """The Voronoi diagram of points in the plane, with the attributes of SciPy's.
 
     It has a vertex for each Delaunay triangle. Where more than three points are cocircular, vertices
@@ -85,7 +89,6 @@ class Voronoi(VoronoiPlots):
 
     ndim = 2
     furthest_site = False
-    clipped = _cells.clipped
 
     def __init__(
         self,
@@ -103,7 +106,7 @@ class Voronoi(VoronoiPlots):
         )
         self.points: FloatArray = tri.points
         coordinates = np.asarray(tri.points, np.float64)
-        arrays = _flaunay.voronoi(
+        arrays = _calls.voronoi(
             _triangulators.of_device(device),
             coordinates,
             tri.simplices,
@@ -117,7 +120,7 @@ class Voronoi(VoronoiPlots):
         # The vertex of each triangle; None if it has its triangle's index.
         self._vertex_of: Optional[Indices] = None
         if merge:
-            first = _flaunay.same_circles(coordinates, tri.simplices, tri.neighbors)
+            first = _calls.same_circles(coordinates, tri.simplices, tri.neighbors)
             distinct, numbers = np.unique(first, return_inverse=True)
             vertices = vertices[distinct]
             offsets, cells = _merge_cells(numbers, offsets, cells, self.unbounded)
@@ -208,6 +211,83 @@ class Voronoi(VoronoiPlots):
         representatives = self.delaunay.representatives
         has_cell = np.diff(self.cell_offsets)[representatives] > 0
         return frozen(np.where(has_cell, representatives, -1).astype(np.intp))
+
+    def clipped(self, bounds: Any) -> _cells.ClippedVoronoi:
+        """The cells, clipped to a box or a convex polygon.
+
+        Parameters
+        ----------
+        bounds : array_like or shapely.Polygon
+            ``(xmin, ymin, xmax, ymax)``, or the corners of a convex polygon, shape (m, 2), in either
+            direction; a last corner that repeats the first does not count.
+
+        Returns
+        -------
+        ClippedVoronoi
+
+        Raises
+        ------
+        UsageError
+            If the bounds are neither.
+        InputError
+            If the polygon is not convex, or not finite; the message names a corner.
+
+        Notes
+        -----
+        Points may lie outside, on one line, or be few: one point has the whole polygon.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> vor = flaunay.Voronoi([[1, 1], [3, 1], [2, 4]])
+        >>> cells = vor.clipped((0, 0, 4, 4))
+        >>> float(cells.areas.sum())
+        16.0
+        >>> len(cells.polygon(0))
+        4
+        """
+        return _cells.clip(self.delaunay, bounds)
+
+    def plot(
+        self,
+        ax: Optional[matplotlib.axes.Axes] = None,
+        bounds: Optional[Bounds] = None,
+        **style: Any,
+    ) -> matplotlib.collections.LineCollection:
+        """Draws the edges of the cells, each once, clipped to a box.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw. Without it, on the current axes, whose aspect becomes equal.
+        bounds : (xmin, ymin, xmax, ymax), optional
+            The box. Without it, that of the points with a margin of a tenth.
+        **style
+            As `matplotlib.collections.LineCollection` takes it, such as ``color`` and ``linewidth``.
+
+        Returns
+        -------
+        matplotlib.collections.LineCollection
+            The parts of the edges that lie in the box.
+
+        Raises
+        ------
+        UsageError
+            For bounds that are none.
+        ImportError
+            Without Matplotlib.
+
+        Examples
+        --------
+        >>> import flaunay, matplotlib
+        >>> matplotlib.use("Agg")
+        >>> vor = flaunay.Voronoi([[0, 0], [2, 0], [0, 2]])
+        >>> lines = vor.plot(bounds=(0, 0, 2, 2))
+        >>> [line.tolist() for line in lines.get_segments()]
+        [[[1.0, 1.0], [2.0, 2.0]], [[1.0, 1.0], [0.0, 1.0]], [[1.0, 1.0], [1.0, 0.0]]]
+        """
+        ridges = (self.vertices, self.ridge_points, self.ridge_vertices)
+        return draw_voronoi(self.points, self.delaunay.hull, *ridges, ax, bounds, style)
 
     def close(self) -> None:
         """Gives back what `delaunay` holds in device memory for queries."""

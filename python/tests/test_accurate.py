@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from flaunay._flaunay import angles, circumradii, turns
+from flaunay._calls import angles, circumradii, turns
 
 
 def near_the_middle(a, b, random):

@@ -42,13 +42,13 @@ def no_copy_of(points):
     """Fails if the library is given anything but the memory of the points."""
     with pytest.MonkeyPatch.context() as patch:
         seen = []
-        triangulate = flaunay._flaunay.Triangulator.triangulate
+        triangulate = flaunay._calls.Triangulator.triangulate
 
         def watched(self, given, *rest):
             seen.append(np.shares_memory(given, points))
             return triangulate(self, given, *rest)
 
-        patch.setattr(flaunay._flaunay.Triangulator, "triangulate", watched)
+        patch.setattr(flaunay._calls.Triangulator, "triangulate", watched)
         yield
     assert seen and all(seen)
 

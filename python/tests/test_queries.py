@@ -89,10 +89,10 @@ def test_columns_are_interpolated_together(
     tri = flaunay.Delaunay(points)
     expected = [tri.interpolate(column, queries) for column in values.reshape(-1, 24).T]
     calls = []
-    ask = flaunay._flaunay.Locator.interpolate
+    ask = flaunay._calls.Locator.interpolate
     monkeypatch.setattr(flaunay._delaunay, "_MOST_NUMBERS", most)
     monkeypatch.setattr(
-        flaunay._flaunay.Locator, "interpolate", lambda *all: calls.append(1) or ask(*all)
+        flaunay._calls.Locator, "interpolate", lambda *all: calls.append(1) or ask(*all)
     )
     found = tri.interpolate(values, queries)
     assert found.tobytes() == np.stack(expected, axis=1).tobytes()

@@ -69,9 +69,9 @@ def test_another_thread_counts_meanwhile(random):
 
 
 def test_a_locator_is_made_while_another_is(random, monkeypatch):
-    from flaunay import _flaunay
+    from flaunay import _calls
 
-    make = _flaunay.Locator
+    make = _calls.Locator
     begun, other_is_done = threading.Event(), threading.Event()
 
     def wait_with_the_large_one(triangulator, points, *mesh):
@@ -80,7 +80,7 @@ def test_a_locator_is_made_while_another_is(random, monkeypatch):
             assert other_is_done.wait(60)
         return make(triangulator, points, *mesh)
 
-    monkeypatch.setattr(_flaunay, "Locator", wait_with_the_large_one)
+    monkeypatch.setattr(_calls, "Locator", wait_with_the_large_one)
     large, small = (flaunay.Delaunay(random.random((n, 2))) for n in (1000, 10))
     with ThreadPoolExecutor(2) as pool:
         first = pool.submit(large.nearest, large.points)
@@ -94,9 +94,9 @@ def test_a_locator_is_made_while_another_is(random, monkeypatch):
 
 
 def test_two_threads_make_one_locator(random, monkeypatch):
-    from flaunay import _flaunay
+    from flaunay import _calls
 
-    make = _flaunay.Locator
+    make = _calls.Locator
     made = []
 
     def make_slowly(*arguments):
@@ -104,7 +104,7 @@ def test_two_threads_make_one_locator(random, monkeypatch):
         time.sleep(0.2)
         return make(*arguments)
 
-    monkeypatch.setattr(_flaunay, "Locator", make_slowly)
+    monkeypatch.setattr(_calls, "Locator", make_slowly)
     tri = flaunay.Delaunay(random.random((100, 2)))
     with ThreadPoolExecutor(2) as pool:
         for found in pool.map(tri.nearest, [tri.points] * 2):

@@ -9,7 +9,7 @@ import pytest
 import scipy.spatial
 
 import flaunay
-from flaunay import _flaunay
+from flaunay import _calls
 
 
 def place(voronoi, vertex):
@@ -222,7 +222,7 @@ def test_cocircularity_is_that_of_fractions(random):
                 + (cx * cx + cy * cy) * (ax * by - bx * ay)
             )
             expected.append(determinant == 0)
-        found = _flaunay.same_circles(points.reshape(-1, 2), triangles, neighbors).reshape(-1, 2)
+        found = _calls.same_circles(points.reshape(-1, 2), triangles, neighbors).reshape(-1, 2)
         assert (found[:, 0] == 2 * np.arange(100)).all()
         assert (found[:, 0] == found[:, 1]).tolist() == expected and 50 <= sum(expected) < 100
 
