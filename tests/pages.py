@@ -81,7 +81,7 @@ def problems(source, page, files):
             if not (source / path).exists():
                 yield number, f"no file {path}"
         for name in SOURCE_FILE.findall(line):
-            if name not in files:
+            if name not in files and name.split("/")[0] not in FOLDERS:
                 yield number, f"no file is called {name}"
 
 
