@@ -8,6 +8,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
+
 namespace {
 
 // If the caller wants progress, blocks are solved in several launches. Each has many blocks per work-item,

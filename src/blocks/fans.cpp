@@ -2,6 +2,7 @@
 #include "launchers/blocks/fans.cl.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
 
 void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings) {
   host::Runtime& runtime = work.runtime;

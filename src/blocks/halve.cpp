@@ -8,6 +8,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
+
 namespace {
 
 // So many points of a block for each work-item, or more in the largest groups.

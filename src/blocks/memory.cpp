@@ -7,6 +7,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
+
 namespace {
 
 // Number of arrays that exist at the same time. Each is rounded up to the device's alignment.

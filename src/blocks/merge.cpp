@@ -9,6 +9,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
+
 namespace {
 
 // Every so many-th work-item of a launch has a merge.

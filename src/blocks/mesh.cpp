@@ -7,6 +7,8 @@
 #include "launchers/blocks/mesh.cl.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
+
 namespace {
 
 void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,

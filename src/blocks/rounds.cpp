@@ -14,6 +14,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
+
 namespace {
 
 // What all rounds emit to.

@@ -4,6 +4,7 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
+using namespace points;
 
 void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.points = n;

@@ -19,9 +19,6 @@
 
 namespace flaunay::blocks {
 
-using namespace geometry;
-using namespace points;
-
 using host::Arena;
 using host::Buffer;
 
@@ -38,18 +35,19 @@ constexpr double kTrianglesWritten = 0.95;
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
 /// sets the numbers in Rings that are on the host. Sets a milestone for some of the blocks each, and for each
 /// level of merges, unless milestones are null.
-Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
-             Milestones* milestones = nullptr);
+points::Rings divide(points::Workspace& work, const points::Blocks& blocks,
+                     const host::Buffer<cl_int>& representatives, Milestones* milestones = nullptr);
 /// The first part of divide: triangulates each block. If the host has not read the blocks' sizes, those that
 /// are larger than expected are left as blocks without vertices; that takes `blocks_in_parallel`.
-Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
-            Milestones* milestones = nullptr);
+points::Rings solve(points::Workspace& work, const points::Blocks& blocks,
+                    const host::Buffer<cl_int>& representatives, Milestones* milestones = nullptr);
 /// The second part of divide: merges the triangulations of blocks.
-void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones = nullptr);
+void merge(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
+           Milestones* milestones = nullptr);
 /// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
 std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
 /// Waits once. Throws as check_account does.
-void await_rings(Workspace& work, const Blocks& blocks, Rings& rings);
+void await_rings(points::Workspace& work, const points::Blocks& blocks, points::Rings& rings);
 /// Throws Error(internal) if the account of rings says that a merge has failed.
 void check_account(const cl_uint* account);
 
@@ -59,10 +57,10 @@ struct PointBlocks {
   std::size_t points = 0;  ///< number of places, of which the blocks have all or the first
   /// Blocks of more points are left as if all their places were those of duplicates: without vertices.
   std::size_t largest = 0;
-  Buffer<cl_int> offsets{};  ///< count + 1: the first point of each block
+  host::Buffer<cl_int> offsets{};  ///< count + 1: the first point of each block
   /// As in Blocks.
-  Buffer<cl_double2> vertices{};
-  Buffer<cl_int> source{};
+  host::Buffer<cl_double2> vertices{};
+  host::Buffer<cl_int> source{};
 };
 
 /// Triangulates blocks of any points, as divide does before it merges them, on devices with many lanes: the
@@ -71,36 +69,37 @@ struct PointBlocks {
 /// wait. Scratch memory: kParallelBytesPerPoint. Makes 4 launches and 2 or 3 per halving of the largest
 /// block, and some more if blocks may have more than large_blocks times block_points points, or if most are
 /// tiny.
-void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
-                       const Rings& rings);
+void solve_in_parallel(points::Workspace& work, const PointBlocks& blocks,
+                       const host::Buffer<cl_int>& representatives, const points::Rings& rings);
 constexpr std::size_t kParallelBytesPerPoint = 82;
 
 /// What the stage `halve` leaves for `merge`, from the scratch arena.
 struct HalvedBlocks {
-  Buffer<cl_int> block_of_place{};
-  Buffer<cl_uchar> axes{};
+  host::Buffer<cl_int> block_of_place{};
+  host::Buffer<cl_uchar> axes{};
 };
 
 /// Sorts each block's points, drops duplicates, and halves what is left down to leaves. Sets the vertices,
 /// the sources, the representatives of duplicates, and in `rings` the numbers of vertices and what empty
 /// blocks have.
-HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
-                   const Rings& rings);
+HalvedBlocks halve(points::Workspace& work, const PointBlocks& blocks,
+                   const host::Buffer<cl_int>& representatives, const points::Rings& rings);
 /// Triangulates halved blocks, from the leaves up.
-void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved, const Rings& rings);
+void merge_halves(points::Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
+                  const points::Rings& rings);
 /// Merges the blocks of a level of the trees: merges [first, end).
-void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
-                 const Rings& rings);
+void merge_trees(points::Workspace& work, const points::Blocks& blocks, std::size_t first, std::size_t end,
+                 const points::Rings& rings);
 
 /// Makes the triangulations canonical, unless the account says that there were no ties: then they are
 /// already. Does not wait. Temporary memory: 6 bytes per point.
-void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings);
+void make_fans(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings);
 
 /// The size of a mesh.
 struct MeshSizes {
   std::vector<std::size_t> triangle_offsets, hull_offsets;  ///< sets + 1
   std::size_t vertices = 0;
-  Buffer<cl_uint> first_rows{};  ///< the first triangle of each vertex; the last entry is their total
+  host::Buffer<cl_uint> first_rows{};  ///< the first triangle of each vertex; the last entry is their total
 
   std::size_t triangles() const { return triangle_offsets.back(); }
   std::size_t hull_vertices() const { return hull_offsets.back(); }
@@ -115,7 +114,7 @@ MeshSizes mesh_sizes(const std::vector<cl_int>& set_blocks, const std::vector<cl
 /// Counts triangles and hull vertices, and marks the edges on the hull in `rings`. first_rows are for
 /// write_mesh and come from the scratch arena. Waits once. Throws Error(internal) if numbers contradict each
 /// other.
-MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings);
+MeshSizes count_mesh(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings);
 
 /// A triangle is written at its vertex in the middle; no vertex is in the middle of more than two triangles.
 constexpr std::size_t kMostTrianglesPerPoint = 2;
@@ -123,12 +122,12 @@ constexpr std::size_t kMostTrianglesPerPoint = 2;
 /// The arrays for the parts of a mesh, as flaunay.hpp describes them. Parts that are not wanted have no
 /// memory.
 struct MeshBuffers {
-  Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{};
+  host::Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{};
 };
 
 /// Writes the parts of the mesh, with milestones unless they are null. Neighbours and halfedges need the
 /// triangles. Does not wait.
-void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
-                const MeshBuffers& buffers, Milestones* milestones = nullptr);
+void write_mesh(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
+                const MeshSizes& sizes, const MeshBuffers& buffers, Milestones* milestones = nullptr);
 
 }  // namespace flaunay::blocks

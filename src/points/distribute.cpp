@@ -9,6 +9,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {
+using namespace geometry;
+
 namespace {
 
 // alone: sets of at most so many points are one block.

@@ -12,7 +12,6 @@
 
 namespace flaunay::points {
 
-using namespace geometry;
 using host::Arena;
 using host::Buffer;
 
@@ -20,7 +19,7 @@ using host::Buffer;
 struct Workspace {
   host::Runtime& runtime;
   Arena& persistent;  ///< arrays that live as long as the call
-  Bounds bounds{};
+  geometry::Bounds bounds{};
 
   Arena& scratch() { return runtime.arena(); }
 };

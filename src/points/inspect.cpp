@@ -11,6 +11,7 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {
+using namespace geometry;
 
 namespace {
 

@@ -6,24 +6,22 @@
 
 namespace flaunay::points {
 
-using namespace geometry;
-
 /// Finds the magnitudes of n points, x0 y0 x1 y1 ... Waits once. Temporary memory: 12 bytes. O(n).
-Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n);
+geometry::Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n);
 
 /// The same for each of several sets. offsets: sets + 1. Temporary memory: 16 bytes a set.
-std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                                     const std::vector<std::size_t>& offsets);
+std::vector<geometry::Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                               const std::vector<std::size_t>& offsets);
 
 /// Points whose sets have the same scaling.
 struct UniformPoints {
   host::Buffer<cl_double> coordinates;
-  Scaling scaling;
+  geometry::Scaling scaling;
   /// What the caller's points were multiplied by, together with the scaling: one power for all, or one per
   /// set.
   std::vector<int> shifts;
   /// The magnitudes of the caller's points by set, if that took no pass of its own; otherwise empty.
-  std::vector<Magnitudes> by_set;
+  std::vector<geometry::Magnitudes> by_set;
 };
 
 /// Chooses the scaling of sets of points. If the magnitudes of sets differ too much for one, the points are a

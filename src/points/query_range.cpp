@@ -13,7 +13,9 @@
 #include "shared/off_grid.h"
 #include "tuning/tuning.hpp"
 
-namespace flaunay::locate {
+namespace flaunay::points {
+using namespace geometry;
+
 namespace {
 
 [[noreturn]] void throw_not_finite(host::Runtime& runtime, const Buffer<cl_double>& queries,
@@ -143,4 +145,4 @@ QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, con
   return scaling;
 }
 
-}  // namespace flaunay::locate
+}  // namespace flaunay::points

@@ -10,14 +10,11 @@
 #include "shared/bounds.h"
 #include "shared/records.h"
 
-namespace flaunay::locate {
-
-using namespace geometry;
-using namespace points;
+namespace flaunay::points {
 
 /// The points of a locator before scaling: their magnitudes, by set, and the shifts by which they are scaled.
 struct PointRange {
-  std::vector<Magnitudes> by_set;
+  std::vector<geometry::Magnitudes> by_set;
   std::vector<int> shifts;  ///< the same for all, or one per set
 
   int shift(std::size_t set) const { return shifts[shifts.size() > 1 ? set : 0]; }
@@ -31,7 +28,7 @@ struct QueryScaling {
   /// it reaches. Kernels first answer these for the nearest place of the grid
   /// (kernels/locate/fixed_point.cl).
   bool is_off_grid = false;
-  Magnitudes both{};  ///< of points and queries of all sets
+  geometry::Magnitudes both{};  ///< of points and queries of all sets
 };
 
 /// What predicates on points and queries need: coordinates are multiples of 2^lowest below 2^(largest + 1).
@@ -48,16 +45,18 @@ constexpr QueryLimits kCircleLimits{kernel::LARGEST_EXPONENT, kernel::LOWEST_EXP
 /// Inspects queries and chooses their scaling: the same for all sets, or if magnitudes differ too much, one
 /// for each. Waits once, or twice. Throws Error(input), which names a query, if one is not finite, too fine
 /// or too far away. In fixed point throws TooWideForFixedPoint, too.
-QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, const Buffer<cl_double>& queries,
+QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points,
+                           const host::Buffer<cl_double>& queries,
                            const std::vector<std::size_t>& query_offsets,
                            const QueryLimits& limits = kOrientLimits);
 
 /// Chooses the scaling of one set in fixed point. Throws TooWideForFixedPoint for queries that are very much
 /// finer or farther away than points.
-QueryScaling fixed_point_scaling(const Magnitudes& points, const Magnitudes& asked, int point_shift);
+QueryScaling fixed_point_scaling(const geometry::Magnitudes& points, const geometry::Magnitudes& asked,
+                                 int point_shift);
 
 /// Chooses the scaling of one set, whose points and queries together have accepted magnitudes.
-QueryScaling query_scaling(const Magnitudes& both, int point_shift,
+QueryScaling query_scaling(const geometry::Magnitudes& both, int point_shift,
                            const QueryLimits& limits = kOrientLimits);
 
-}  // namespace flaunay::locate
+}  // namespace flaunay::points

@@ -15,6 +15,8 @@
 
 namespace flaunay::blocks {
 
+using namespace geometry;
+using namespace points;
 using testing::RingCheck;
 
 /// Sets of up to so many points are held against the reference, too.

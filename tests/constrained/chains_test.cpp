@@ -28,6 +28,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using host::Runtime;

@@ -30,6 +30,9 @@
 
 namespace flaunay::flattened {
 
+using namespace geometry;
+using namespace statistics;
+
 using host::Runtime;
 using testing::Coordinates;
 using testing::Corner;

@@ -1134,7 +1134,7 @@ class Nearness : public ::testing::Test {
     };
     predicate_.reference = reference_nearness;
     predicate_.bound = [](const auto& magnitudes) {
-      return locate::query_scaling(magnitudes, 0).nearness_bound;
+      return points::query_scaling(magnitudes, 0).nearness_bound;
     };
   }
   Predicate predicate_;

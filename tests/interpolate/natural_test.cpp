@@ -211,7 +211,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
 
   // All by the exact kernel, except outside of the hull, which is not left to it.
   const locate::LocatedQueries located =
-      locate::locate_by_place(runtime, locator, queries, m, input.query_offsets, locate::kCircleLimits);
+      locate::locate_by_place(runtime, locator, queries, m, input.query_offsets, points::kCircleLimits);
   std::vector<cl_int> found(m);
   runtime.read(located.found, 0, m, found.data());
   std::vector<cl_uchar> left;

@@ -26,6 +26,7 @@
 
 namespace flaunay::locate {
 
+using namespace geometry;
 using namespace points;
 
 using host::Runtime;

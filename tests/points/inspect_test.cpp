@@ -13,6 +13,8 @@
 #include "tests/points/support.hpp"
 
 namespace flaunay::points {
+using namespace geometry;
+
 namespace {
 
 void check_widening(Runtime& runtime, std::size_t first, std::size_t n) {

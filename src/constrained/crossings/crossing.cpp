@@ -6,6 +6,8 @@
 #include "shared/areas.h"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using kernel::double2;

@@ -8,15 +8,13 @@
 
 namespace flaunay::constrained {
 
-using namespace geometry;
-
 struct Line {
-  Point a, b;
+  geometry::Point a, b;
 };
 
 /// Whether two segments have exactly one common point, which is inside of both. Each begins with its
 /// lexicographically smaller end.
-bool cross(const Predicates& predicates, const Line& p, const Line& q);
+bool cross(const geometry::Predicates& predicates, const Line& p, const Line& q);
 
 /// The sign of x - value at the place where two segments cross, or with `vertical`, of y - value. The value
 /// is the sum of two doubles. The segments must cross: have exactly one common point, which is inside of
@@ -27,11 +25,11 @@ int compare_crossing(const Line& first, const Line& second, bool vertical, kerne
 /// multiples of a power of two, the unit. Of two that are equally near, the one with the even last bit is
 /// taken. So the place is a function of both lines alone. Coordinates must be multiples of the unit, which is
 /// at least 2^-255, and below 2^250.
-Point round_crossing(const Line& first, const Line& second, double unit);
+geometry::Point round_crossing(const Line& first, const Line& second, double unit);
 
 /// A rectangle.
 struct Box {
-  Point low, high;
+  geometry::Point low, high;
 };
 
 /// Whether a segment may have a point whose distance from one of a box is at most `reach` in both

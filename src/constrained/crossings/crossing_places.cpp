@@ -8,6 +8,8 @@
 #include <utility>
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 // If nothing else is so near to a crossing on its edges, then nothing that its edges do not meet is within

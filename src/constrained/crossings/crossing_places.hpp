@@ -18,16 +18,18 @@ using Ids = std::vector<std::int32_t>;
 /// Points of one set, scaled so that the largest exponent is that of the predicates' range: then all of the
 /// range is below it.
 struct Vertices {
-  Vertices(const double* coordinates, const PointSets& sets, std::size_t set);
+  Vertices(const double* coordinates, const geometry::PointSets& sets, std::size_t set);
 
-  Point unscaled(Point p) const { return {std::ldexp(p.x, -shift), std::ldexp(p.y, -shift)}; }
+  geometry::Point unscaled(geometry::Point p) const {
+    return {std::ldexp(p.x, -shift), std::ldexp(p.y, -shift)};
+  }
   bool is_added(std::int32_t v) const { return static_cast<std::size_t>(v) >= given; }
 
   /// Returns the vertices at these distinct places, in lexicographic order, which are added where there are
   /// none.
-  Ids find_or_add(const std::vector<Point>& places);
+  Ids find_or_add(const std::vector<geometry::Point>& places);
 
-  std::vector<Point> points;
+  std::vector<geometry::Point> points;
   Ids sorted;             ///< all, in lexicographic order
   std::size_t given = 0;  ///< so many points are the caller's
   int shift = 0;
@@ -44,8 +46,8 @@ static_assert(kernel::LARGEST_EXPONENT == 249);
 class CrossingPlaces {
  public:
   /// patience: hubs may have so many times as many pairs.
-  CrossingPlaces(const Vertices& vertices, const Predicates& predicates, const std::vector<Piece>& edges,
-                 std::size_t most, std::size_t patience)
+  CrossingPlaces(const Vertices& vertices, const geometry::Predicates& predicates,
+                 const std::vector<Piece>& edges, std::size_t most, std::size_t patience)
       : vertices_(vertices), predicates_(predicates), edges_(edges), most_(most), patience_(patience) {}
 
   /// Adds two edges that cross. Returns whether to go on: not if many pairs cross at places that are hubs.
@@ -54,7 +56,7 @@ class CrossingPlaces {
   bool empty() const { return all_.empty(); }
 
   /// Places at which many edges cross exactly, in lexicographic order.
-  std::vector<Point> hubs() const;
+  std::vector<geometry::Point> hubs() const;
 
   /// Makes vertices of the places. Rounding keeps the order of each coordinate. So along an edge, x does not
   /// decrease after rounding, and where it is equal, y is still in its order. are_apart: whether no two
@@ -71,34 +73,34 @@ class CrossingPlaces {
 
   // Edges that meet a place. The second is -1 if an odd number does.
   struct Crossing {
-    Point at;
+    geometry::Point at;
     double reach;  // see reach() of two lines
     std::int32_t e, f;
   };
   struct Recent {
-    Point at;
+    geometry::Point at;
     std::uint32_t pairs;
     bool is_hub;
   };
 
   Line line(std::int32_t e) const;
-  bool are_exactly_there(const Line& p, const Line& q, Point at) const;
+  bool are_exactly_there(const Line& p, const Line& q, geometry::Point at) const;
 
   // In lexicographic order of places.
-  std::vector<Keyed> sorted() const;
+  std::vector<geometry::Keyed> sorted() const;
 
   // An edge meets a place only once, however many it crosses there.
   void merge();
 
   const Vertices& vertices_;
-  const Predicates& predicates_;
+  const geometry::Predicates& predicates_;
   const std::vector<Piece>& edges_;
   std::size_t most_, patience_;
   std::vector<Crossing> all_;
   std::size_t merge_at_ = kFirstMerge;
   std::size_t places_ = 0;  // as of the last merge
   std::vector<Recent> recent_ = std::vector<Recent>(kRecent);
-  std::vector<Point> hubs_;
+  std::vector<geometry::Point> hubs_;
   std::size_t pairs_of_hubs_ = 0;
 };
 

@@ -5,6 +5,8 @@
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 // 1 if the direction of q is counter-clockwise of that of p, -1 if it is clockwise, 0 if they are parallel.

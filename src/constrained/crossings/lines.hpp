@@ -18,7 +18,7 @@ struct LineEdges {
 /// Cuts pieces at the vertices on them. vertices: all there are, in lexicographic order; among them the ends
 /// of pieces, none twice. Pieces that overlap on a line share their edges, so that the memory is that of the
 /// pieces and of the result, even if all of them overlap.
-LineEdges cut_at_vertices(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
-                          const std::vector<std::int32_t>& vertices);
+LineEdges cut_at_vertices(const geometry::Predicates& predicates, const geometry::Point* points,
+                          const std::vector<Piece>& pieces, const std::vector<std::int32_t>& vertices);
 
 }  // namespace flaunay::constrained

@@ -20,6 +20,8 @@
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using Ids = std::vector<std::int32_t>;

@@ -18,7 +18,7 @@ namespace flaunay::constrained {
 class PointTree {
  public:
   /// points: their coordinates, by index; ids: those that the tree has. Magnitudes must be below `largest`.
-  PointTree(const Point* points, std::vector<std::int32_t> ids, double largest)
+  PointTree(const geometry::Point* points, std::vector<std::int32_t> ids, double largest)
       : ids_(std::move(ids)), rounding_(0x1p-50 * largest) {
     if (ids_.empty()) return;
     const std::vector<geometry::Keyed> order =
@@ -91,7 +91,7 @@ class PointTree {
   }
 
   std::vector<std::int32_t> ids_;
-  std::vector<Point> points_;  // of the ids
+  std::vector<geometry::Point> points_;  // of the ids
   std::vector<Node> nodes_;
   double rounding_;
 };

@@ -7,6 +7,8 @@
 #include "constrained/crossings/crossing.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 // So few segments are in one cell.

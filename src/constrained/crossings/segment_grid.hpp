@@ -20,12 +20,12 @@ class SegmentGrid {
   /// Calls `found` once with each pair of segments that cross, until it says no, and returns true. Returns
   /// false before all are found if too many pairs in cells do not cross: it takes O(s + k) for k pairs that
   /// are found.
-  bool find_crossings(const Predicates& predicates, const FoundPair& found) const;
+  bool find_crossings(const geometry::Predicates& predicates, const FoundPair& found) const;
 
   /// Calls `found` with all pairs of a segment and a point whose distance is at most `distance` in both
   /// coordinates, and with some whose distance is a little larger, and returns true. Returns false if `found`
   /// says no, or if there are too many pairs in cells. distance: at most 2^-45 of the largest magnitude.
-  bool find_near(const std::vector<Point>& points, double distance, const FoundPair& found) const;
+  bool find_near(const std::vector<geometry::Point>& points, double distance, const FoundPair& found) const;
 
  private:
   struct Axis {
@@ -43,7 +43,7 @@ class SegmentGrid {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(x_.cells) +
            static_cast<std::size_t>(column);
   }
-  std::size_t cell_of(Point p) const { return cell_at(x_.cell(p.x), y_.cell(p.y)); }
+  std::size_t cell_of(geometry::Point p) const { return cell_at(x_.cell(p.x), y_.cell(p.y)); }
   bool is_elsewhere(const Line& p, const Line& q, std::size_t cell) const;
 
   const std::vector<Line>& lines_;

@@ -13,6 +13,8 @@
 #include "shared/planar.h"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using Ids = std::vector<std::int32_t>;

@@ -25,8 +25,8 @@ struct Chains {
 /// a vertex within a unit in the last place of it. O(v log v + m log v) for v vertices, if few boxes of
 /// vertices are met beside those, and O(e v) otherwise; a chain that turns around k vertices takes O(k) times
 /// as long at worst.
-Chains snap(const Predicates& predicates, const std::vector<Point>& points, const std::vector<Piece>& edges,
-            double unit, std::size_t most);
+Chains snap(const geometry::Predicates& predicates, const std::vector<geometry::Point>& points,
+            const std::vector<Piece>& edges, double unit, std::size_t most);
 
 /// Throws the error about more pieces than there may be.
 [[noreturn]] void throw_too_many_pieces(std::size_t most);

@@ -21,6 +21,8 @@
 #include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 constexpr std::size_t kMostIndices = std::numeric_limits<std::int32_t>::max();

@@ -175,7 +175,7 @@ std::string place_of(const Constraints& constraints, std::size_t hole) {
   std::size_t hole = first;
   const auto fits = [&](std::size_t h) {
     const auto both = geometry::joined(points, geometry::inspect(constraints.holes, h, h + 1));
-    return geometry::bits_of(both) <= locate::kOrientLimits.most_bits();
+    return geometry::bits_of(both) <= points::kOrientLimits.most_bits();
   };
   while (hole + 1 < last && fits(hole)) ++hole;
   throw Error(ErrorKind::input, fmt::format("hole {} at {} is too fine or too far away to be exact", hole,
@@ -259,10 +259,10 @@ Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Mag
                   fmt::format("hole {} is not finite: {}", bad, place_of(constraints, bad)));
     }
     const geometry::Magnitudes both = geometry::joined(points[s], own);
-    if (geometry::bits_of(both) > locate::kOrientLimits.most_bits()) {
+    if (geometry::bits_of(both) > points::kOrientLimits.most_bits()) {
       throw_range(constraints, first, last, points[s]);
     }
-    const locate::QueryScaling scaling = locate::query_scaling(both, 0);
+    const points::QueryScaling scaling = points::query_scaling(both, 0);
     seeds.frames[s] = scaling.frames[0];
     seeds.bound = std::max(seeds.bound, scaling.orient_bound);
     const auto numbers = seeds.numbers.begin();

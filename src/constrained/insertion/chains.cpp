@@ -9,6 +9,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using host::Arena;

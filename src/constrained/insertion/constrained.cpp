@@ -17,6 +17,8 @@
 #include "shared/barycentric.h"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using Ids = std::vector<std::int32_t>;

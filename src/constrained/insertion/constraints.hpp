@@ -9,14 +9,12 @@
 
 namespace flaunay::constrained {
 
-using namespace geometry;
-
 /// Edges in the order in which they became constraints, each directed from its lexicographically smaller
 /// vertex to the other one. Edges of one segment that follow each other are linked, so every segment runs
 /// along a part of one chain.
 class Constraints {
  public:
-  explicit Constraints(const Point* points) : points_(points) {}
+  explicit Constraints(const geometry::Point* points) : points_(points) {}
 
   std::size_t size() const { return edges_.size(); }
   std::int32_t from(std::int32_t edge) const { return edges_[edge].from; }
@@ -52,7 +50,7 @@ class Constraints {
   }
   std::int32_t end_of_chain(std::int32_t edge, std::int32_t Edge::*shortcut);
 
-  const Point* points_;
+  const geometry::Point* points_;
   std::vector<Edge> edges_;
   std::vector<std::int32_t> order_, number_;  // by number the edge, and the other way round
   std::vector<std::int32_t> chain_of_;        // by number

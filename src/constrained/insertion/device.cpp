@@ -16,6 +16,8 @@
 #include "shared/limits.h"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 using host::Arena;

@@ -7,6 +7,8 @@
 #include "geometry/halfedges.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 [[noreturn]] void throw_broken() {

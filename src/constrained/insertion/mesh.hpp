@@ -32,8 +32,8 @@ struct Departure {
 class ConstrainedMesh {
  public:
   /// delaunay: the canonical Delaunay triangulation of the points, with neighbours.
-  ConstrainedMesh(const Predicates& predicates, const Point* points, std::size_t point_count,
-                  const Triangulation& delaunay);
+  ConstrainedMesh(const geometry::Predicates& predicates, const geometry::Point* points,
+                  std::size_t point_count, const Triangulation& delaunay);
 
   /// Whether the vertex is in a triangle; in collinear sets none is.
   bool has_triangles(std::int32_t vertex) const { return out_[vertex] >= 0; }
@@ -78,8 +78,8 @@ class ConstrainedMesh {
   std::int32_t put(std::int32_t row, std::int32_t a, std::int32_t b, std::int32_t c);
   void join(std::int32_t a, std::int32_t b);
 
-  Predicates predicates_;
-  const Point* points_;
+  geometry::Predicates predicates_;
+  const geometry::Point* points_;
   std::vector<std::int32_t> triangles_, twins_;
   std::vector<std::int32_t> constraints_;  // per half-edge
   std::vector<std::int32_t> out_;          // per vertex, a half-edge from it

@@ -8,6 +8,8 @@
 #include "geometry/halfedges.hpp"
 
 namespace flaunay::constrained {
+using namespace geometry;
+
 namespace {
 
 // Twins that are no half-edges: the base, and the side from a position to the next one in the list.

@@ -10,8 +10,6 @@
 
 namespace flaunay::constrained {
 
-using namespace geometry;
-
 /// Positions in a chain, ascending. A triangle (i, j, k) is counter-clockwise as (i, k, j).
 using ChainTriangle = std::array<std::int32_t, 3>;
 
@@ -26,7 +24,7 @@ class PolygonTriangulator {
   /// Chains up to this number of vertices are triangulated by gift-wrapping, which is then faster.
   static constexpr std::size_t kGiftWrapped = 24;
 
-  PolygonTriangulator(const Predicates& predicates, const Point* points)
+  PolygonTriangulator(const geometry::Predicates& predicates, const geometry::Point* points)
       : predicates_(predicates), points_(points) {}
 
   /// Returns the chain's triangles in preorder of the tree whose root is the triangle at the base: by
@@ -53,7 +51,7 @@ class PolygonTriangulator {
   bool is_canonical() const;
   void list_triangles();
 
-  Point point(std::int32_t position) const { return points_[(*chain_)[position]]; }
+  geometry::Point point(std::int32_t position) const { return points_[(*chain_)[position]]; }
   int orient(std::int32_t a, std::int32_t b, std::int32_t c) const {
     return predicates_.orient(point(a), point(b), point(c));
   }
@@ -66,8 +64,8 @@ class PolygonTriangulator {
     std::int32_t from, to, beyond;
   };
 
-  Predicates predicates_;
-  const Point* points_;
+  geometry::Predicates predicates_;
+  const geometry::Point* points_;
   const std::vector<std::int32_t>* chain_ = nullptr;
   std::vector<ChainTriangle> result_;
   std::vector<Open> open_;

@@ -10,7 +10,7 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
              const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located =
-      locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
+      locate::locate_by_place(runtime, locator, queries, m, query_offsets, points::kCircleLimits);
   const auto left = runtime.arena().allocate<cl_uchar>(m);
   // Else not all values are needed, and few of them more than once.
   const bool is_by_vertex = m >= locator.points.size();
@@ -66,7 +66,7 @@ void natural_neighbors(host::Runtime& runtime, const Locator& locator, NaturalWe
                        const std::function<NaturalLists(std::size_t total)>& allocate) {
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located =
-      locate::locate_by_place(runtime, locator, queries, m, query_offsets, locate::kCircleLimits);
+      locate::locate_by_place(runtime, locator, queries, m, query_offsets, points::kCircleLimits);
   runtime.map_in_small_groups(m, kernels::count_neighbors{.sets = located.sets,
                                                           .query_offsets = located.query_offsets,
                                                           .records = locator.records,

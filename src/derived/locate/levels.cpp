@@ -13,6 +13,8 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::locate {
+using namespace points;
+
 namespace {
 
 // The last level has fewer vertices of the largest set than this many times the ratio.

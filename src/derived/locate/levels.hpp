@@ -11,26 +11,24 @@
 
 namespace flaunay::locate {
 
-using namespace points;
-
 struct Locator;
 
 /// What begins the stars of a triangulation's vertices, and the fans in it.
 struct Stars {
-  Buffer<cl_int> starts{};
-  Buffer<kernel::fan_part> fans{};
+  host::Buffer<cl_int> starts{};
+  host::Buffer<kernel::fan_part> fans{};
 };
 
 /// Triangulations of samples, from the largest on, of each set that is large enough; the mesh's own stars; a
 /// tree of boxes around its vertices. About 16 bytes per triangle of the mesh, and 8 more while they are
 /// made.
 struct Levels {
-  std::shared_ptr<Arena> own{};     ///< where the buffers come from
-  std::size_t count = 0, sets = 0;  ///< levels, and sets that have them
-  Buffer<cl_int> long_sets{};       ///< per set its number among those, or -1
-  Buffer<cl_int> below{};           ///< per vertex of a sample, by its index there, the vertex below
+  std::shared_ptr<host::Arena> own{};  ///< where the buffers come from
+  std::size_t count = 0, sets = 0;     ///< levels, and sets that have them
+  host::Buffer<cl_int> long_sets{};    ///< per set its number among those, or -1
+  host::Buffer<cl_int> below{};        ///< per vertex of a sample, by its index there, the vertex below
   Stars stars{}, sample_stars{};
-  Buffer<kernel::vertex_box> boxes{};
+  host::Buffer<kernel::vertex_box> boxes{};
 };
 
 /// The sizes of the samples: those of set s on level l are [offsets[l * sets + s], offsets[l * sets + s +

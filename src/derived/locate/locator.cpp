@@ -14,6 +14,9 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::locate {
+using namespace geometry;
+using namespace points;
+
 namespace {
 
 // Smaller trees save no time.

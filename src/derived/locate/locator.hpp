@@ -16,21 +16,21 @@ namespace flaunay::locate {
 struct Locator {
   std::size_t sets = 0;
   std::vector<std::size_t> point_offsets{};  ///< of the caller's points
-  PointRange range{};
+  points::PointRange range{};
   /// The vertices of triangles, in the order of their first triangles: coordinates, indices of points, first
   /// triangles, and the squared distances to their nearest neighbours (the upper half of a double, or in
   /// fixed point a float).
-  Buffer<cl_double2> points{};
-  Buffer<cl_int> source{}, first_triangle{}, clearances{};
-  Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
-  Buffer<cl_double2> hull_points{};
-  Buffer<cl_int> hull{};
-  Buffer<kernel::mesh_set> records{};  ///< one per set
-  Buffer<kernel::cut_node> nodes{};    ///< the nodes of all trees
-  Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
-  Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
-  std::size_t most_triangles = 0;      ///< of one set
-  bool has_clearances = false;         ///< measured only when queries for nearest points come
+  host::Buffer<cl_double2> points{};
+  host::Buffer<cl_int> source{}, first_triangle{}, clearances{};
+  host::Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
+  host::Buffer<cl_double2> hull_points{};
+  host::Buffer<cl_int> hull{};
+  host::Buffer<kernel::mesh_set> records{};  ///< one per set
+  host::Buffer<kernel::cut_node> nodes{};    ///< the nodes of all trees
+  host::Buffer<cl_int> starts{};             ///< per leaf of all trees: where walks begin
+  host::Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
+  std::size_t most_triangles = 0;            ///< of one set
+  bool has_clearances = false;               ///< measured only when queries for nearest points come
   /// For the search of nearest points. There are none until a query needs them.
   Levels levels{};
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
@@ -39,10 +39,10 @@ struct Locator {
 /// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
 /// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
 /// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
-Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+Locator make_locator(host::Runtime& runtime, host::Arena& own, const points::DeviceMesh& mesh);
 
 /// The same without trees, of points that are scaled already. Not for queries of callers.
-Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh);
+Locator make_walk_locator(host::Runtime& runtime, host::Arena& own, const points::DeviceMesh& mesh);
 
 /// Computes the clearances, which the search for nearest points needs. Does not wait.
 void measure_clearances(host::Runtime& runtime, Locator& locator);
@@ -56,33 +56,34 @@ void measure_clearances(host::Runtime& runtime, Locator& locator);
 
 /// Finds for each query the triangle that contains it, the smallest one if there are several; -1 outside of
 /// the hull.
-void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles);
+void locate(host::Runtime& runtime, const Locator& locator, const host::Buffer<cl_double>& queries,
+            std::size_t m, const std::vector<std::size_t>& query_offsets,
+            const host::Buffer<cl_int>& triangles);
 
 /// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
 /// of its representative; -1 if the set is empty. About O(log n) steps per query, except at a vertex with
 /// very many neighbours that are no fan and are all about as near. If a query is far to walk to, makes the
 /// locator's levels; until there are levels, waits once more. The first call measures the clearances, and
 /// waits once more for that.
-void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points);
+void nearest(host::Runtime& runtime, Locator& locator, const host::Buffer<cl_double>& queries, std::size_t m,
+             const std::vector<std::size_t>& query_offsets, const host::Buffer<cl_int>& points);
 
 /// The queries of one call, in the order in which kernels answer them, with their triangles.
 struct LocatedQueries {
   float orient_bound = 0;  ///< of the queries' orientations, see shared/bounds.h
   cl_int sets = 0;
-  Buffer<kernel::query_frame> frames{};  ///< by set
-  Buffer<cl_int> query_offsets{};        ///< by set; not filled if there is one set
-  Buffer<cl_int> order{};                ///< per place, the number of its query
-  Buffer<cl_double2> placed{};           ///< per place, the scaled query
-  Buffer<cl_int> found{};                ///< per place, the triangle; less than 0 outside of the hull
+  host::Buffer<kernel::query_frame> frames{};  ///< by set
+  host::Buffer<cl_int> query_offsets{};        ///< by set; not filled if there is one set
+  host::Buffer<cl_int> order{};                ///< per place, the number of its query
+  host::Buffer<cl_double2> placed{};           ///< per place, the scaled query
+  host::Buffer<cl_int> found{};                ///< per place, the triangle; less than 0 outside of the hull
 };
 
 /// Finds the triangle of each query, for kernels that continue from there. The result is allocated in the
 /// runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
-                               const Buffer<cl_double>& queries, std::size_t m,
+                               const host::Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets,
-                               const QueryLimits& limits = kOrientLimits);
+                               const points::QueryLimits& limits = points::kOrientLimits);
 
 }  // namespace flaunay::locate

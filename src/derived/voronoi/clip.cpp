@@ -11,6 +11,8 @@
 #include "shared/codes.h"
 
 namespace flaunay::voronoi {
+using namespace points;
+
 namespace {
 
 // A polygon as kernels read it, and how coordinates are scaled.

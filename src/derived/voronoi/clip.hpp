@@ -8,17 +8,15 @@
 
 namespace flaunay::voronoi {
 
-using namespace points;
-
 /// The arrays of flaunay::ClippedVoronoi for n points. They need only the alignment of their elements.
 struct ClippedBuffers {
-  Buffer<cl_int> offsets{};       ///< n + 1
-  Buffer<cl_double> areas{};      ///< n
-  Buffer<cl_double> centroids{};  ///< 2 n
+  host::Buffer<cl_int> offsets{};       ///< n + 1
+  host::Buffer<cl_double> areas{};      ///< n
+  host::Buffer<cl_double> centroids{};  ///< 2 n
 };
 
 /// Provides memory for 2 coordinates of each of so many vertices.
-using ProvideVertices = std::function<Buffer<cl_double>(std::size_t vertices)>;
+using ProvideVertices = std::function<host::Buffer<cl_double>(std::size_t vertices)>;
 
 /// Enqueues the computation of clipped cells. Waits twice: for the magnitudes of the points, and for the
 /// number of vertices. Throws Error(input) if points and polygon are too different in magnitude. If the mesh
@@ -26,11 +24,11 @@ using ProvideVertices = std::function<Buffer<cl_double>(std::size_t vertices)>;
 /// memory: 82 bytes per triangle, and 16 per point if coordinates are scaled. A cell of d triangles takes O(d
 /// log d) steps, of which one work-item does O(d); a polygon of m corners takes O(log m) per triangle and
 /// O(m) per Voronoi edge that crosses it or may do so.
-void compute_clipped(host::Runtime& runtime, const DeviceMesh& mesh, const ClipPolygon& polygon,
+void compute_clipped(host::Runtime& runtime, const points::DeviceMesh& mesh, const ClipPolygon& polygon,
                      const ClippedBuffers& result, const ProvideVertices& provide);
 
 /// Enqueues moving each of n points that has a cell to its centroid.
 void move_to_centroids(host::Runtime& runtime, std::size_t n, const ClippedBuffers& cells,
-                       const Buffer<cl_double>& points);
+                       const host::Buffer<cl_double>& points);
 
 }  // namespace flaunay::voronoi

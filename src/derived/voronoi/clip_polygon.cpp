@@ -6,6 +6,7 @@
 #include "shared/codes.h"
 
 namespace flaunay::voronoi {
+using namespace points;
 
 using geometry::Magnitudes;
 using geometry::Point;

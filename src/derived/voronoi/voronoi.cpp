@@ -4,6 +4,7 @@
 #include "launchers/voronoi/voronoi.cl.hpp"
 
 namespace flaunay::voronoi {
+using namespace points;
 
 void write_circumcentres(host::Runtime& runtime, const DeviceMesh& mesh,
                          const Buffer<cl_double>& circumcentres) {

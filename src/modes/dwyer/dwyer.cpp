@@ -19,7 +19,7 @@
 #include "shared/rings.h"
 
 namespace flaunay::dwyer {
-
+using namespace geometry;
 using namespace statistics;
 
 namespace {

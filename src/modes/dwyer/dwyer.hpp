@@ -9,8 +9,6 @@
 
 namespace flaunay::dwyer {
 
-using namespace geometry;
-
 /// Computes the Delaunay triangulation of points[0..n), which must be distinct and in the order of (x, y).
 /// Triangles hold positions in points. The choice among cocircular points depends on the points alone.
 /// O(n log n) in the worst case; for uniform points all merges together take O(n log log n) (Dwyer 1987). The
@@ -20,7 +18,7 @@ using namespace geometry;
 /// comparisons_to_sort). Level l gets the cuts at depth l of the recursion, one comparison per point with the
 /// critical path of a stable split; and the merges at that depth, with the leaves of two or three points.
 /// Each merge is sequential, so its critical path is as long as its work.
-Mesh triangulate(const Predicates& predicates, const Point* points, std::size_t n,
-                 research::Work* work = nullptr);
+geometry::Mesh triangulate(const geometry::Predicates& predicates, const geometry::Point* points,
+                           std::size_t n, research::Work* work = nullptr);
 
 }  // namespace flaunay::dwyer

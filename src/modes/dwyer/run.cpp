@@ -3,6 +3,8 @@
 #include <utility>
 
 namespace flaunay::dwyer {
+using namespace geometry;
+
 namespace {
 
 void append_set(Mesh&& set, std::int32_t first_id, Mesh& all) {

@@ -9,7 +9,7 @@ namespace flaunay::dwyer {
 
 /// Computes the Delaunay triangles of all sets, with any choice among cocircular points; geometry::finish
 /// makes the canonical result. With Options::count, adds the work to the result. O(n log n).
-Mesh run(const PointSets& sets, const research::Options& options, const statistics::Phases& phases,
-         research::Triangulation& result);
+geometry::Mesh run(const geometry::PointSets& sets, const research::Options& options,
+                   const statistics::Phases& phases, research::Triangulation& result);
 
 }  // namespace flaunay::dwyer

@@ -4,6 +4,7 @@
 #include "modes/flattened/stages.hpp"
 
 namespace flaunay::flattened {
+using namespace statistics;
 
 Borders initial_borders(Workspace& work, PointTable& table, Level& level, RetiredRegions& retired) {
   host::Runtime& runtime = work.runtime;

@@ -4,6 +4,7 @@
 #include "modes/flattened/stages.hpp"
 
 namespace flaunay::flattened {
+using namespace geometry;
 
 bool any_cocircular(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                     const Buffer<cl_int>& twins, const Buffer<cl_int>& list, std::size_t listed) {

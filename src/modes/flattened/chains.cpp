@@ -7,6 +7,9 @@
 #include "shared/limits.h"
 
 namespace flaunay::flattened {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // Kept corners of all regions, in the order of (region, u).

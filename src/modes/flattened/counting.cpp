@@ -6,6 +6,8 @@
 #include "shared/counting.h"
 
 namespace flaunay::flattened {
+using namespace statistics;
+
 namespace {
 
 static_assert(static_cast<int>(Component::cut) == kernel::COMPONENT_CUT &&

@@ -14,19 +14,16 @@
 
 namespace flaunay::flattened {
 
-using namespace geometry;
-using namespace statistics;
-
 /// Makes the runtime's kernels count until it is destroyed. See docs/counting.md.
 class Counting {
  public:
-  Counting(host::Runtime& runtime, host::Arena& arena, Work& work);
+  Counting(host::Runtime& runtime, host::Arena& arena, statistics::Work& work);
   ~Counting();
   Counting(const Counting&) = delete;
   Counting& operator=(const Counting&) = delete;
 
   /// Adds operations to the critical path of the step that is counted now.
-  void add_depth(Component component, std::uint64_t operations);
+  void add_depth(statistics::Component component, std::uint64_t operations);
 
   /// Adds a sort of sets of points by one coordinate, counted as comparisons_to_sort.
   void add_sort(const std::vector<std::size_t>& offsets);
@@ -40,9 +37,9 @@ class Counting {
 
  private:
   host::Runtime& runtime_;
-  Work& work_;
+  statistics::Work& work_;
   host::Buffer<cl_uint> counters_;
-  std::uint64_t depth_[kComponents] = {};
+  std::uint64_t depth_[statistics::kComponents] = {};
   std::uint64_t sort_comparisons_ = 0;
 };
 

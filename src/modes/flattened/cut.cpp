@@ -2,6 +2,7 @@
 #include "modes/flattened/stages.hpp"
 
 namespace flaunay::flattened {
+using namespace statistics;
 
 void cut(Workspace& work, const PointTable& table, Level& level, int depth, int alternate_axis) {
   Arena& scratch = work.scratch();

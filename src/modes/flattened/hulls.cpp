@@ -4,6 +4,8 @@
 #include "shared/limits.h"
 
 namespace flaunay::flattened {
+using namespace statistics;
+
 namespace {
 
 Paths pruned_hull(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,

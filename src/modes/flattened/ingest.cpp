@@ -3,6 +3,7 @@
 #include "points/inspect.hpp"
 
 namespace flaunay::flattened {
+using namespace geometry;
 
 PointTable ingest(Workspace& work, const double* coordinates, const std::vector<std::size_t>& offsets,
                   std::int32_t* representatives) {

@@ -4,6 +4,9 @@
 #include <utility>
 
 namespace flaunay::flattened {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // Adds the statistics of a step to those of its level: one region, or all regions of the level at once.

@@ -36,7 +36,7 @@ class Recursion {
   void recursive();
 
   /// Copies the regions that are left to the host. There are no offsets if no regions are left.
-  RegionArrays read_regions();
+  geometry::RegionArrays read_regions();
 
   const Level& level() const { return level_; }  ///< the regions that are left
   /// The arena that does not hold these regions.

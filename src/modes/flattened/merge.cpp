@@ -2,6 +2,7 @@
 #include "modes/flattened/stages.hpp"
 
 namespace flaunay::flattened {
+using namespace statistics;
 
 void merge(Workspace& work, PointTable& table, const Level& level, const Paths& paths, Level& next,
            RetiredRegions& retired) {

@@ -2,6 +2,8 @@
 #include "modes/flattened/stages.hpp"
 
 namespace flaunay::flattened {
+using namespace geometry;
+
 namespace {
 
 struct EdgeTable {

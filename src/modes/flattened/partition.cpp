@@ -3,6 +3,8 @@
 #include <algorithm>
 
 namespace flaunay::flattened {
+using namespace geometry;
+
 PointSets to_host(Workspace& work, const PointTable& table,
                   const std::vector<std::int32_t>& representatives) {
   PointSets sets;

@@ -11,10 +11,12 @@
 namespace flaunay::flattened {
 
 /// Copies the distinct points to the host.
-PointSets to_host(Workspace& work, const PointTable& table, const std::vector<std::int32_t>& representatives);
+geometry::PointSets to_host(Workspace& work, const PointTable& table,
+                            const std::vector<std::int32_t>& representatives);
 
 /// Converts regions from ids to indices of input points. In Region::points, internal points precede those of
 /// the border.
-std::vector<research::Region> to_input(Workspace& work, const PointTable& table, const RegionArrays& regions);
+std::vector<research::Region> to_input(Workspace& work, const PointTable& table,
+                                       const geometry::RegionArrays& regions);
 
 }  // namespace flaunay::flattened

@@ -2,6 +2,7 @@
 #include "modes/flattened/stages.hpp"
 
 namespace flaunay::flattened {
+using namespace statistics;
 
 void project(Workspace& work, const PointTable& table, Level& level) {
   level.projections = work.scratch().allocate<cl_double2>(level.points);

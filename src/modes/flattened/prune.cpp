@@ -3,6 +3,7 @@
 #include "shared/limits.h"
 
 namespace flaunay::flattened {
+using namespace statistics;
 
 Buffer<cl_uchar> candidates(Workspace& work, const Level& level) {
   const auto flags = work.scratch().allocate<cl_uchar>(level.points);

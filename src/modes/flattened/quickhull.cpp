@@ -5,6 +5,8 @@
 #include "shared/limits.h"
 
 namespace flaunay::flattened {
+using namespace statistics;
+
 Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& start,
                 int& rounds) {
   host::Runtime& runtime = work.runtime;

@@ -13,6 +13,9 @@
 #include "statistics/phases.hpp"
 
 namespace flaunay::flattened {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // Bytes per input point that the arenas reserve, which are enough for points in general position

@@ -22,13 +22,13 @@ using host::Buffer;
 /// The runtime, arenas and options that every stage uses.
 struct Workspace {
   host::Runtime& runtime;
-  Arena& persistent;                     ///< arrays that live as long as the call
-  std::vector<LevelStatistics>& levels;  ///< the statistics of this call's levels
+  Arena& persistent;                                 ///< arrays that live as long as the call
+  std::vector<statistics::LevelStatistics>& levels;  ///< the statistics of this call's levels
   /// The arena for the regions that a step makes. Before they are made, it holds the points for quickhull.
   Arena* children = nullptr;
   /// Hull::monotone_chain: prunes and makes chains, without rounds.
-  Hull hull = Hull::monotone_chain;
-  Bounds bounds{};
+  statistics::Hull hull = statistics::Hull::monotone_chain;
+  geometry::Bounds bounds{};
   /// Bits set by kernels on a broken invariant; see check_invariants.
   Buffer<cl_int> broken{};
   /// The length of the current list of undecided predicates, on the device.
@@ -42,7 +42,7 @@ struct Workspace {
   Counting* counting = nullptr;
 
   Arena& scratch() { return runtime.arena(); }
-  void add_depth(Component component, std::uint64_t operations) {
+  void add_depth(statistics::Component component, std::uint64_t operations) {
     if (counting != nullptr) counting->add_depth(component, operations);
   }
 };
@@ -126,7 +126,8 @@ void project(Workspace& work, const PointTable& table, Level& level);
 
 /// Computes the strict hulls of a level's regions by the variant Workspace::hull. Needs the ends of the hulls
 /// and the level's projections.
-Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics);
+Paths hulls(Workspace& work, const PointTable& table, const Level& level,
+            statistics::LevelStatistics& statistics);
 
 struct HullPoints;
 /// Flags one candidate for the hull in each bucket of internal points.
@@ -174,7 +175,7 @@ void chain_hulls(Workspace& work, const PointTable& table, const Level& level, c
 /// Computes the strict hulls of a level's regions without rounds; see chains.cl. flags: what prune decided
 /// about all points and corners. Waits once.
 Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
-                  LevelStatistics& statistics);
+                  statistics::LevelStatistics& statistics);
 
 /// Decides exactly those of `count` elements whose flag is FLAG_UNDECIDED. Element i is point ids[i], which
 /// is compared with the chord that begins at path vertex chord[i]. keep_on: also keeps points on the chord.

@@ -16,6 +16,8 @@
 
 namespace flaunay {
 namespace partition {
+using namespace geometry;
+
 namespace {
 
 using research::Region;

@@ -14,6 +14,8 @@
 #include "geometry/halfedges.hpp"
 
 namespace flaunay::partition {
+using namespace geometry;
+
 namespace {
 
 using Ids = std::vector<std::int32_t>;

@@ -14,7 +14,7 @@
 #include "statistics/counter.hpp"
 
 namespace flaunay::partition {
-
+using namespace geometry;
 using namespace statistics;
 
 namespace {

@@ -13,8 +13,6 @@
 
 namespace flaunay::partition {
 
-using namespace geometry;
-
 /// A directed border edge, with the region on its left: two positions in the region's points.
 using BorderEdge = std::pair<std::int32_t, std::int32_t>;
 
@@ -27,19 +25,21 @@ using BorderEdge = std::pair<std::int32_t, std::int32_t>;
 /// is not valid: if it has an edge that no Delaunay triangulation of the points has, an edge without a left
 /// side, an edge twice, or sides that contradict each other. O(n log n), unless many border edges meet many
 /// cocircular polygons at one point.
-std::vector<std::int32_t> region_triangles(const Predicates& predicates, const Point* points, std::size_t n,
-                                           const std::vector<BorderEdge>& border, Mesh mesh);
+std::vector<std::int32_t> region_triangles(const geometry::Predicates& predicates,
+                                           const geometry::Point* points, std::size_t n,
+                                           const std::vector<BorderEdge>& border, geometry::Mesh mesh);
 
 /// A function that triangulates points[0..n), which are distinct and in the order of (x, y). Triangles hold
 /// positions in points. work: if not null, the work is added to it.
-using TriangulatePoints = Mesh (*)(const Predicates& predicates, const Point* points, std::size_t n,
-                                   research::Work* work);
+using TriangulatePoints = geometry::Mesh (*)(const geometry::Predicates& predicates,
+                                             const geometry::Point* points, std::size_t n,
+                                             research::Work* work);
 
 /// Triangulates region r by `triangulate` on its own points. Returns 3 ids per triangle, counter-clockwise.
 /// points: the points of all ids. work: if not null, receives the work of `triangulate`. Throws Error(input)
 /// if the region's corners do not form a border. O(n log n).
-std::vector<std::int32_t> solve_region(const Predicates& predicates, const Point* points,
-                                       const RegionArrays& regions, std::size_t r,
+std::vector<std::int32_t> solve_region(const geometry::Predicates& predicates, const geometry::Point* points,
+                                       const geometry::RegionArrays& regions, std::size_t r,
                                        TriangulatePoints triangulate, research::Work* work = nullptr);
 
 /// Triangulates all regions by solve_region. Returns 3 ids per triangle, counter-clockwise, region after
@@ -48,8 +48,8 @@ std::vector<std::int32_t> solve_region(const Predicates& predicates, const Point
 /// points: the points of all ids. threads: number of host threads; 0: one per core. counts: if not null,
 /// receives the work of all regions, and the longest of their critical paths. Throws Error(internal), which
 /// names the first region whose corners do not form a border. O(n log n) work.
-std::vector<std::int32_t> solve_regions(const Predicates& predicates, const Point* points,
-                                        const RegionArrays& regions, TriangulatePoints triangulate,
+std::vector<std::int32_t> solve_regions(const geometry::Predicates& predicates, const geometry::Point* points,
+                                        const geometry::RegionArrays& regions, TriangulatePoints triangulate,
                                         int threads, research::OperationCounts* counts = nullptr);
 
 /// The number of levels by which to cut n points before this many threads (0: one per core) solve the

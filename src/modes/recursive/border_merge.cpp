@@ -1,6 +1,9 @@
 #include "modes/recursive/border_merge.hpp"
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 enum Side { kLeft, kRight };

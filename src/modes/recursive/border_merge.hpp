@@ -22,8 +22,8 @@ using SplitBorder = std::array<Border, 2>;
 
 /// Splits a border by a path. hull.corners has a flag per corner of the border. is_internal: per path vertex,
 /// whether it was an internal point, so that it gets a corner on either side. O(border log path).
-SplitBorder merge_border(const Predicates& predicates, const std::vector<Point>& points, const Line& line,
-                         const Border& border, const LowerHull& hull, const std::vector<char>& is_internal,
-                         Counter& counter);
+SplitBorder merge_border(const geometry::Predicates& predicates, const std::vector<geometry::Point>& points,
+                         const Line& line, const Border& border, const LowerHull& hull,
+                         const std::vector<char>& is_internal, statistics::Counter& counter);
 
 }  // namespace flaunay::recursive

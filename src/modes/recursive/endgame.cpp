@@ -7,6 +7,9 @@
 #include "shared/limits.h"
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // Links the corners of a border by its directed edges. Returns simple cycles, each around a part of the

@@ -19,7 +19,8 @@ using SolveRegion =
 /// Appends the triangles of a region, 3 ids each, counter-clockwise, with any choice among cocircular points.
 /// Throws Error(internal) if the border is not made of closed cycles. Small regions of k corners take O(k^2)
 /// in the worst case; solve_large triangulates larger ones.
-void end_game(const Predicates& predicates, const std::vector<Point>& points, const Border& border,
-              const SolveRegion& solve_large, std::vector<std::int32_t>& triangles, Counter& counter);
+void end_game(const geometry::Predicates& predicates, const std::vector<geometry::Point>& points,
+              const Border& border, const SolveRegion& solve_large, std::vector<std::int32_t>& triangles,
+              statistics::Counter& counter);
 
 }  // namespace flaunay::recursive

@@ -5,6 +5,9 @@
 #include "modes/recursive/lower_hull.hpp"
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 using Ids = std::vector<std::int32_t>;

@@ -7,13 +7,10 @@
 
 namespace flaunay::recursive {
 
-using namespace geometry;
-using namespace statistics;
-
 /// The corners of the convex hull of the points with ids low..high-1, including points on its edges,
 /// counter-clockwise from the smallest id; none for points on one line. The lower and the upper hull are
 /// computed independently by the given variant; their work is added to `work`.
-Border first_border(const PointSets& sets, std::int32_t low, std::int32_t high, Hull variant,
-                    OperationCounts& work);
+Border first_border(const geometry::PointSets& sets, std::int32_t low, std::int32_t high,
+                    statistics::Hull variant, statistics::OperationCounts& work);
 
 }  // namespace flaunay::recursive

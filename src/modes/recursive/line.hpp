@@ -9,14 +9,11 @@
 
 namespace flaunay::recursive {
 
-using namespace geometry;
-using namespace statistics;
-
 /// A point in the coordinates of a line.
 struct HullPoint {
   std::int32_t id;
-  Point place;       ///< (s, u)
-  Point projection;  ///< (h, u), rounded; see project in kernels/shared/hull_height.h
+  geometry::Point place;       ///< (s, u)
+  geometry::Point projection;  ///< (h, u), rounded; see project in kernels/shared/hull_height.h
 
   double s() const { return place.x; }
   double u() const { return place.y; }
@@ -31,9 +28,9 @@ struct Line {
 
   bool planar() const { return kernel::is_planar(axis); }
   /// The coordinates (s, u) of p, across the line and along it.
-  Point place(Point p) const { return kernel::to_frame(p, axis); }
+  geometry::Point place(geometry::Point p) const { return kernel::to_frame(p, axis); }
   /// The point at this place, with its projection.
-  HullPoint at(std::int32_t id, Point place) const {
+  HullPoint at(std::int32_t id, geometry::Point place) const {
     return {id, place, kernel::project(place, q, planar())};
   }
   /// Whether the projection of p is lower than that of v, for two points of equal u.
@@ -41,9 +38,9 @@ struct Line {
     return kernel::is_lower(p.place, v.place, q, planar());
   }
   /// The depth of p below the chord from a to b. The u of a must not be greater than that of b.
-  Depth depth(const Predicates& predicates, const HullPoint& a, const HullPoint& b,
-              const HullPoint& p) const {
-    Depth depth = predicates.depth_filtered(a.projection, b.projection, p.projection, planar());
+  geometry::Depth depth(const geometry::Predicates& predicates, const HullPoint& a, const HullPoint& b,
+                        const HullPoint& p) const {
+    geometry::Depth depth = predicates.depth_filtered(a.projection, b.projection, p.projection, planar());
     if (depth.sign == UNDECIDED) {
       depth.sign = kernel::hull_depth_sign(a.place, b.place, p.place, q, planar());
     }

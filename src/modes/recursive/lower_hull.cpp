@@ -7,6 +7,9 @@
 #include "modes/recursive/quickhull.hpp"
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // Counts the projections of points. Internal points are projected first; corners only when they are needed.

@@ -19,7 +19,8 @@ struct LowerHull {
 /// above the segment between its neighbours. If several points have equal projections, the one of smaller s
 /// is the vertex. O(n log n) work; prune and monotone_chain take O(n) plus sorting the corners and the few
 /// survivors. statistics: candidates and survivors are added; the numbers of rounds become the maximum.
-LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hull variant, Counter& counter,
-                     LevelStatistics& statistics);
+LowerHull lower_hull(const geometry::Predicates& predicates, const HullPoints& points,
+                     statistics::Hull variant, statistics::Counter& counter,
+                     statistics::LevelStatistics& statistics);
 
 }  // namespace flaunay::recursive

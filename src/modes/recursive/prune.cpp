@@ -7,6 +7,9 @@
 #include "modes/recursive/quickhull.hpp"
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // The point nearest to the line in each bucket.

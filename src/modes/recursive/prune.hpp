@@ -35,7 +35,8 @@ class Prune {
  public:
   /// path: has at least its two ends. keep_on: also keep points on the path, and all points with the u of its
   /// last vertex.
-  Prune(const Predicates& predicates, const Line& line, const Path& path, bool keep_on, Counter& counter);
+  Prune(const geometry::Predicates& predicates, const Line& line, const Path& path, bool keep_on,
+        statistics::Counter& counter);
 
   /// Compares all points with the path. Takes a search per kernel::BUCKET internal points and per corner, and
   /// computes depths for the points that are near enough to the line. The projections of internal points must
@@ -50,11 +51,11 @@ class Prune {
   std::size_t walk(std::size_t low, double u);
   Held held_against(const HullPoint& p, std::size_t low);
 
-  const Predicates& predicates_;
+  const geometry::Predicates& predicates_;
   const Line& line_;
   const Path& path_;
   bool keep_on_;
-  Counter& counter_;
+  statistics::Counter& counter_;
   std::vector<double> bands_;  // per path vertex: higher points are not below the chord to the next vertex
 };
 
@@ -70,8 +71,8 @@ struct PrunedHull {
 /// the same way as long as they are many. Quickhull then refines that path by the points below its chords.
 /// statistics: candidates and their rounds are added. The projections of internal points must be known; they
 /// are not counted.
-PrunedHull pruned_hull(const Predicates& predicates, const HullPoints& points, Counter& counter,
-                       LevelStatistics& statistics);
+PrunedHull pruned_hull(const geometry::Predicates& predicates, const HullPoints& points,
+                       statistics::Counter& counter, statistics::LevelStatistics& statistics);
 
 /// The last vertex whose u is not greater than the given one; the first vertex if there is none. Takes
 /// search_comparisons(path.size()) comparisons, which the caller counts.

@@ -5,6 +5,9 @@
 #include <utility>
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 // The finaliser of SplitMix64 (Steele, Lea and Flood, 2014), on the bits of u.

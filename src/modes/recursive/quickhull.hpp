@@ -26,7 +26,8 @@ class Quickhull {
  public:
   /// Segments are split at their deepest points before round `balanced_from`, and by the rule of Chan,
   /// Snoeyink and Yap from then on.
-  Quickhull(const Predicates& predicates, const Line& line, std::size_t balanced_from, Counter& counter)
+  Quickhull(const geometry::Predicates& predicates, const Line& line, std::size_t balanced_from,
+            statistics::Counter& counter)
       : predicates_(predicates), line_(line), balanced_from_(balanced_from), counter_(counter) {}
 
   /// Computes a path from `first` to `last` over `points`, which may contain the ends, and points more than
@@ -56,10 +57,10 @@ class Quickhull {
   void drop_hidden(const HullPoint& e, std::vector<Below>& below);
   bool is_strict(const HullPoint& before, const HullPoint& p, const HullPoint& after);
 
-  const Predicates& predicates_;
+  const geometry::Predicates& predicates_;
   const Line& line_;
   const std::size_t balanced_from_;
-  Counter& counter_;
+  statistics::Counter& counter_;
   Path path_;                             // the finished part
   std::vector<std::size_t> round_sizes_;  // per round: points in all segments
 };

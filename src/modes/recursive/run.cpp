@@ -11,6 +11,9 @@
 #include "shared/counting.h"
 
 namespace flaunay::recursive {
+using namespace geometry;
+using namespace statistics;
+
 namespace {
 
 using Ids = std::vector<std::int32_t>;

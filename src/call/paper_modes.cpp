@@ -1,11 +1,10 @@
 // The functions of flaunay/research.hpp that triangulate.
-#include "flaunay/research.hpp"
-
 #include <fmt/format.h>
 
 #include "call/errors.hpp"
 #include "call/implementation.hpp"
 #include "call/modes.hpp"
+#include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
 #include "modes/flattened/run.hpp"
 
