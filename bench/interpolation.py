@@ -9,124 +9,81 @@ grid, in which each one is near the one before, as SciPy's search for triangles 
 and SciPy.
 """
 
-import argparse
-import json
 import os
-import platform
-import statistics
-import subprocess
-import sys
-import time
 
 # SciPy factors a 2 by 2 matrix per triangle by OpenBLAS, whose threads only wait for each other: on a machine that is
 # busy, for seconds.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np
-import scipy
-import scipy.interpolate
+import beside  # noqa: E402
+import numpy as np  # noqa: E402
+from scipy import interpolate  # noqa: E402
 
-import flaunay
+import flaunay  # noqa: E402
 
+# Flaunay's, SciPy's, and how many times as fast it should be.
 METHODS = {
-    "linear": (flaunay.LinearInterpolator, scipy.interpolate.LinearNDInterpolator, 20),
-    "clough-tocher": (
-        flaunay.CloughTocherInterpolator,
-        scipy.interpolate.CloughTocher2DInterpolator,
-        10,
-    ),
-    "nearest": (flaunay.NearestInterpolator, scipy.interpolate.NearestNDInterpolator, None),
+    "linear": (flaunay.LinearInterpolator, interpolate.LinearNDInterpolator, 20),
+    "clough-tocher": (flaunay.CloughTocherInterpolator, interpolate.CloughTocher2DInterpolator, 10),
+    "nearest": (flaunay.NearestInterpolator, interpolate.NearestNDInterpolator, None),
 }
 
 
-def queries_of(kind, count, rng):
+def queries_of(kind, count, random):
     if kind == "random":
-        return rng.random((count, 2))
-    side = int(np.sqrt(count))
-    x, y = np.meshgrid(np.linspace(0.01, 0.99, side), np.linspace(0.01, 0.99, side))
-    return np.stack([x, y], axis=-1).reshape(-1, 2)
+        return random.random((count, 2))
+    line = np.linspace(0.01, 0.99, int(np.sqrt(count)))
+    return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
 
 
-def timed(work):
-    begin, processor = time.perf_counter(), time.process_time()
-    result = work()
-    return result, time.perf_counter() - begin, time.process_time() - processor
+def measured(kind, points, values, queries):
+    answers = {}
 
+    def call(method, name, interpolator):
+        options = {"device": ARGUMENTS.device} if name == "flaunay" else {}
+        answers[method, name] = interpolator(points, values, **options)(queries)
 
-def commit():
-    command = ["git", "describe", "--always", "--dirty"]
-    return subprocess.run(command, capture_output=True, text=True).stdout.strip()
-
-
-def host():
-    with open("/proc/cpuinfo") as file:
-        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
-    return f"{names[0] if names else platform.machine()}, {len(names)} hardware threads"
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--points", type=int, default=100_000)
-    parser.add_argument("--queries", type=int, default=100_000)
-    parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--json", help="write the record here")
-    given = parser.parse_args()
-    measured_commit = commit()
-    rng = np.random.default_rng(1)
-    points = rng.random((given.points, 2))
-    values = np.sin(7 * points[:, 0]) * np.cos(5 * points[:, 1])
-    rows = []
-    for kind in ["random", "grid"]:
-        queries = queries_of(kind, given.queries, rng)
-        walls, processors, answers = {}, {}, {}
-        for run in range(given.runs + 1):
-            for method, classes in METHODS.items():
-                for name, interpolator in zip(["flaunay", "scipy"], classes):
-                    result, wall, processor = timed(lambda: interpolator(points, values)(queries))
-                    answers[method, name] = result
-                    if run > 0:
-                        walls.setdefault((method, name), []).append(wall)
-                        processors.setdefault((method, name), []).append(processor)
-        for method, (_, _, target) in METHODS.items():
-            ours, scipys = answers[method, "flaunay"], answers[method, "scipy"]
-            both = ~np.isnan(ours) & ~np.isnan(scipys)
-            row = {"method": method, "queries": kind}
-            for name in ["flaunay", "scipy"]:
-                row[f"{name}_seconds_median"] = statistics.median(walls[method, name])
-                row[f"{name}_processor_seconds_median"] = statistics.median(
-                    processors[method, name]
-                )
-            row["times_as_fast"] = row["scipy_seconds_median"] / row["flaunay_seconds_median"]
-            row["processor_times_as_fast"] = (
-                row["scipy_processor_seconds_median"] / row["flaunay_processor_seconds_median"]
-            )
-            row["target"] = target
-            row["largest_difference"] = float(np.abs(ours - scipys)[both].max())
-            row["outside_of_one_only"] = int((np.isnan(ours) != np.isnan(scipys)).sum())
-            rows.append(row)
-            print(
-                f"{method:14} {kind:7} {row['flaunay_seconds_median']:8.4f} s beside "
-                f"{row['scipy_seconds_median']:8.4f} s: {row['times_as_fast']:6.1f} times as fast "
-                f"({row['processor_times_as_fast']:.1f} in processor time), "
-                f"largest difference {row['largest_difference']:.2g}"
-            )
-    record = {
-        "command": " ".join(["bench/interpolation.py", *sys.argv[1:]]),
-        "commit": measured_commit,
-        "device": flaunay.triangulate(points).statistics["device"],
-        "host": host(),
-        "driver": f"native kernels; Python {platform.python_version()}, NumPy {np.__version__}, "
-        f"SciPy {scipy.__version__}",
-        "points": given.points,
-        "queries": given.queries,
-        "runs": given.runs,
-        "results": rows,
+    calls = {
+        (method, name): lambda one=(method, name, interpolator): call(*one)
+        for method, (ours, scipys, _) in METHODS.items()
+        for name, interpolator in (("flaunay", ours), ("scipy", scipys))
     }
-    if given.json:
-        with open(given.json, "w") as file:
-            json.dump(record, file, indent=1)
-            file.write("\n")
+    beside.rounds(calls, 1)
+    times = beside.rounds(calls, ARGUMENTS.runs)
+    for method, (_, _, target) in METHODS.items():
+        row = {"method": method, "queries": kind}
+        for name in ("flaunay", "scipy"):
+            row[f"{name}_seconds_median"] = times[method, name]["wall_median"]
+            row[f"{name}_processor_seconds_median"] = times[method, name]["cpu_median"]
+        for key, clock in (("times_as_fast", ""), ("processor_times_as_fast", "processor_")):
+            row[key] = row[f"scipy_{clock}seconds_median"] / row[f"flaunay_{clock}seconds_median"]
+        ours, scipys = answers[method, "flaunay"], answers[method, "scipy"]
+        row["target"] = target
+        row["largest_difference"] = float(np.nanmax(np.abs(ours - scipys)))
+        row["outside_of_one_only"] = int((np.isnan(ours) != np.isnan(scipys)).sum())
+        print(
+            f"{method:14} {kind:7} {row['flaunay_seconds_median']:8.4f} s beside "
+            f"{row['scipy_seconds_median']:8.4f} s: {row['times_as_fast']:6.1f} times as fast "
+            f"({row['processor_times_as_fast']:.1f} in processor time), "
+            f"largest difference {row['largest_difference']:.2g}"
+        )
+        yield row
 
 
 if __name__ == "__main__":
-    main()
+    ARGUMENTS = beside.parsed(
+        __doc__, 5, {"points": (100_000, "how many"), "queries": (100_000, "how many")}
+    )
+    RANDOM = np.random.default_rng(1)
+    POINTS = RANDOM.random((ARGUMENTS.points, 2))
+    VALUES = np.sin(7 * POINTS[:, 0]) * np.cos(5 * POINTS[:, 1])
+    ROWS = []
+    for KIND in ("random", "grid"):
+        ROWS += measured(KIND, POINTS, VALUES, queries_of(KIND, ARGUMENTS.queries, RANDOM))
+    beside.write(
+        ARGUMENTS,
+        "interpolation from points, values and queries to results",
+        ["scipy"],
+        ROWS,
+        **{key: getattr(ARGUMENTS, key) for key in ("points", "queries", "runs")},
+    )

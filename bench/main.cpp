@@ -6,73 +6,10 @@
 #include <string>
 
 #include "app/command/errors.hpp"
-#include "command.hpp"
+#include "bench/measuring/command.hpp"
+#include "host/error.hpp"
 
 namespace flaunay::bench {
-
-// Each is defined in the file of its namespace's name.
-namespace targets {
-void add(CLI::App& app, Action& action);
-}
-namespace peers {
-void add(CLI::App& app, Action& action);
-}
-namespace modes {
-void add(CLI::App& app, Action& action);
-}
-namespace sizes {
-void add_scaling(CLI::App& app, Action& action);
-void add_small(CLI::App& app, Action& action);
-}  // namespace sizes
-namespace cliffs {
-void add(CLI::App& app, Action& action);
-}
-namespace batches {
-void add(CLI::App& app, Action& action);
-}
-namespace chunks {
-void add(CLI::App& app, Action& action);
-}
-namespace embedding {
-void add(CLI::App& app, Action& action);
-}
-namespace interpolation {
-void add(CLI::App& app, Action& action);
-}
-namespace cells {
-void add(CLI::App& app, Action& action);
-}
-namespace constrained {
-void add(CLI::App& app, Action& action);
-}
-namespace threads {
-void add(CLI::App& app, Action& action);
-}
-namespace arithmetic {
-void add(CLI::App& app, Action& action);
-}
-namespace processes {
-void add(CLI::App& app, Action& action);
-}
-namespace ranks {
-void add(CLI::App& app, Action& action);
-}
-namespace launches {
-void add(CLI::App& app, Action& action);
-}
-namespace device {
-void add(CLI::App& app, Action& action);
-}
-namespace primitives {
-void add(CLI::App& app, Action& action);
-}
-namespace natural {
-void add(CLI::App& app, Action& action);
-}
-namespace paper {
-void add(CLI::App& app, Action& action);
-}
-
 namespace {
 
 int fail(int code, const std::string& message) { return cli::report_error("flaunay-bench", code, message); }
@@ -86,13 +23,7 @@ int run(int argc, char** argv) {
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
-  for (const auto add :
-       {targets::add,     peers::add,   modes::add,     sizes::add_scaling, cliffs::add,   sizes::add_small,
-        batches::add,     chunks::add,  embedding::add, interpolation::add, natural::add,  cells::add,
-        constrained::add, threads::add, processes::add, ranks::add,         launches::add, device::add,
-        primitives::add,  paper::add,   arithmetic::add}) {
-    add(app, action);
-  }
+  for (const auto& [name, add] : all_subcommands()) add(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -107,11 +38,14 @@ int run(int argc, char** argv) {
 }  // namespace flaunay::bench
 
 int main(int argc, char** argv) {
+  using namespace flaunay;
   try {
-    return flaunay::bench::run(argc, argv);
-  } catch (const flaunay::Error& error) {
-    return flaunay::bench::fail(flaunay::cli::exit_code(error.kind()), error.what());
+    return bench::run(argc, argv);
+  } catch (const Error& error) {
+    return bench::fail(cli::exit_code(error.kind()), error.what());
+  } catch (const host::DeviceError& error) {
+    return bench::fail(cli::kDevice, error.what());
   } catch (const std::exception& error) {
-    return flaunay::bench::fail(flaunay::cli::kFailure, error.what());
+    return bench::fail(cli::kFailure, error.what());
   }
 }

@@ -1,0 +1,134 @@
+// What all subcommands share: how they register, their options, the tables that they print, and the records
+// that they write.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::bench {
+
+/// Objects keep the order in which their keys were added.
+using Json = nlohmann::ordered_json;
+
+/// How often and on what to measure, and where the record goes. Each subcommand has options for some of it;
+/// those with options of their own derive from it.
+struct Request {
+  int runs = 5;
+  std::string device, json_path, program;
+  std::vector<std::size_t> sizes;
+  std::vector<std::string> distributions, modes;
+  double limit = 0;
+  bool quick = false;
+};
+
+/// What a subcommand has measured.
+struct Result {
+  explicit Result(DeviceInfo of_device = {}, std::initializer_list<const char*> names = {"results"})
+      : device(std::move(of_device)) {
+    for (const char* name : names) tables[name] = Json::array();
+  }
+  DeviceInfo device;
+  /// Tables: each key has a list of rows, and each row is an object. Numbers are rounded when it is written.
+  Json tables = Json::object();
+  std::set<std::string> not_printed = {};  ///< tables that only the record has
+  Json facts = Json::object();             ///< more about all of the record
+  bool agree = true;                       ///< whether all implementations agree; if not, the exit code is 1
+};
+
+/// Adds options to a subcommand. All show their default values.
+class Options {
+ public:
+  Options(CLI::App& app, Request& request);
+
+  /// Lists are separated by commas. Numbers have to be positive unless there is another check.
+  template <typename Value>
+  Options& add(const std::string& name, Value& value, const std::string& description,
+               const std::optional<CLI::Validator>& check = {}) {
+    CLI::Option* option = app_.add_option(name, value, description)->capture_default_str();
+    constexpr bool is_list = requires { value.emplace_back(); };
+    if (is_list) option->delimiter(',');
+    constexpr bool has_text = std::is_same_v<Value, std::string> || std::is_same_v<Value, Texts>;
+    if (check || !has_text) option->check(check.value_or(CLI::PositiveNumber));
+    return *this;
+  }
+  Options& flag(const std::string& name, bool& value, const std::string& description);
+  Options& help(const std::string& text);
+
+  // What many subcommands have, with its default.
+  Options& runs(int count = 5);
+  Options& sizes(std::vector<std::size_t> values, const std::string& description = "numbers of points");
+  Options& distributions(std::vector<std::string> names);
+  Options& modes(std::vector<std::string> names = {"blocks"});
+  Options& limit(double seconds, const std::string& description);
+  Options& quick(const std::string& points = "3,000 points");
+  Options& program(const std::string& name);
+
+ private:
+  using Texts = std::vector<std::string>;
+
+  CLI::App& app_;
+  Request& request_;
+};
+
+/// Any value is valid.
+inline const CLI::Validator kAny;
+
+/// The work of the chosen subcommand, given the command line as the record shows it; returns the exit code.
+using Action = std::function<int(const std::string& command_line)>;
+
+/// Measures, prints the tables, and writes the record if one was asked for.
+int measure_and_record(const std::string& subcommand, const std::string& command_line, const Request& request,
+                       const std::function<Result()>& measure);
+
+/// All subcommands by name: what adds each to the program's.
+using Subcommands = std::map<std::string, std::function<void(CLI::App&, Action&)>>;
+Subcommands& all_subcommands();
+
+/// A subcommand. Each is an object in the file of its name, whose constructor adds it to the list.
+struct Subcommand {
+  template <typename OwnRequest>
+  Subcommand(const std::string& name, const std::string& description, const std::string& help,
+             Result (*measure)(const OwnRequest&),
+             std::type_identity_t<void (*)(Options&, OwnRequest&)> add_options) {
+    all_subcommands()[name] = [=](CLI::App& app, Action& action) {
+      const auto request = std::make_shared<OwnRequest>();
+      CLI::App* const command = app.add_subcommand(name, description);
+      Options options(*command, *request);
+      options.help(help);
+      add_options(options, *request);
+      command->callback([=, &action] {
+        action = [=](const std::string& line) {
+          return measure_and_record(name, line, *request, [=] { return measure(*request); });
+        };
+      });
+    };
+  }
+};
+
+// ---- Rows
+
+/// Adds seconds_median, seconds_min and seconds_max.
+void add_seconds(Json& row, const std::vector<double>& seconds);
+
+/// The value, or null.
+Json json_of(const std::optional<double>& value);
+
+/// a / b, if both are there.
+std::optional<double> ratio(std::optional<double> a, std::optional<double> b);
+
+/// A row of the table "targets". Where less is better, the goal is less than `at_least`, which then is the
+/// most that is allowed.
+Json target(const std::string& what, const std::string& implementation, double at_least, double goal,
+            const std::optional<double>& measured);
+
+}  // namespace flaunay::bench
