@@ -1,7 +1,7 @@
-"""The report on the paper's claims, and its figures: what bench/plot.py makes of a record of flaunay-bench paper."""
+"""The report on the paper's claims, and its figures: what bench/drawing.py makes of a record of flaunay-bench paper."""
 import os
 
-import plot
+import drawing
 
 DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
 OURS, PUBLISHED, ALTERNATE = ("prune", "interquartile"), ("balanced", "alternate"), ("prune", "alternate")
@@ -56,7 +56,7 @@ class Record:
     def __init__(self, record):
         self.record = record
         self.rows = {(row["algorithm"], row["cut"], row["distribution"], row["n"]): row for row in record["results"]}
-        self.sizes = plot.names(record["results"], "n")
+        self.sizes = drawing.names(record["results"], "n")
         self.largest = max(self.sizes)
         self.methods = list(dict.fromkeys((row["algorithm"], row["cut"]) for row in record["results"]))
 
@@ -228,120 +228,109 @@ def cuts_table(record):
 # ---- Figures
 
 
-def panels_of(record, title, panels, columns=2):
-    header = dict(record.record, device="", runs=record.record["runs"])
-    return plot.new_figure(f"{title}; {record.largest} points at most", header, panels, columns)
+def by_size(record, panel, method, quantity, ylabel):
+    drawing.lines(panel, {one: [(n, record.spread(method, one, quantity, n)) for n in record.sizes]
+                          for one in DISTRIBUTIONS}, marker="")
+    drawing.set_sizes(panel, record.sizes)
+    panel.set(title=TITLES[method], ylabel=ylabel)
 
 
-def by_size(record, panel, method, quantity, log=False):
-    plot.lines(panel, {one: [(n, record.spread(method, one, quantity, n)) for n in record.sizes]
-                       for one in DISTRIBUTIONS}, marker="")
-    plot.set_sizes(panel, record.sizes)
-    if log:
-        panel.set_yscale("log")
-        plot.set_log(panel.yaxis)
-    panel.set(title="flaunay" if method == OURS else "the paper's variant" if method == PUBLISHED else
-              method_name(method))
+def over_dwyer(record, panel, method):
+    by_size(record, panel, method, "over_dwyer", "times Dwyer's operations")
+    for published in (1.1, 2.5):
+        drawing.guide(panel, published)
 
 
-def by_level(record, panel, method, quantity):
-    plot.lines(panel, {one: record.levels(method, one, quantity) for one in DISTRIBUTIONS}, marker="")
-    panel.set(title=f"{method[1]} cuts", xlabel="level")
+def on_log(record, panel, *arguments):
+    by_size(record, panel, *arguments)
+    drawing.set_log(panel.yaxis)
 
 
-def work_figure(record):
-    figure, panels = panels_of(record, "Work against Dwyer's algorithm", 4)
-    for panel, method in zip(panels, (OURS, DWYER)):
-        by_size(record, panel, method, "operations_per_point")
-        panel.set(ylabel="operations per point")
-    for panel, method in zip(panels[2:], (OURS, PUBLISHED)):
-        by_size(record, panel, method, "over_dwyer")
-        panel.set(ylabel="times Dwyer's operations")
-        for published in (1.1, 2.5):
-            panel.axhline(published, color="gray", linestyle="--", linewidth=0.8)
-    return figure, panels
+def by_level(record, panel, method, quantity, ylabel, **options):
+    drawing.lines(panel, {one: record.levels(method, one, quantity) for one in DISTRIBUTIONS}, marker="")
+    panel.set(**{"title": f"{method[1]} cuts", "xlabel": "level", "ylabel": ylabel, **options})
+    panel.minorticks_off()
 
 
-def components_figure(record):
-    figure, panels = panels_of(record, "Work by component", 2, 1)
-    figure.set_size_inches(11, 8)
-    for panel, cut in zip(panels, ("interquartile", "alternate")):
-        methods = [method for method in record.methods if method[1] == cut and method != DWYER] + [DWYER]
-        bars = [(one, method) for one in DISTRIBUTIONS for method in methods]
-        bottom = [0] * len(bars)
-        for k, component in enumerate(COMPONENTS):
-            heights = [record.spread(method, one, component)[0] for one, method in bars]
-            panel.bar(range(len(bars)), heights, bottom=bottom, color=f"C{k}", label=component,
-                      clip_on=False)
-            bottom = [a + b for a, b in zip(bottom, heights)]
-        panel.set_xticks(range(len(bars)), [f"{one}, {method[0]}" for one, method in bars], rotation=40, ha="right")
-        panel.set(title=f"{cut} cuts", ylabel="operations per point")
-    return figure, panels
+def components(record, panel, cut):
+    methods = [method for method in record.methods if method[1] == cut and method != DWYER] + [DWYER]
+    bars = [(one, method) for one in DISTRIBUTIONS for method in methods]
+    bottom = [0] * len(bars)
+    for k, component in enumerate(COMPONENTS):
+        heights = [record.spread(method, one, component)[0] for one, method in bars]
+        panel.bar(range(len(bars)), heights, bottom=bottom, color=f"C{k}", label=component, clip_on=False)
+        bottom = [a + b for a, b in zip(bottom, heights)]
+    panel.set_xticks(range(len(bars)), [f"{one}, {method[0]}" for one, method in bars], rotation=40, ha="right")
+    panel.set(title=f"{cut} cuts", ylabel="operations per point")
 
 
-def depth_figure(record):
-    figure, panels = panels_of(record, "Depth, and work / depth", 4)
-    for k, panel in enumerate(panels):
-        by_size(record, panel, (OURS, PUBLISHED)[k % 2], ("depth", "parallelism")[k // 2], log=True)
-        panel.set(ylabel=("depth (operations)", "work / depth")[k // 2])
-    return figure, panels
+def endgame(record, panel, method):
+    for k, one in enumerate(DISTRIBUTIONS):
+        corners, counts = zip(*record.endgame(method, one))
+        tail = [sum(counts[k:]) / sum(counts) for k in range(len(counts))]
+        panel.plot(corners, tail, color=f"C{k}", label=one)
+    panel.set(title=f"{method[1]} cuts", xscale="log", yscale="log", xlabel="corners",
+              ylabel="share of regions with so many or more")
+    panel.minorticks_off()
 
 
-def levels_figure(record):
-    figure, panels = panels_of(record, "Subproblems of each level", 4)
-    for k, panel in enumerate(panels):
-        by_level(record, panel, (OURS, ALTERNATE)[k % 2], ("largest_region", "region_sizes_per_point")[k // 2])
-        panel.set(ylabel=("internal points of the largest region", "(internal points + corners) / n")[k // 2])
-    for panel in panels[:2]:
-        panel.set_yscale("log", base=2)
-    return figure, panels
+TITLES = {OURS: "flaunay", PUBLISHED: "the paper's variant", DWYER: "Dwyer's algorithm"}
+LARGEST, SIZES = "internal points of the largest region", "(internal points + corners) / n"
+COARSE = {"xlabel": "levels done", "yscale": "log"}
+# By file: the title, the size of a panel, and what draws each panel.
+FIGURES = {
+    "figure-7-work": ("Work against Dwyer's algorithm", (4.2, 3.2), [
+        (by_size, OURS, "operations_per_point", "operations per point"),
+        (by_size, DWYER, "operations_per_point", "operations per point"), (over_dwyer, OURS), (over_dwyer, PUBLISHED)]),
+    "figure-8-components": ("Work by component", (11, 3.65), [(components, "interquartile"), (components, "alternate")]),
+    "figure-9-depth": ("Depth, and work / depth", (4.2, 3.2), [
+        (on_log, method, quantity, label) for quantity, label in (("depth", "depth (operations)"),
+                                                                 ("parallelism", "work / depth"))
+        for method in (OURS, PUBLISHED)]),
+    "figures-10-and-11-levels": ("Subproblems of each level", (4.2, 3.2), [
+        (lambda *all: by_level(*all, yscale="log"), OURS, "largest_region", LARGEST),
+        (lambda *all: by_level(*all, yscale="log"), ALTERNATE, "largest_region", LARGEST),
+        (by_level, OURS, "region_sizes_per_point", SIZES), (by_level, ALTERNATE, "region_sizes_per_point", SIZES)]),
+    "figure-12-coarse-partition": ("What a coarse partition would cost", (4.2, 3.2), [
+        (lambda *all, title=TITLES[method]: by_level(*all, title=title, **COARSE), method, "work_before_over_dwyer",
+         "operations so far / Dwyer's total") for method in (OURS, PUBLISHED)]),
+    "figure-13-end-game": ("Regions when the end game begins", (4.2, 3.2), [(endgame, OURS), (endgame, ALTERNATE)]),
+}
 
 
-def coarse_figure(record):
-    figure, panels = panels_of(record, "What a coarse partition would cost", 2)
-    for panel, method, title in zip(panels, (OURS, PUBLISHED), ("flaunay", "the paper's variant")):
-        by_level(record, panel, method, "work_before_over_dwyer")
-        panel.set(title=title, xlabel="levels done", ylabel="operations so far / Dwyer's total", yscale="log")
-        panel.minorticks_off()
-    return figure, panels
-
-
-def endgame_figure(record):
-    figure, panels = panels_of(record, "Regions when the end game begins", 2)
-    for panel, method in zip(panels, (OURS, ALTERNATE)):
-        for k, one in enumerate(DISTRIBUTIONS):
-            histogram = record.endgame(method, one)
-            regions = sum(count for _, count in histogram)
-            left, tail = regions, []
-            for _, count in histogram:
-                tail.append(left / regions)
-                left -= count
-            panel.plot([corners for corners, _ in histogram], tail, color=f"C{k}", label=one)
-        panel.set(title=f"{method[1]} cuts", xscale="log", yscale="log", xlabel="corners",
-                  ylabel="share of regions with so many or more")
-        panel.minorticks_off()
-    return figure, panels
+def draw(record, file, path):
+    """Whether there is such a figure."""
+    if file not in FIGURES:
+        return False
+    title, size, panels = FIGURES[file]
+    header = dict(record.record, device="")
+    figure, axes = drawing.new_figure(f"{title}; {record.largest} points at most", header, len(panels),
+                                      1 if size[0] > 10 else 2, size)
+    for axis, (function, *arguments) in zip(axes, panels):
+        function(record, axis, *arguments)
+    drawing.save(figure, path, axes)
+    return True
 
 
 def sections(record):
-    """(file, caption, figure, tables) of each, numbered as in the paper; those from 13 on are not in it."""
+    """(file, caption, tables) of each, numbered as in the paper; those from 13 on are not in it."""
     operations = table(["method", *DISTRIBUTIONS], [[method_name(method), *spreads(record, method,
                                                                                   "operations_per_point", 0)]
                                                     for method in record.methods])
     yield ("figure-7-work",
            "Floating-point operations per point, and as multiples of Dwyer's. The paper has 1.1 to 2.5 times.",
-           work_figure, f"{operations}\nflaunay's operations / Dwyer's:\n\n{by_size_table(record, 'over_dwyer', 3)}")
+           f"{operations}\nflaunay's operations / Dwyer's:\n\n{by_size_table(record, 'over_dwyer', 3)}")
     yield ("figure-8-components",
            "Operations per point by component, medians, for each way to compute the dividing paths, "
-           "beside Dwyer's algorithm.", components_figure, components_table(record))
+           "beside Dwyer's algorithm.", components_table(record))
     yield ("figure-9-depth",
            "The critical path, summed over levels, and what it leaves for processors to do side by side.",
-           depth_figure, f"Depth of flaunay:\n\n{by_size_table(record, 'depth', 0)}\nWork / depth of flaunay:\n\n"
+           f"Depth of flaunay:\n\n{by_size_table(record, 'depth', 0)}\nWork / depth of flaunay:\n\n"
            f"{by_size_table(record, 'parallelism', 0)}")
     yield ("figures-10-and-11-levels",
            "Internal points of the largest region of each level; internal points and border corners of "
            "all regions that are cut at a level, relative to n. Cuts go through the median, so no region has more than "
-           "half of its parent's. Borders add to the sum, regions that are finished take from it.", levels_figure,
+           "half of its parent's. Borders add to the sum, regions that are finished take from it.",
            f"The largest region, interquartile cuts:\n\n{by_level_table(record, OURS, 'largest_region', 1, 0)}\n"
            "All regions / n, interquartile cuts:\n\n"
            f"{by_level_table(record, OURS, 'region_sizes_per_point', 1, 3)}\nAll regions / n, alternate cuts:\n\n"
@@ -352,14 +341,14 @@ def sections(record):
                      ("work after sorting / Dwyer's", "coarse_unsorted_over_dwyer", 3))])
     yield ("figure-12-coarse-partition",
            "Work up to each level, sorting included, relative to all of Dwyer's: what a coarse "
-           "partitioner would have done when it hands over to a sequential algorithm.", coarse_figure,
+           "partitioner would have done when it hands over to a sequential algorithm.",
            "flaunay, percent of Dwyer's total before each level:\n\n"
            f"{by_level_table(record, OURS, 'work_before_over_dwyer', 100, 1)}\n{coarse}")
     yield ("figure-13-end-game", "Corners of the regions that have no internal points left, all instances together.",
-           endgame_figure, endgame_table(record))
+           endgame_table(record))
     yield ("table-14-cuts",
            "The axis of each cut: across the longer interquartile range, or x and y in turn as in the paper.",
-           None, cuts_table(record))
+           cuts_table(record))
 
 
 def cross_check(rows):
@@ -390,11 +379,9 @@ def write(data, data_name, path):
         verdict = "agree" if agrees else "partly" if in_part else "disagree"
         rows.append([claim, measured, f"**{verdict}**", rule + (f". Why: {reason}" if reason and not agrees else "")])
     text += [table(["claim", "measured", "verdict", "agree if"], rows, numbers=False), DIFFERENCES, "\n## Figures\n"]
-    for file, caption, draw, tables in sections(record):
+    for file, caption, tables in sections(record):
         text.append(f"### {file.capitalize().replace('-', ' ')}\n\n{caption}\n")
-        if draw:
-            figure, panels = draw(record)
-            plot.save(figure, f"{name}-{file}.svg", panels)
+        if draw(record, file, f"{name}-{file}.svg"):
             text.append(f"![{file}]({os.path.basename(name)}-{file}.svg)\n")
         text.append(tables)
     text += ["## The kernels beside the twin\n", cross_check(data["cross_check"])]
