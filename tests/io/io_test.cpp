@@ -186,11 +186,9 @@ TEST_F(IoTest, TextSkipsNoLineOfMistypedNumbers) {
            {"- -", "'-'"},
            {"\"1.5.2\",\"a\"", "'1.5.2'"},
            {"\"\",\"\"", "nothing"},
-           // The minus sign of typography, digits of full width, and those of Arabic and Devanagari.
-           {"\xe2\x88\x92\x31,\xe2\x88\x92\x32", "'\xe2\x88\x92\x31'"},
-           {"\xef\xbc\x91,\xef\xbc\x92", "'\xef\xbc\x91'"},
-           {"\xd9\xa1,\xd9\xa2", "'\xd9\xa1'"},
-           {"\xe0\xa5\xa7,\xe0\xa5\xa8", "'\xe0\xa5\xa7'"},
+           // The minus sign of typography, and a currency.
+           {"\xe2\x88\x92\x31,\xe2\x88\x92\x32", "'\xe2\x88\x92\x31'; byte 0xE2 is not part of a number"},
+           {"\xc2\xa3\x31,\xc2\xa3\x32", "'\xc2\xa3\x31'"},
        }) {
     expect_bad_points("a.csv", std::string("# comment\n") + line + "\n1,2\n",
                       {"line 2, column ", "point 0", found, "if this line is a header, begin it with '#'"});
@@ -247,6 +245,9 @@ TEST_F(IoTest, TextNamesTheUnreadableNumber) {
   expect_bad_points("a.xy", "1 2\r\n3  4x\r\n", {"line 2, column 4", "number", "point 1", "'4x'"});
   expect_bad_points("b.csv", "1,2\n3,4\n,6\n", {"line 3, column 1", "point 2", "nothing"});
   expect_bad_points("c.xy", "1 2\n+-3 4\n", {"line 2, column 1", "'+-3'"});
+  // Digits of full width, and those of Arabic.
+  expect_bad_points("f.xy", "1 2\n\xef\xbc\x91 2\n", {"'\xef\xbc\x91'", "byte 0xEF"});
+  expect_bad_points("g.node", "1 2 0 0\n\xd9\xa1 1 2\n", {"'\xd9\xa1'", "byte 0xD9"});
   expect_bad_points("d.xy", "1 2\n3 0x10\n", {"line 2, column 3", "'0x10'"});
   expect_bad_points("e.xy", "1 2\n3 " + std::string(100, 'z') + "\n", {"'zzzzzzzz", "zzz...'"});
 }

@@ -1,7 +1,6 @@
 #include "app/files/text.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace flaunay::io {
 namespace {
@@ -38,33 +37,11 @@ bool is_control(char32_t c) {
   return (c <= kLastAscii && !is_plain(static_cast<unsigned char>(c))) || (c >= 0x80 && c < 0xa0);
 }
 
-struct Range {
-  char32_t first, last;
-};
-template <std::size_t count>
-bool in_any(const std::array<Range, count>& ranges, char32_t c) {
-  return std::any_of(ranges.begin(), ranges.end(),
-                     [c](const Range& range) { return c >= range.first && c <= range.last; });
-}
-
-/// Decimal digits of scripts that keyboards and spreadsheets produce.
-constexpr std::array<Range, 7> kDigits{{{'0', '9'},
-                                        {0x660, 0x669},      // Arabic
-                                        {0x6f0, 0x6f9},      // Persian and Urdu
-                                        {0x966, 0x96f},      // Devanagari
-                                        {0x9e6, 0x9ef},      // Bengali
-                                        {0xe50, 0xe59},      // Thai
-                                        {0xff10, 0xff19}}};  // full width
-
-/// Punctuation and symbols that stand where a number begins: signs, brackets, currencies, spaces.
-constexpr std::array<Range, 4> kSymbols{{{0x80, 0xbf},        // of Latin-1
-                                         {0x2000, 0x2bff},    // the minus sign and the dashes are here
-                                         {0x3000, 0x303f},    // of Chinese and Japanese
-                                         {0xff00, 0xff20}}};  // full width
-
-bool is_letter(char32_t c) {
-  if (c <= kLastAscii) return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  return !in_any(kDigits, c) && !in_any(kSymbols, c);
+/// Whether the byte is an ASCII letter or begins one of another script, as those above Latin-1's symbols
+/// (0xc2) do, but for the block of dashes, quotes, currencies and the minus sign (0xe2).
+bool begins_letter(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (byte >= 0xc3 && byte != 0xe2);
 }
 
 /// Whether the field is meant as a number, even if it is not a valid one.
@@ -78,26 +55,16 @@ bool looks_like_number(std::string_view field) {
     return true;
   }
   // "1.2.3", "0x10" and "(1" are numbers with something wrong; "X_1" is a name.
-  while (!field.empty()) {
-    const CodePoint next = first_code_point(field);
-    if (in_any(kDigits, next.value)) return true;
-    if (is_letter(next.value)) return false;
-    field.remove_prefix(next.bytes);
-  }
-  return false;
+  const auto first = std::find_if(field.begin(), field.end(),
+                                  [](char c) { return (c >= '0' && c <= '9') || begins_letter(c); });
+  return first != field.end() && !begins_letter(*first);
 }
 
-bool has_letter(std::string_view field) {
-  while (!field.empty()) {
-    const CodePoint next = first_code_point(field);
-    if (is_letter(next.value)) return true;
-    field.remove_prefix(next.bytes);
-  }
-  return false;
-}
-
-}  // namespace
-
+struct CodePoint {
+  char32_t value = 0;
+  std::size_t bytes = 0;  ///< none if the text is not valid UTF-8
+};
+/// The first character of a text that is not empty.
 CodePoint first_code_point(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
@@ -115,6 +82,8 @@ CodePoint first_code_point(std::string_view text) {
   if (value < least || value > 0x10ffff || is_surrogate) return {};
   return {value, bytes};
 }
+
+}  // namespace
 
 void check_text(const std::string& name, std::string_view text, std::size_t lines_before) {
   const char* const end = text.data() + text.size();
@@ -138,7 +107,7 @@ bool is_header(Lines& lines) {
   std::string_view field;
   while (lines.field(field)) {
     numbers = numbers || looks_like_number(field);
-    letters = letters || has_letter(field);
+    letters = letters || std::any_of(field.begin(), field.end(), begins_letter);
   }
   lines.rewind();
   return letters && !numbers;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -26,6 +27,15 @@ inline std::string quoted(std::string_view field) {
   return fmt::format("'{}{}'", field.substr(0, kLongest), field.size() > kLongest ? "..." : "");
 }
 
+/// A field that is no number for messages. What is beyond ASCII can look like a digit or a minus sign.
+inline std::string quoted_number(std::string_view field) {
+  if (field.empty()) return "nothing";
+  const auto other = std::find_if(field.begin(), field.end(), [](unsigned char c) { return c >= 0x80; });
+  if (other == field.end()) return quoted(field);
+  return fmt::format("{}; byte 0x{:02X} is not part of a number", quoted(field),
+                     static_cast<unsigned char>(*other));
+}
+
 enum class ParsedNumber { fine, unreadable, infinite };
 
 /// Reads all of field as a double; a leading '+' is fine. Numbers too small for a double become zero; those
@@ -38,44 +48,13 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
   if (error == std::errc::invalid_argument || stop != end) return ParsedNumber::unreadable;
   if (error != std::errc::result_out_of_range) return ParsedNumber::fine;
 
-  // Out of range can mean too large or too small; the power of ten of the first digit that is not 0 tells
-  // which. The exponent is capped far beyond that of a double, so that it cannot overflow here.
-  long long power = 0;
-  bool after_point = false, nonzero_seen = false;
-  const char* c = begin;
-  for (; c != end && *c != 'e' && *c != 'E'; ++c) {
-    if (*c == '.') {
-      after_point = true;
-    } else if (*c >= '0' && *c <= '9') {
-      if (after_point && !nonzero_seen) --power;
-      if (*c != '0') nonzero_seen = true;
-      if (!after_point && nonzero_seen) ++power;
-    }
-  }
-  if (c != end) {
-    ++c;
-    const bool negative = c != end && *c == '-';
-    long long exponent = 0;
-    for (; c != end; ++c) {
-      if (*c >= '0' && *c <= '9' && exponent < 1'000'000'000'000'000) exponent = 10 * exponent + (*c - '0');
-    }
-    power += negative ? -exponent : exponent;
-  }
-  if (power > 0) return ParsedNumber::infinite;
-  value = *begin == '-' ? -0.0 : 0.0;
-  return ParsedNumber::fine;
+  // Too large or too small: this function says which.
+  value = std::strtod(std::string(begin, end).c_str(), nullptr);
+  return std::isinf(value) ? ParsedNumber::infinite : ParsedNumber::fine;
 }
 
-/// A character, and how many bytes of UTF-8 it takes; 0 if they are not valid.
-struct CodePoint {
-  char32_t value = 0;
-  std::size_t bytes = 0;
-};
-/// The first character of a text, which must not be empty. Defined in text.cpp, like the next function.
-CodePoint first_code_point(std::string_view text);
-
 /// Throws Error(input) that names the place if the text is not UTF-8 or has control characters besides blanks
-/// and line ends. lines_before: of the file, before the text.
+/// and line ends. lines_before: of the file, before the text. Defined in text.cpp.
 void check_text(const std::string& name, std::string_view text, std::size_t lines_before = 0);
 
 /// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
@@ -159,7 +138,7 @@ class Lines {
     const std::size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
     const auto [stop, error] = std::from_chars(text.data() + skip, text.data() + text.size(), value);
     if (error != std::errc() || stop != text.data() + text.size()) {
-      fail_field(text, "expected {} (a whole number), found {}", what, quoted(text));
+      fail_field(text, "expected {} (a whole number), found {}", what, quoted_number(text));
     }
     return value;
   }
@@ -170,8 +149,8 @@ class Lines {
     double value = 0;
     const ParsedNumber parsed = parse_number(text, value);
     if (parsed == ParsedNumber::unreadable) {
-      fail_field(text, "expected a number (a coordinate of point {}), found {}{}", point,
-                 text.empty() ? "nothing" : quoted(text), hint);
+      fail_field(text, "expected a number (a coordinate of point {}), found {}{}", point, quoted_number(text),
+                 hint);
     }
     if (parsed == ParsedNumber::infinite) {
       fail_field(text,
