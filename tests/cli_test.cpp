@@ -1789,7 +1789,7 @@ TEST_F(CommandConstraintsTest, OptionsThatMakeNoSenseAreRefusedFirst) {
     refused("missing.xy", {options[0], "needs segments"}, options);
   }
   refused("missing.poly", {"--constraints", "segments of its own"}, {"--constraints", path("s.npy")});
-  refused("missing.xy", {"s.obj", ".npy, .txt or .csv"}, {"--constraints", path("s.obj")});
+  refused("missing.xy", {"s.obj", ".npy, .txt, .csv"}, {"--constraints", path("s.obj")});
   refused("missing.poly", {"--separate", ".geojson"}, {"--separate"});
   refused("missing.geojson", {"--hole", "polygon"}, {"--separate", "--hole", "1,2"});
   refused("missing.geojson", {"--overlaps"}, {"--separate", "--overlaps", "error"});

@@ -129,8 +129,16 @@ class InputFile {
     return std::string_view(bytes_.data(), std::min(count, used_));
   }
 
-  /// The size of a regular file; unknown, -1, of a pipe.
+  /// The size of a regular file, or of a pipe that was loaded; unknown, -1, of other pipes.
   std::int64_t size() const { return size_; }
+
+  /// Reads all of a pipe. What is read of it afterwards is in memory, as if it were a regular file.
+  void load_pipe() {
+    if (size_ >= 0) return;
+    load();
+    size_ = static_cast<std::int64_t>(used_);
+    is_loaded_ = true;
+  }
 
   /// Reads the bytes [begin, begin + count), begin being at most the count of the last call of first(),
   /// straight to their place. Returns how many there are. Nothing can be read afterwards.
@@ -152,9 +160,13 @@ class InputFile {
     return got;
   }
 
-  /// Reads the bytes [begin, begin + count) of a regular file, at any time. Fails if they are not there,
-  /// since callers know the size of the file from before.
+  /// Reads the bytes [begin, begin + count) of a file whose size is known, at any time. Fails if they are not
+  /// there, since callers know the size of the file from before.
   void read_at(std::uint64_t begin, std::size_t count, void* to) const {
+    if (is_loaded_ && begin + count <= used_) {
+      std::memcpy(to, bytes_.data() + begin, count);
+      return;
+    }
     const std::size_t got = io::read_at(descriptor_, begin, count, to);
     if (got < count && errno != 0) fail(name_, "cannot be read: {}", system_reason(errno));
     if (got < count) {
@@ -163,14 +175,22 @@ class InputFile {
     }
   }
 
+  /// read_at as a function.
+  auto reader() const {
+    return [this](std::uint64_t begin, std::size_t count, void* to) { read_at(begin, count, to); };
+  }
+
   /// All bytes. Nothing can be read afterwards.
   std::string all() {
-    for (std::size_t room = whole_; !ended_; room *= 2) read_until(room);
-    bytes_.resize(used_);
+    load();
     return std::move(bytes_);
   }
 
  private:
+  void load() {
+    for (std::size_t room = whole_; !ended_; room *= 2) read_until(room);
+    bytes_.resize(used_);
+  }
   /// Reads until there are `count` bytes or the file ends.
   void read_until(std::size_t count) {
     if (bytes_.size() < count) bytes_.resize(count);
@@ -198,7 +218,7 @@ class InputFile {
   std::size_t whole_ = 0;  // room for all bytes of a regular file
   std::string bytes_;      // the first used_ bytes were read
   std::size_t used_ = 0;
-  bool ended_ = false;
+  bool ended_ = false, is_loaded_ = false;
 };
 
 /// The bytes of the file at path, or of standard input for "-". `expected` says what should have been in it.

@@ -47,7 +47,7 @@ void write_points(const std::string& path, const Points& points) {
 }
 void write_mesh(const std::string& path, const Points& points, const Triangulation& mesh) {
   Outputs outputs;
-  write_mesh(outputs, path, points, mesh);
+  write_mesh(outputs, path, {points, mesh});
   outputs.commit();
 }
 void write_npy_indices(const std::string& path, const Indices& values, std::size_t columns) {
@@ -165,8 +165,7 @@ TEST_F(IoTest, TextHeadersOfOtherPrograms) {
   for (const char* header :
        {"lon,lat", "\"lon\",\"lat\"", "X_1,Y_1", "x1 y1", "x y z", "E,N", "l,b", "I J",
         "longitude (deg),latitude (deg)", "\"easting, in m\",\"northing, in m\"", "\"the \"\"x\"\"\",y",
-        "L\xc3\xa4nge,Breite", "\xe7\xbb\x8f\xe5\xba\xa6,\xe7\xba\xac\xe5\xba\xa6",
-        "\xef\xbc\xb8,\xef\xbc\xb9", ",x,y", "\"x"}) {
+        "L\xc3\xa4nge,Breite", "\xe7\xbb\x8f\xe5\xba\xa6,\xe7\xba\xac\xe5\xba\xa6", ",x,y", "\"x"}) {
     EXPECT_EQ(points_of("a.csv", std::string(header) + "\n1,2\n"), (Values{1, 2})) << header;
   }
 }
@@ -186,9 +185,11 @@ TEST_F(IoTest, TextSkipsNoLineOfMistypedNumbers) {
            {"- -", "'-'"},
            {"\"1.5.2\",\"a\"", "'1.5.2'"},
            {"\"\",\"\"", "nothing"},
-           // The minus sign of typography, and a currency.
+           // The minus sign of typography, a currency, and characters of full width.
            {"\xe2\x88\x92\x31,\xe2\x88\x92\x32", "'\xe2\x88\x92\x31'; byte 0xE2 is not part of a number"},
            {"\xc2\xa3\x31,\xc2\xa3\x32", "'\xc2\xa3\x31'"},
+           {"\xef\xbc\x91,\xef\xbc\x92", "'\xef\xbc\x91'"},
+           {"\xef\xbc\xb8,\xef\xbc\xb9", "'\xef\xbc\xb8'"},
        }) {
     expect_bad_points("a.csv", std::string("# comment\n") + line + "\n1,2\n",
                       {"line 2, column ", "point 0", found, "if this line is a header, begin it with '#'"});
@@ -588,7 +589,7 @@ TEST_F(IoTest, AnnouncedFilesAreGoneUnlessTheyAreWritten) {
 TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
   for (const char* name : {"a.stl", "a", "-", "a.node"}) {
     expect_error(ErrorKind::usage, std::string(name) + ": ",
-                 {".ele, .off, .ply, .vtu, .obj, .npy, .geojson, .svg"}, [&] { mesh_files(name); });
+                 {".npy, .geojson, .ele, .off, .obj, .ply, .vtu, .svg"}, [&] { mesh_files(name); });
     expect_error(ErrorKind::usage, std::string(name) + ": ", {".svg"}, [&] { write_mesh(name, {}, {}); });
   }
   expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},

@@ -302,7 +302,7 @@ TEST_F(MapTest, SegmentsWithErrorsNameThePlace) {
   expect_bad_segments("s.npy", npy_of("<f4", "(3, 2)", six), {"'<f4'", "'<i4', '<i8'", "or '|u1'"});
   expect_bad_segments("s.npy", npy_of("<i4", "(3, 2)", six, "True"), {"Fortran"});
   expect_bad_segments("none/s.npy", "", {"No such file"});
-  expect_error(ErrorKind::usage, "s.obj: ", {".npy, .txt or .csv"}, [] { check_segments_ending("s.obj"); });
+  expect_error(ErrorKind::usage, "s.obj: ", {".npy, .txt, .csv"}, [] { check_segments_ending("s.obj"); });
 }
 
 // ------------------------------------------------------------------------------------------ meshes with
@@ -333,7 +333,7 @@ class ConstrainedMeshTest : public FolderTest {
   std::string write_map(const std::string& name, const Map& map, const ConstrainedTriangulation& mesh,
                         const Values& attributes = {}) {
     Outputs outputs;
-    write_mesh(outputs, path(name), map, mesh, FillRule::nesting, attributes);
+    write_mesh(outputs, path(name), {map.points, mesh, &mesh, &map, FillRule::nesting, attributes});
     outputs.commit();
     return read(path(name));
   }

@@ -165,7 +165,14 @@ TEST_F(LasTest, WrongFiles) {
   expect_error(ErrorKind::input, file + ": ", {"point 1 is (inf, "}, [&] { read_points(file); });
 }
 
-TEST_F(LasTest, CompressedFilesAndPipesAreRefused) {
+TEST_F(LasTest, APipeIsReadAsAFile) {
+  const std::string file = write("scan.las", some_scan().bytes()), pipe = path("pipe.las");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  ASSERT_EQ(std::system(("cat '" + file + "' > '" + pipe + "' &").c_str()), 0);
+  EXPECT_EQ(read_points(pipe).coordinates, some_scan().coordinates());
+}
+
+TEST_F(LasTest, CompressedFilesAreRefused) {
   const std::string laz = write("scan.laz", some_scan().bytes());
   expect_error(ErrorKind::input, laz + ": ", {"compressed (LAZ)", "pdal"}, [&] { read_points(laz); });
   expect_error(ErrorKind::input, laz + ": ", {"compressed (LAZ)"}, [&] { check_points_ending(laz); });

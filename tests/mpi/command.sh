@@ -78,7 +78,7 @@ case "$1" in
     refused 3 'rank 2: point 19999 is not finite' 3 nan.npy --triangles t.npy
     refused 3 'is truncated' 3 short.npy --triangles t.npy
     refused 3 'missing.npy: cannot be opened' 3 missing.npy --triangles t.npy
-    refused 2 'ranks read .npy and .bin files' 3 points.xy --triangles t.npy
+    refused 2 'ranks read .npy, .bin, .las' 3 points.xy --triangles t.npy
     refused 2 'this output would overwrite the input' 3 points.npy --triangles points.npy
     refused 2 'two outputs have the same path' 3 points.npy --triangles t.npy --neighbors t.npy
     refused 3 'no/t.npy' 3 points.npy --triangles no/t.npy

@@ -14,6 +14,7 @@
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/text.hpp"
@@ -255,7 +256,8 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
   const io::IndexType index = index_type(work.index, map.points.size(), work.results);
   io::Outputs& files = outputs.files();
   if (!work.results.mesh.empty()) {
-    io::write_mesh(files, work.results.mesh, map, mesh, request.fill, attributes_of(map, mesh));
+    const std::vector<double> attributes = attributes_of(map, mesh);
+    io::write_mesh(files, work.results.mesh, {map.points, mesh, &mesh, &map, request.fill, attributes});
   }
   write_arrays(work.results, mesh, outputs, index);
   for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
@@ -279,10 +281,9 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
 }  // namespace
 
 void add_domain_options(CLI::App* command, ConstraintRequest& request) {
-  add_path(
-      command, "--constraints", request.segments,
-      "Segments that become edges: .npy, .txt or .csv, 2 point indices per row; .poly and .geojson files "
-      "have their own");
+  add_path(command, "--constraints", request.segments,
+           fmt::format("Segments that become edges: {}, 2 point indices per row; maps have their own",
+                       io::endings_for(io::Use::read_segments)));
   add_named_choice(command, "--outside", request.outside,
                    "Triangles: keep all, up to the hull; hull: without those outside; holes: nor those in "
                    "holes. Default: keep, for .poly hull, for polygons in GeoJSON holes",
@@ -312,8 +313,8 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
              kConstraintArrayFiles[k].description);
   }
   add_path(command, "--points", request.points,
-           "The points of the map and those that were added, to which indices refer: .npy, .node, .xy, .txt, "
-           ".csv or .bin");
+           fmt::format("The points of the map and those that were added, to which indices refer: {}",
+                       io::endings_for(io::Use::write_points)));
   add_path(command, "--polygons", request.polygons,
            "GeoJSON: for each triangle the number of its polygon, -1 for none: .npy");
 }

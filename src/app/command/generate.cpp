@@ -13,6 +13,7 @@
 #include "app/command/commands.hpp"
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/points.hpp"
 #include "files/disk_space.hpp"
 #include "files/file.hpp"
@@ -29,14 +30,6 @@ struct GenerateRequest {
   std::string output;
 };
 
-// The least bytes that n points take in a file: those of two doubles, or of "0 0" and the end of the line.
-std::uint64_t least_bytes(const std::string& path, std::uint64_t n) {
-  const std::string ending = io::ending_of(path);
-  const std::uint64_t point = ending == ".npy" || ending == ".bin" ? 2 * sizeof(double) : 4;
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-  return n > kMost / point ? kMost : n * point;
-}
-
 int generate(const GenerateRequest& request) {
   if (request.output == "-") {
     // As in every filter, a closed pipe ends the program without a message.
@@ -44,7 +37,7 @@ int generate(const GenerateRequest& request) {
   }
   OutputFiles outputs("-");
   outputs.add_points(request.output);
-  io::check_disk_space({{request.output, least_bytes(request.output, request.count)}});
+  io::check_disk_space({{request.output, io::least_bytes(request.output, request.count)}});
   io::PointWriter writer(outputs.files(), request.output, request.count);
   io::generate(request.distribution, request.count, request.seed,
                [&writer](const double* coordinates, std::size_t count) { writer.write(coordinates, count); });
@@ -82,8 +75,9 @@ void add_generate(CLI::App& app, Action& action) {
       ->check(whole_number)
       ->capture_default_str();
   command
-      ->add_option("-o,--output", request->output,
-                   "Points: .npy, .node, .xy, .txt, .csv, .bin, or - for text on standard output")
+      ->add_option(
+          "-o,--output", request->output,
+          fmt::format("Points: {}, or - for text on standard output", io::endings_for(io::Use::write_points)))
       ->required();
   command->footer(distribution_table());
   command->callback([request, &action] { action = [request] { return generate(*request); }; });

@@ -6,14 +6,15 @@
 #include <iterator>
 #include <limits>
 
+#include "app/files/formats.hpp"
+
 namespace flaunay::cli {
 
 void add_input(CLI::App* command, std::string& path) {
   command
       ->add_option("input", path,
-                   "Points: .npy, .node, .xy, .txt, .csv, .bin, .las, or - for text from standard input; or "
-                   "a map: .poly, "
-                   ".geojson")
+                   fmt::format("Points: {}, or - for text from standard input; of these, {} are maps",
+                               io::endings_for(io::Use::read_points), io::endings_for(io::Use::read_map)))
       ->required();
 }
 

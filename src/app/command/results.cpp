@@ -1,6 +1,7 @@
 #include "app/command/results.hpp"
 
 #include "app/command/options.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/mesh.hpp"
 
 namespace flaunay::cli {
@@ -13,8 +14,7 @@ std::vector<std::string> ResultPaths::all() const {
 }
 
 void add_results(CLI::App* command, ResultPaths& paths) {
-  add_path(command, "-o,--output", paths.mesh,
-           "Mesh: .ele (with .node beside it), .off, .ply, .vtu, .obj, .npy, .geojson or .svg");
+  add_path(command, "-o,--output", paths.mesh, fmt::format("Mesh: {}", io::endings_for(io::Use::write_mesh)));
   add_result_arrays(command, paths);
 }
 
@@ -57,7 +57,7 @@ void write_results(const ResultPaths& paths, const io::Points& points, const res
                    RunFacts& facts, Progress& progress, OutputFiles& outputs, io::IndexType index) {
   Stopwatch stopwatch;
   progress.update("writing");
-  if (!paths.mesh.empty()) io::write_mesh(outputs.files(), paths.mesh, points, mesh);
+  if (!paths.mesh.empty()) io::write_mesh(outputs.files(), paths.mesh, {points, mesh});
   write_arrays(paths, mesh, outputs, index);
   outputs.files().write_out();
   facts.writing_seconds = stopwatch.seconds();

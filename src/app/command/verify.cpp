@@ -15,6 +15,7 @@
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/npy.hpp"
@@ -191,7 +192,9 @@ void add_verify(CLI::App& app, Action& action) {
                          "constrained one");
   command->add_option("points", request->points, "The points, in any format that triangulate reads")
       ->required();
-  command->add_option("triangles", request->triangles, "The triangles: .npy, .ele, .off, .obj or .ply")
+  command
+      ->add_option("triangles", request->triangles,
+                   "The triangles: " + io::endings_for(io::Use::read_triangles))
       ->required();
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
   add_domain_options(command, request->constraints);

@@ -1,10 +1,10 @@
 #include "app/files/las.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string_view>
-#include <vector>
 
 namespace flaunay::io {
 namespace {
@@ -46,7 +46,7 @@ std::size_t check_beginning(const std::string& path, std::string_view header) {
 }
 
 void check_format(const std::string& path, int format, std::size_t record_bytes) {
-  if ((format & kCompressedBits) != 0) fail_compressed(path);
+  if ((format & kCompressedBits) != 0) refuse_compressed(path);
   if (static_cast<std::size_t>(format) >= kLeastRecordBytes.size()) {
     fail(path, "has LAS point format {}; expected 0 to {}", format, kLeastRecordBytes.size() - 1);
   }
@@ -57,30 +57,34 @@ void check_format(const std::string& path, int format, std::size_t record_bytes)
   }
 }
 
-void check_size(const std::string& path, const LasPoints& points, std::int64_t file_size) {
-  if (file_size < 0) fail(path, "is no regular file; expected one, because LAS files are not read in order");
-  const auto bytes = static_cast<std::uint64_t>(file_size);
-  const std::uint64_t found = bytes - std::min(bytes, points.data_begin);
+void check_size(const std::string& path, const PointRecords& points, std::uint64_t bytes) {
+  const std::uint64_t found = bytes - std::min(bytes, points.begin);
   // What follows the points, such as further records of variable length, is not read.
-  if (points.size > found / points.record_bytes) {
+  if (points.size > found / points.bytes) {
     fail(path, "is truncated: {} points of {} bytes from byte {} on, but the file has {} bytes", points.size,
-         points.record_bytes, points.data_begin, bytes);
+         points.bytes, points.begin, bytes);
   }
 }
+
+/// coordinate = integer * scale + offset
+struct Decode {
+  std::size_t record_bytes;
+  std::array<double, 2> scale{}, offset{};  ///< of x and y
+
+  void operator()(const char* records, std::size_t count, double* coordinates) const {
+    for (std::size_t i = 0; i < count; ++i, records += record_bytes) {
+      std::int32_t stored[2];  // every point format begins with X and Y
+      std::memcpy(stored, records, sizeof stored);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        coordinates[2 * i + axis] = stored[axis] * scale[axis] + offset[axis];
+      }
+    }
+  }
+};
 
 }  // namespace
 
-void LasPoints::decode(const char* records, std::size_t count, double* coordinates) const {
-  for (std::size_t i = 0; i < count; ++i, records += record_bytes) {
-    std::int32_t stored[2];  // every point format begins with X and Y
-    std::memcpy(stored, records, sizeof stored);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      coordinates[2 * i + axis] = stored[axis] * scale[axis] + offset[axis];
-    }
-  }
-}
-
-LasPoints find_las_points(const std::string& path, InputFile& file) {
+PointRecords las_points(const std::string& path, InputFile& file) {
   const std::string_view header = file.first(kHeaderBytes.back());
   const std::size_t minor = check_beginning(path, header);
   const std::size_t header_bytes = value_at<std::uint16_t>(header, kHeaderSize);
@@ -88,45 +92,33 @@ LasPoints find_las_points(const std::string& path, InputFile& file) {
     fail(path, "has a LAS header of {} bytes; expected at least {} in version 1.{}",
          std::min(header_bytes, header.size()), kHeaderBytes[minor], minor);
   }
-  LasPoints points;
-  points.record_bytes = value_at<std::uint16_t>(header, kRecordBytes);
-  check_format(path, value_at<std::uint8_t>(header, kFormat), points.record_bytes);
-  points.data_begin = value_at<std::uint32_t>(header, kDataBegin);
-  if (points.data_begin < header_bytes) {
-    fail(path, "has its LAS points from byte {} on, within the header of {} bytes", points.data_begin,
+  PointRecords points;
+  points.bytes = value_at<std::uint16_t>(header, kRecordBytes);
+  check_format(path, value_at<std::uint8_t>(header, kFormat), points.bytes);
+  points.begin = value_at<std::uint32_t>(header, kDataBegin);
+  if (points.begin < header_bytes) {
+    fail(path, "has its LAS points from byte {} on, within the header of {} bytes", points.begin,
          header_bytes);
   }
   points.size =
       minor == 4 ? value_at<std::uint64_t>(header, kCount) : value_at<std::uint32_t>(header, kLegacyCount);
+  Decode decode{points.bytes};
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    points.scale[axis] = value_at<double>(header, kScale + axis * sizeof(double));
-    points.offset[axis] = value_at<double>(header, kOffset + axis * sizeof(double));
-    if (!std::isfinite(points.scale[axis]) || points.scale[axis] == 0 ||
-        !std::isfinite(points.offset[axis])) {
+    decode.scale[axis] = value_at<double>(header, kScale + axis * sizeof(double));
+    decode.offset[axis] = value_at<double>(header, kOffset + axis * sizeof(double));
+    if (!std::isfinite(decode.scale[axis]) || decode.scale[axis] == 0 ||
+        !std::isfinite(decode.offset[axis])) {
       fail(path, "has LAS scale {} and offset {} for {}; expected finite numbers, and a scale that is not 0",
-           points.scale[axis], points.offset[axis], axis == 0 ? 'x' : 'y');
+           decode.scale[axis], decode.offset[axis], axis == 0 ? 'x' : 'y');
     }
   }
-  check_size(path, points, file.size());
+  file.load_pipe();
+  check_size(path, points, static_cast<std::uint64_t>(file.size()));
+  points.decode = decode;
   return points;
 }
 
-Points read_las_points(const std::string& path) {
-  constexpr std::size_t kPiece = std::size_t{1} << 16;
-  InputFile file(path, kLasFile);
-  const LasPoints found = find_las_points(path, file);
-  Points points;
-  points.coordinates.resize(2 * found.size);
-  std::vector<char> records(std::min<std::uint64_t>(kPiece, found.size) * found.record_bytes);
-  for (std::uint64_t first = 0; first < found.size; first += kPiece) {
-    const std::size_t count = std::min<std::uint64_t>(kPiece, found.size - first);
-    file.read_at(found.data_begin + first * found.record_bytes, count * found.record_bytes, records.data());
-    found.decode(records.data(), count, &points.coordinates[2 * first]);
-  }
-  return points;
-}
-
-void fail_compressed(const std::string& path) {
+void refuse_compressed(const std::string& path) {
   fail(path,
        "is compressed (LAZ); expected an uncompressed LAS file: decompress it first, for example with "
        "\"laszip "

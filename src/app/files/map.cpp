@@ -1,20 +1,12 @@
 #include "app/files/map.hpp"
 
-#include <string_view>
 #include <utility>
 
-#include "app/files/geojson.hpp"
-#include "app/files/npy.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
-namespace {
-
-constexpr std::string_view kSegmentEndings = ".npy, .txt or .csv";
-
-bool is_poly(const std::string& path) { return ending_of(path) == ".poly"; }
-
 std::vector<std::int32_t> read_text_segments(const std::string& path, std::size_t points) {
   const std::string text = read_file(path, "two indices a line");
   Lines lines(path, text, Lines::Separator::blanks_or_comma);
@@ -32,7 +24,8 @@ std::vector<std::int32_t> read_text_segments(const std::string& path, std::size_
   return segments;
 }
 
-Map map_of(PolyFile file) {
+Map read_poly_map(const std::string& path) {
+  PolyFile file = read_poly(path);
   Map map;
   map.has_others = true;
   map.points = std::move(file.points);
@@ -43,28 +36,20 @@ Map map_of(PolyFile file) {
   return map;
 }
 
-}  // namespace
+bool is_map(const std::string& path) { return find_format(path, Use::read_map) != nullptr; }
 
-bool is_map(const std::string& path) {
-  const std::string ending = ending_of(path);
-  return ending == ".poly" || ending == ".geojson" || ending == ".json";
-}
-
-Map read_map(const std::string& path) { return is_poly(path) ? map_of(read_poly(path)) : read_geojson(path); }
+Map read_map(const std::string& path) { return format_of(path, Use::read_map).map(path); }
 
 std::vector<std::string> files_of_map(const std::string& path) {
-  if (!is_poly(path)) return {path};
-  return {path, path_beside(path, ".node")};
+  const Format& format = format_of(path, Use::read_map);
+  if (format.beside.empty()) return {path};
+  return {path, path_beside(path, format.beside)};
 }
 
 std::vector<std::int32_t> read_segments(const std::string& path, std::size_t points) {
-  check_segments_ending(path);
-  return ending_of(path) == ".npy" ? read_npy_segments(path, points) : read_text_segments(path, points);
+  return format_of(path, Use::read_segments).segments(path, points);
 }
 
-void check_segments_ending(const std::string& path) {
-  const std::string ending = ending_of(path);
-  if (ending != ".npy" && ending != ".txt" && ending != ".csv") fail_ending(path, kSegmentEndings);
-}
+void check_segments_ending(const std::string& path) { format_of(path, Use::read_segments); }
 
 }  // namespace flaunay::io

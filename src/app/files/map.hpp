@@ -31,6 +31,11 @@ struct Map {
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
 };
 
+/// A map of Triangle's format.
+Map read_poly_map(const std::string& path);
+/// Segments of a text.
+std::vector<std::int32_t> read_text_segments(const std::string& path, std::size_t points);
+
 /// Whether the ending of path is that of a map: .poly, .geojson or .json.
 bool is_map(const std::string& path);
 

@@ -5,33 +5,17 @@
 #include <span>
 #include <string_view>
 
+#include "app/files/formats.hpp"
+#include "app/files/mesh_formats.hpp"
 #include "app/files/npy.hpp"
 #include "app/files/poly.hpp"
-#include "app/files/svg.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
 namespace {
 
-constexpr std::string_view kOutputEndings = ".ele, .off, .ply, .vtu, .obj, .npy, .geojson, .svg";
-constexpr std::string_view kTriangleEndings = ".npy, .ele, .off, .obj, .ply";
 constexpr long long kIndexLimit = std::numeric_limits<std::int32_t>::max();
-
-enum class Format { ele, off, ply, vtu, obj, npy, geojson, svg };
-
-Format output_format(const std::string& path) {
-  const std::string ending = ending_of(path);
-  if (ending == ".ele") return Format::ele;
-  if (ending == ".off") return Format::off;
-  if (ending == ".ply") return Format::ply;
-  if (ending == ".vtu") return Format::vtu;
-  if (ending == ".obj") return Format::obj;
-  if (ending == ".npy") return Format::npy;
-  if (ending == ".geojson") return Format::geojson;
-  if (ending == ".svg") return Format::svg;
-  fail_ending(path, kOutputEndings);
-}
 
 std::size_t triangle_count(const Triangulation& mesh) { return mesh.triangles.size() / 3; }
 
@@ -49,6 +33,14 @@ struct ConstraintParts {
   std::size_t edge_count() const { return edges.size() / 2; }
   bool has_labels() const { return !regions.empty() && !depths.empty(); }
 };
+
+ConstraintParts constraints_of(const MeshContents& contents) {
+  if (contents.constrained == nullptr) return {};
+  const ConstrainedTriangulation& mesh = *contents.constrained;
+  const Map& map = *contents.map;
+  return {mesh.constraint_edges, mesh.edge_segments, map.segment_markers, map.holes, map.regions,
+          contents.attributes,   mesh.regions,       mesh.depths,         true};
+}
 
 /// The constraint edges, whose vertices are in the .node file.
 void write_poly(OutputFile& file, const ConstraintParts& constraints) {
@@ -70,8 +62,12 @@ void write_poly(OutputFile& file, const ConstraintParts& constraints) {
   }
 }
 
-void write_ele(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
-               const ConstraintParts& constraints) {
+}  // namespace
+
+void write_ele(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  const Points& points = contents.points;
+  const Triangulation& mesh = contents.mesh;
+  const ConstraintParts constraints = constraints_of(contents);
   OutputFile& ele = outputs.open(path);
   print_node(outputs.open(path_beside(path, ".node")), points);
   if (constraints.present) write_poly(outputs.open(path_beside(path, ".poly")), constraints);
@@ -86,7 +82,9 @@ void write_ele(Outputs& outputs, const std::string& path, const Points& points, 
   }
 }
 
-void write_off(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
+void write_off(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  const Points& points = contents.points;
+  const Triangulation& mesh = contents.mesh;
   OutputFile& file = outputs.open(path);
   file.print("OFF\n{} {} 0\n", points.size(), triangle_count(mesh));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -98,8 +96,10 @@ void write_off(Outputs& outputs, const std::string& path, const Points& points, 
   }
 }
 
-void write_obj(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
-               const ConstraintParts& constraints) {
+void write_obj(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  const Points& points = contents.points;
+  const Triangulation& mesh = contents.mesh;
+  const ConstraintParts constraints = constraints_of(contents);
   OutputFile& file = outputs.open(path);
   file.print("# {} vertices, {} triangles\n", points.size(), triangle_count(mesh));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -114,6 +114,8 @@ void write_obj(Outputs& outputs, const std::string& path, const Points& points, 
   }
 }
 
+namespace {
+
 /// The points as x, y, 0.
 void write_spatial_points(OutputFile& file, const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -122,8 +124,12 @@ void write_spatial_points(OutputFile& file, const Points& points) {
   }
 }
 
-void write_ply(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
-               const ConstraintParts& constraints) {
+}  // namespace
+
+void write_ply(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  const Points& points = contents.points;
+  const Triangulation& mesh = contents.mesh;
+  const ConstraintParts constraints = constraints_of(contents);
   OutputFile& file = outputs.open(path);
   file.print(
       "ply\nformat binary_little_endian 1.0\ncomment flaunay\n"
@@ -142,8 +148,10 @@ void write_ply(Outputs& outputs, const std::string& path, const Points& points, 
   file.write(constraints.edges.data(), constraints.edges.size_bytes());
 }
 
-void write_vtu(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
-               const ConstraintParts& constraints) {
+void write_vtu(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  const Points& points = contents.points;
+  const Triangulation& mesh = contents.mesh;
+  const ConstraintParts constraints = constraints_of(contents);
   constexpr std::uint8_t kVtkTriangle = 5;
   const std::uint64_t point_bytes = points.size() * 3 * sizeof(double);
   const std::uint64_t corner_bytes = mesh.triangles.size() * sizeof(std::int32_t);
@@ -199,9 +207,10 @@ void write_vtu(Outputs& outputs, const std::string& path, const Points& points, 
   file.print("\n</AppendedData>\n</VTKFile>\n");
 }
 
-/// A feature per triangle, with its corners as a ring.
-void write_geojson(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
-                   const ConstraintParts& constraints) {
+void write_geojson(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  const Points& points = contents.points;
+  const Triangulation& mesh = contents.mesh;
+  const ConstraintParts constraints = constraints_of(contents);
   OutputFile& file = outputs.open(path);
   file.print("{{\"type\":\"FeatureCollection\",\"features\":[");
   for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
@@ -323,6 +332,8 @@ std::vector<std::int32_t> read_obj(const std::string& path) {
   return triangles;
 }
 
+namespace {
+
 /// Bytes of one of PLY's scalar types; 0 for an unknown name.
 std::size_t ply_type_bytes(std::string_view type) {
   if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
@@ -332,6 +343,8 @@ std::size_t ply_type_bytes(std::string_view type) {
   if (type == "double" || type == "float64") return 8;
   return 0;
 }
+
+}  // namespace
 
 std::vector<std::int32_t> read_ply(const std::string& path) {
   constexpr std::string_view kBegin = "ply\n", kEnd = "\nend_header\n";
@@ -425,68 +438,30 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
   return triangles;
 }
 
-/// All formats but pictures.
-void write_format(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh,
-                  const ConstraintParts& constraints) {
-  switch (output_format(path)) {
-    case Format::ele:
-      return write_ele(outputs, path, points, mesh, constraints);
-    case Format::off:
-      return write_off(outputs, path, points, mesh);
-    case Format::ply:
-      return write_ply(outputs, path, points, mesh, constraints);
-    case Format::vtu:
-      return write_vtu(outputs, path, points, mesh, constraints);
-    case Format::obj:
-      return write_obj(outputs, path, points, mesh, constraints);
-    case Format::geojson:
-      return write_geojson(outputs, path, points, mesh, constraints);
-    case Format::npy:
-      return write_npy_indices(outputs, path, mesh.triangles, 3);
-    case Format::svg:
-      break;
-  }
+void write_npy_triangles(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  write_npy_indices(outputs, path, contents.mesh.triangles, 3);
 }
 
-}  // namespace
-
-void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
-  if (output_format(path) == Format::svg) return write_svg(outputs, path, points, mesh);
-  write_format(outputs, path, points, mesh, {});
-}
-
-void write_mesh(Outputs& outputs, const std::string& path, const Map& map,
-                const ConstrainedTriangulation& mesh, FillRule fill_rule,
-                const std::vector<double>& attributes) {
-  if (output_format(path) == Format::svg) return write_svg(outputs, path, map.points, mesh, fill_rule);
-  write_format(outputs, path, map.points, mesh,
-               {mesh.constraint_edges, mesh.edge_segments, map.segment_markers, map.holes, map.regions,
-                attributes, mesh.regions, mesh.depths, true});
+void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  format_of(path, Use::write_mesh).mesh_out(outputs, path, contents);
 }
 
 std::vector<std::string> mesh_files(const std::string& path, bool with_constraints) {
+  const Format& format = format_of(path, Use::write_mesh);
   std::vector<std::string> files = {path};
-  if (output_format(path) == Format::ele) {
-    files.push_back(path_beside(path, ".node"));
-    if (with_constraints) files.push_back(path_beside(path, ".poly"));
+  if (!format.beside.empty()) files.push_back(path_beside(path, format.beside));
+  if (with_constraints && !format.constraints_beside.empty()) {
+    files.push_back(path_beside(path, format.constraints_beside));
   }
   return files;
 }
 
 bool shows_labels(const std::string& path) {
-  if (path.empty()) return false;
-  const Format format = output_format(path);
-  return format == Format::ele || format == Format::vtu || format == Format::geojson || format == Format::svg;
+  return !path.empty() && format_of(path, Use::write_mesh).has_labels;
 }
 
 std::vector<std::int32_t> read_triangles(const std::string& path) {
-  const std::string ending = ending_of(path);
-  if (ending == ".npy") return read_npy_triangles(path);
-  if (ending == ".ele") return read_ele(path);
-  if (ending == ".off") return read_off(path);
-  if (ending == ".obj") return read_obj(path);
-  if (ending == ".ply") return read_ply(path);
-  fail_ending(path, kTriangleEndings);
+  return format_of(path, Use::read_triangles).triangles(path);
 }
 
 }  // namespace flaunay::io

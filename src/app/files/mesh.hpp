@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,23 +13,28 @@
 
 namespace flaunay::io {
 
+/// A mesh to be written.
+struct MeshContents {
+  const Points& points;
+  const Triangulation& mesh;
+  const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
+  const Map* map = nullptr;                               ///< then the map of the constraints
+  FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
+  std::span<const double> attributes = {};                ///< one per triangle, or none
+};
+
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
 /// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .geojson (a polygon per triangle), .svg (a
-/// picture).
-/// Throws Error(input) naming path and the system's reason if it cannot be written.
-void write_mesh(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh);
-
-/// The same with constraints, as far as the format can have them. Of the map, points: the added ones follow
-/// those of the input; fill_rule: what depths mean; attributes: of each triangle, or none.
+/// picture). Points that splitting added follow those of the input. Constraints are written as far as the
+/// format can have them:
 ///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
 ///                    edges, whose markers are those of their segments or, if these have none, the numbers of
 ///                    their segments, from 1, and with the holes and regions
 ///   .obj .ply        the constraint edges, as lines and edges
 ///   .vtu .geojson    region and depth of each triangle
 ///   .svg             the constraint edges, and the inside in other colours than the outside
-void write_mesh(Outputs& outputs, const std::string& path, const Map& map,
-                const ConstrainedTriangulation& mesh, FillRule fill_rule,
-                const std::vector<double>& attributes = {});
+/// Throws Error(input) naming path and the system's reason if it cannot be written.
+void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& contents);
 
 /// The files that write_mesh writes for path: some formats have more than one. Throws Error(usage) for an
 /// unknown ending.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "app/files/formats.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/rows.hpp"
 #include "files/file.hpp"
@@ -194,12 +195,14 @@ class Array {
   std::size_t rows() const { return header_.shape[0]; }
   std::size_t data_begin() const { return header_.data_begin; }
 
-  /// Checks the size of a regular file.
-  void check_size() const { check(static_cast<std::size_t>(file_.size()) - header_.data_begin); }
+  /// Checks the size of the file.
+  void check_size() const {
+    file_.load_pipe();
+    check(static_cast<std::size_t>(file_.size()) - header_.data_begin);
+  }
 
   template <typename Value>
   std::vector<Value> values() {
-    if (file_.size() < 0) return values_of_pipe<Value>();
     // Before there is memory for what the header promises.
     check_size();
     std::vector<Value> all;
@@ -211,15 +214,6 @@ class Array {
   }
 
  private:
-  template <typename Value>
-  std::vector<Value> values_of_pipe() {
-    const std::string bytes = file_.all();
-    check(bytes.size() - header_.data_begin);
-    std::vector<Value> all(promised_ / sizeof(Value));
-    if (!all.empty()) std::memcpy(all.data(), bytes.data() + header_.data_begin, promised_);
-    return all;
-  }
-
   void check(std::size_t found) const {
     if (found < promised_) {
       fail(path_, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
@@ -237,33 +231,10 @@ class Array {
   std::size_t promised_ = 0;
 };
 
-const Layout& point_layout() {
-  static const Layout layout = {"n", 2, {"<f8", "<f4"}};
-  return layout;
+void begin_npy_points(OutputFile& file, const std::string&, std::uint64_t n) {
+  const std::string header = npy_header("<f8", n, 2);
+  file.write(header.data(), header.size());
 }
-
-}  // namespace
-
-Points read_npy_points(const std::string& path) {
-  InputFile file(path, kPointArray);
-  Array array(path, file, point_layout());
-  Points points;
-  if (array.dtype() == "<f8") {
-    points.coordinates = array.values<double>();
-  } else {
-    const std::vector<float> values = array.values<float>();
-    points.coordinates.assign(values.begin(), values.end());
-  }
-  return points;
-}
-
-NpyPoints find_npy_points(const std::string& path, InputFile& file) {
-  const Array array(path, file, point_layout());
-  array.check_size();
-  return {array.header().shape[0], array.header().data_begin, array.dtype() == "<f8"};
-}
-
-namespace {
 
 /// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
 std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
@@ -340,6 +311,26 @@ class NpyRows : public RowSource {
 };
 
 }  // namespace
+
+const PointFormat kNpyPoints = {begin_npy_points, write_binary_points, 2 * sizeof(double)};
+
+PointRecords npy_points(const std::string& path, InputFile& file) {
+  const Layout layout = {"n", 2, {"<f8", "<f4"}};
+  const Array array(path, file, layout);
+  array.check_size();
+  PointRecords records{array.header().shape[0], array.header().data_begin};
+  if (array.dtype() == "<f4") {
+    records.bytes = 2 * sizeof(float);
+    records.decode = [](const char* from, std::size_t count, double* coordinates) {
+      for (std::size_t i = 0; i < 2 * count; ++i, from += sizeof(float)) {
+        float value;
+        std::memcpy(&value, from, sizeof value);
+        coordinates[i] = value;
+      }
+    };
+  }
+  return records;
+}
 
 std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::make_unique<NpyRows>(path); }
 

@@ -13,18 +13,9 @@
 
 namespace flaunay::io {
 
-Points read_npy_points(const std::string& path);
-
-constexpr const char* kPointArray = "a NumPy array of shape (n, 2)";
-
-/// Where the points of a file are: float64, or float32.
-struct NpyPoints {
-  std::uint64_t size = 0;
-  std::uint64_t data_begin = 0;
-  bool is_double = false;
-};
-/// Reads the header, and checks the size of the file, which must be regular.
-NpyPoints find_npy_points(const std::string& path, InputFile& file);
+/// Finds the points of an array, float64 or float32.
+PointRecords npy_points(const std::string& path, InputFile& file);
+extern const PointFormat kNpyPoints;
 
 /// Reads an array of m x 3 indices, int32 or int64.
 std::vector<std::int32_t> read_npy_triangles(const std::string& path);

@@ -9,8 +9,6 @@
 namespace flaunay::io {
 namespace {
 
-bool is_node(const std::string& path) { return path != "-" && ending_of(path) == ".node"; }
-
 /// Two numbers per line.
 class PairText : public PointText {
  public:
@@ -76,17 +74,14 @@ class NodeText : public PointText {
 
 }  // namespace
 
-std::unique_ptr<PointText> parse_points(const std::string& path) {
-  if (is_node(path)) return std::make_unique<NodeText>(path, nullptr, nullptr);
-  return std::make_unique<PairText>(path);
-}
+std::unique_ptr<PointText> pair_text(const std::string& path) { return std::make_unique<PairText>(path); }
 
-std::string_view expected_text(const std::string& path) {
-  return is_node(path) ? "Triangle's .node format" : "two numbers a line";
+std::unique_ptr<PointText> node_text(const std::string& path) {
+  return std::make_unique<NodeText>(path, nullptr, nullptr);
 }
 
 NodeFile read_node(const std::string& path, bool with_indices) {
-  const std::string text = read_file(path, expected_text(path));
+  const std::string text = read_file(path, "Triangle's .node format");
   NodeFile file;
   NodeText parser(path, with_indices ? &file.indices : nullptr, &file.points.markers);
   parser.parse(text, file.points.coordinates);
@@ -95,7 +90,8 @@ NodeFile read_node(const std::string& path, bool with_indices) {
   return file;
 }
 
-LinePieces::LinePieces(const std::string& path) : path_(shown_path(path)), file_(path, expected_text(path)) {}
+LinePieces::LinePieces(const std::string& path, std::string_view expected)
+    : path_(shown_path(path)), expected_(expected), file_(path, expected) {}
 
 bool LinePieces::next(std::string_view& lines) {
   constexpr std::size_t kPiece = std::size_t{1} << 22, kLongestLine = std::size_t{1} << 26;
@@ -104,7 +100,7 @@ bool LinePieces::next(std::string_view& lines) {
   given_ = 0;
   while (!ended_ && given_ == 0) {
     if (used_ > kLongestLine) {
-      fail(path_, "has a line of more than {} bytes; expected {}", kLongestLine, expected_text(path_));
+      fail(path_, "has a line of more than {} bytes; expected {}", kLongestLine, expected_);
     }
     buffer_.resize(used_ + kPiece);
     const std::size_t got = file_.read_next(buffer_.data() + used_, kPiece);

@@ -21,23 +21,23 @@ class PointText {
   virtual void finish() {}
 };
 
-/// For the file's format: .node, or two numbers per line.
-std::unique_ptr<PointText> parse_points(const std::string& path);
-
-/// What should be in the file, for messages.
-std::string_view expected_text(const std::string& path);
+/// Two numbers per line.
+std::unique_ptr<PointText> pair_text(const std::string& path);
+/// Triangle's .node format.
+std::unique_ptr<PointText> node_text(const std::string& path);
 
 /// The lines of a file, or of standard input for "-", in pieces of some MiB.
 class LinePieces {
  public:
-  explicit LinePieces(const std::string& path);
+  /// expected: what should be in the file, for messages.
+  LinePieces(const std::string& path, std::string_view expected);
   /// Goes to the next whole lines, which are valid until the next call; false at the end.
   bool next(std::string_view& lines);
   /// The size of a regular file; unknown, -1, of a pipe.
   std::int64_t file_size() const { return file_.size(); }
 
  private:
-  std::string path_;
+  std::string path_, expected_;
   InputFile file_;
   std::string buffer_;
   std::size_t used_ = 0;   // bytes in the buffer

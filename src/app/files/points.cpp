@@ -1,44 +1,17 @@
 #include "app/files/points.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <memory>
-#include <string_view>
 
-#include "app/files/las.hpp"
-#include "app/files/map.hpp"
-#include "app/files/npy.hpp"
-#include "app/files/point_text.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
+#include "host/huge_pages.hpp"
 
 namespace flaunay::io {
 namespace {
-
-constexpr std::string_view kPointInputEndings =
-    ".npy, .node, .xy, .txt, .csv, .bin, .las, .poly, .geojson, .json, or \"-\" for standard input";
-constexpr std::string_view kPointOutputEndings =
-    ".npy, .node, .xy, .txt, .csv, .bin, or \"-\" for standard output";
-/// The first line of a .node file.
-constexpr const char kNodeHeader[] = "{} 2 0 {}\n";
-
-PointFormat format_of(const std::string& path, std::string_view expected) {
-  if (path == "-") return PointFormat::text;
-  const std::string ending = ending_of(path);
-  if (ending == ".npy") return PointFormat::npy;
-  if (ending == ".node") return PointFormat::node;
-  if (ending == ".xy" || ending == ".txt" || ending == ".csv") return PointFormat::text;
-  if (ending == ".bin") return PointFormat::binary;
-  if (ending == ".las") return PointFormat::las;
-  if (is_map(path)) return PointFormat::map;
-  fail_ending(path, expected);
-}
-
-PointFormat point_output_format(const std::string& path) {
-  const PointFormat format = format_of(path, kPointOutputEndings);
-  if (format == PointFormat::las || format == PointFormat::map) fail_ending(path, kPointOutputEndings);
-  return format;
-}
 
 /// For the binary formats. The readers of text check each number, because their messages name the line.
 void check_finite(const std::string& path, const Points& points) {
@@ -50,104 +23,135 @@ void check_finite(const std::string& path, const Points& points) {
   }
 }
 
-Points read_text(const std::string& path) {
-  const std::string text = read_file(path, expected_text(path));
+Points read_text(const std::string& path, const Format& format) {
+  const std::string text = read_file(path, format.content);
   Points points;
-  const std::unique_ptr<PointText> parser = parse_points(path);
+  const std::unique_ptr<PointText> parser = format.text(path);
   parser->parse(text, points.coordinates);
   parser->finish();
   return points;
 }
 
-Points read_binary(const std::string& path) {
-  const std::string bytes = read_file(path, kPairs);
+Points read_records(const std::string& path, const Format& format) {
+  InputFile file(path, format.content);
+  file.first(1);  // an error if there is none
+  const PointRecords records = format.records(path, file);
   Points points;
-  points.coordinates.resize(2 * count_pairs(path, bytes.size()));
-  std::memcpy(points.coordinates.data(), bytes.data(), bytes.size());
+  points.coordinates.reserve(2 * records.size);
+  host::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
+  points.coordinates.resize(2 * records.size);
+  records.read(file.reader(), 0, records.size, points.coordinates.data());
+  check_finite(path, points);
   return points;
 }
 
-}  // namespace
+// ---- formats ----
 
-void print_node_points(OutputFile& file, const double* coordinates, std::uint64_t first, std::size_t count) {
+/// The first line of a .node file.
+constexpr const char kNodeHeader[] = "{} 2 0 {}\n";
+
+void begin_node(OutputFile& file, const std::string&, std::uint64_t n) { file.print(kNodeHeader, n, 0); }
+
+void write_node_points(OutputFile& file, const double* coordinates, std::uint64_t first, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     file.print("{} {} {}\n", first + i, coordinates[2 * i], coordinates[2 * i + 1]);
   }
 }
 
+// Every reader skips this line. With it, a file of no points can be read back.
+template <char separator>
+void begin_text(OutputFile& file, const std::string&, std::uint64_t) {
+  file.print("{}", separator == ',' ? "x,y\n" : "# x y\n");
+}
+
+template <char separator>
+void write_text(OutputFile& file, const double* coordinates, std::uint64_t, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    file.print("{}{}{}\n", coordinates[2 * i], separator, coordinates[2 * i + 1]);
+  }
+}
+
+void begin_binary(OutputFile&, const std::string& path, std::uint64_t n) {
+  if (n > 0) return;
+  fail(path,
+       "a .bin of no points would be an empty file, which no one can tell from a failed write; "
+       "expected points, or another ending");
+}
+
+}  // namespace
+
+const PointFormat kNodePoints = {begin_node, write_node_points, 4, print_node};
+const PointFormat kTextPoints = {begin_text<' '>, write_text<' '>, 4};
+const PointFormat kCsvPoints = {begin_text<','>, write_text<','>, 4};
+const PointFormat kBinaryPoints = {begin_binary, write_binary_points, 2 * sizeof(double)};
+
+void write_binary_points(OutputFile& file, const double* coordinates, std::uint64_t, std::size_t count) {
+  file.write(coordinates, 2 * count * sizeof(double));
+}
+
 void print_node(OutputFile& file, const Points& points) {
   file.print(kNodeHeader, points.size(), points.markers.empty() ? 0 : 1);
-  if (points.markers.empty()) return print_node_points(file, points.coordinates.data(), 0, points.size());
+  if (points.markers.empty()) return write_node_points(file, points.coordinates.data(), 0, points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     file.print("{} {} {} {}\n", i, points.coordinates[2 * i], points.coordinates[2 * i + 1],
                points.markers[i]);
   }
 }
 
-PointFormat point_format(const std::string& path) {
-  if (ending_of(path) == ".laz") fail_compressed(path);
-  return format_of(path, kPointInputEndings);
-}
-void check_points_ending(const std::string& path) { point_format(path); }
-void check_points_output(const std::string& path) { point_output_format(path); }
-
-std::uint64_t count_pairs(const std::string& path, std::uint64_t bytes) {
+PointRecords binary_points(const std::string& path, InputFile& file) {
   constexpr std::uint64_t kPair = 2 * sizeof(double);
+  file.load_pipe();
+  const auto bytes = static_cast<std::uint64_t>(file.size());
   if (bytes % kPair != 0) {
     fail(path, "has {} bytes, {} after the last whole pair; expected a multiple of 16 (float64 pairs)", bytes,
          bytes % kPair);
   }
-  return bytes / kPair;
+  return {bytes / kPair};
 }
 
+void PointRecords::read(const ReadAt& read_at, std::uint64_t first, std::size_t count,
+                        double* coordinates) const {
+  if (decode == nullptr) return read_at(begin + first * bytes, count * bytes, coordinates);
+  constexpr std::size_t kPiece = std::size_t{1} << 15;
+  std::vector<char> records(std::min(count, kPiece) * bytes);
+  for (std::size_t done = 0; done < count; done += kPiece) {
+    const std::size_t piece = std::min(count - done, kPiece);
+    read_at(begin + (first + done) * bytes, piece * bytes, records.data());
+    decode(records.data(), piece, coordinates + 2 * done);
+  }
+}
+
+void check_points_ending(const std::string& path) { format_of(path, Use::read_points); }
+void check_points_output(const std::string& path) { format_of(path, Use::write_points); }
+
 Points read_points(const std::string& path) {
-  const PointFormat format = point_format(path);
-  if (format == PointFormat::node || format == PointFormat::text) return read_text(path);
-  if (format == PointFormat::map) return read_map(path).points;
-  Points points = format == PointFormat::npy   ? read_npy_points(path)
-                  : format == PointFormat::las ? read_las_points(path)
-                                               : read_binary(path);
-  check_finite(path, points);
-  return points;
+  const Format& format = format_of(path, Use::read_points);
+  if (format.map != nullptr) return format.map(path).points;
+  return format.text != nullptr ? read_text(path, format) : read_records(path, format);
 }
 
 PointWriter::PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n)
-    : format_(point_output_format(path)), separator_(ending_of(path) == ".csv" ? ',' : ' ') {
-  if (format_ == PointFormat::binary && n == 0) {
-    fail(path,
-         "a .bin of no points would be an empty file, which no one can tell from a failed write; "
-         "expected points, or another ending");
-  }
-  file_ = &outputs.open(path);
-  if (format_ == PointFormat::npy) {
-    const std::string header = npy_header("<f8", n, 2);
-    file_->write(header.data(), header.size());
-  } else if (format_ == PointFormat::node) {
-    file_->print(kNodeHeader, n, 0);
-  } else if (format_ == PointFormat::text) {
-    // Every reader skips this line. With it, a file of no points can be read back.
-    file_->print("{}", separator_ == ',' ? "x,y\n" : "# x y\n");
-  }
+    : format_(*format_of(path, Use::write_points).points_out), file_(outputs.open(path)) {
+  format_.begin(file_, path, n);
 }
 
 void PointWriter::write(const double* coordinates, std::size_t count) {
-  if (format_ == PointFormat::node) {
-    print_node_points(*file_, coordinates, written_, count);
-  } else if (format_ == PointFormat::text) {
-    for (std::size_t i = 0; i < count; ++i) {
-      file_->print("{}{}{}\n", coordinates[2 * i], separator_, coordinates[2 * i + 1]);
-    }
-  } else {
-    file_->write(coordinates, 2 * count * sizeof(double));
-  }
+  format_.write(file_, coordinates, written_, count);
   written_ += count;
 }
 
 void write_points(Outputs& outputs, const std::string& path, const Points& points) {
-  if (!points.markers.empty() && point_output_format(path) == PointFormat::node) {
-    return print_node(outputs.open(path), points);
+  const PointFormat& format = *format_of(path, Use::write_points).points_out;
+  if (!points.markers.empty() && format.with_markers != nullptr) {
+    return format.with_markers(outputs.open(path), points);
   }
   PointWriter(outputs, path, points.size()).write(points.coordinates.data(), points.size());
+}
+
+std::uint64_t least_bytes(const std::string& path, std::uint64_t n) {
+  const std::uint64_t point = format_of(path, Use::write_points).points_out->least_bytes;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  return n > kMost / point ? kMost : n * point;
 }
 
 }  // namespace flaunay::io

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "files/file.hpp"
 #include "files/output.hpp"
 
 namespace flaunay::io {
@@ -15,6 +17,20 @@ struct Points {
   std::vector<double> coordinates;
   std::vector<std::int32_t> markers = {};  ///< of the vertices of .poly files that have some
   std::size_t size() const { return coordinates.size() / 2; }
+};
+
+/// Points as records of one size in a binary file.
+struct PointRecords {
+  std::uint64_t size = 0;   ///< how many
+  std::uint64_t begin = 0;  ///< of the first one, in bytes
+  std::size_t bytes = 2 * sizeof(double);
+  /// Converts records; empty if they are x and y as doubles.
+  std::function<void(const char* records, std::size_t count, double* coordinates)> decode = nullptr;
+
+  /// Reads bytes [begin, begin + count) of the file.
+  using ReadAt = std::function<void(std::uint64_t begin, std::size_t count, void* to)>;
+  /// Reads points [first, first + count).
+  void read(const ReadAt& read_at, std::uint64_t first, std::size_t count, double* coordinates) const;
 };
 
 /// Reads points from path, by its ending (any case):
@@ -37,12 +53,16 @@ void check_points_ending(const std::string& path);
 /// The same for write_points.
 void check_points_output(const std::string& path);
 
-enum class PointFormat { npy, node, text, binary, las, map };
-/// The format in which read_points reads path. Throws what check_points_ending throws.
-PointFormat point_format(const std::string& path);
-/// How many points a .bin file of this many bytes has. Throws Error(input) if it is no whole number.
-std::uint64_t count_pairs(const std::string& path, std::uint64_t bytes);
-constexpr const char* kPairs = "pairs of little-endian float64";
+/// The points of a .bin file.
+PointRecords binary_points(const std::string& path, InputFile& file);
+
+struct PointFormat;
+extern const PointFormat kNodePoints, kTextPoints, kCsvPoints, kBinaryPoints;
+/// Writes points as pairs of doubles.
+void write_binary_points(OutputFile& file, const double* coordinates, std::uint64_t first, std::size_t count);
+
+/// The least bytes that n points take in a file.
+std::uint64_t least_bytes(const std::string& path, std::uint64_t n);
 
 /// Writes points in the format of path's ending (.npy float64, .node, .xy/.txt/.csv, .bin), or text to
 /// standard output for "-"; numbers in text are the shortest that read back to the same double. Throws
@@ -58,9 +78,8 @@ class PointWriter {
   void write(const double* coordinates, std::size_t count);
 
  private:
-  PointFormat format_;
-  char separator_;  // in text
-  OutputFile* file_ = nullptr;
+  const PointFormat& format_;
+  OutputFile& file_;
   std::uint64_t written_ = 0;
 };
 

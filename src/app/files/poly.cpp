@@ -161,8 +161,8 @@ PolyFile read_poly(const std::string& path, const NodeFile* nodes) {
   return PolyReader(path, text, nodes).read();
 }
 
-std::string path_beside(const std::string& path, const std::string& ending) {
-  return path.substr(0, path.size() - ending_of(path).size()) + ending;
+std::string path_beside(const std::string& path, std::string_view ending) {
+  return path.substr(0, path.size() - ending_of(path).size()).append(ending);
 }
 
 }  // namespace flaunay::io

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/files/points.hpp"
@@ -32,6 +33,6 @@ struct PolyFile {
 PolyFile read_poly(const std::string& path, const NodeFile* nodes = nullptr);
 
 /// x.poly to x.node: the path with another ending.
-std::string path_beside(const std::string& path, const std::string& ending);
+std::string path_beside(const std::string& path, std::string_view ending);
 
 }  // namespace flaunay::io

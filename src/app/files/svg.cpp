@@ -402,13 +402,9 @@ class Picture {
 
 }  // namespace
 
-void write_svg(Outputs& outputs, const std::string& path, const Points& points, const Triangulation& mesh) {
-  Picture(outputs.open(path), points, mesh).write();
-}
-
-void write_svg(Outputs& outputs, const std::string& path, const Points& points,
-               const ConstrainedTriangulation& mesh, FillRule fill_rule) {
-  Picture(outputs.open(path), points, mesh, &mesh, fill_rule).write();
+void write_svg(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  Picture(outputs.open(path), contents.points, contents.mesh, contents.constrained, contents.fill_rule)
+      .write();
 }
 
 }  // namespace flaunay::io

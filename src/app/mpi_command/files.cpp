@@ -4,16 +4,16 @@
 
 #include <algorithm>
 
+#include "app/files/formats.hpp"
 #include "app/files/npy.hpp"
-#include "app/files/points.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::mpi {
 namespace {
 
-// Values of one call. The calls are those of one rank alone, because in Open MPI's collective ones all ranks
-// wait for ever if one cannot write; each rank has one contiguous part of the file, for which collective
-// calls would gain nothing.
+// Values of one call. The calls are those of one rank alone, because in Open MPI's
+// collective ones all ranks wait for ever if one cannot write; each rank has one contiguous part of the file,
+// for which collective calls would gain nothing.
 constexpr std::size_t kPiece = std::size_t{1} << 22;
 
 constexpr const char* kCutShort =
@@ -32,25 +32,6 @@ void check_count(const MPI_Status& status, MPI_Datatype type, std::size_t expect
   int count = 0;
   MPI_Get_count(&status, type, &count);
   if (static_cast<std::size_t>(count) != expected) io::fail(path, "{}", what);
-}
-
-template <typename Value>
-std::vector<double> read_values(MPI_File file, std::uint64_t begin, std::size_t count,
-                                const std::string& path) {
-  const MPI_Datatype type = sizeof(Value) == sizeof(double) ? MPI_DOUBLE : MPI_FLOAT;
-  std::vector<double> values;
-  values.reserve(count);
-  std::vector<Value> piece(std::min(count, kPiece));
-  while (values.size() < count) {
-    const std::size_t size = std::min(kPiece, count - values.size());
-    MPI_Status status;
-    check_file(MPI_File_read_at(file, static_cast<MPI_Offset>(begin + values.size() * sizeof(Value)),
-                                piece.data(), static_cast<int>(size), type, &status),
-               path, "read");
-    check_count(status, type, size, path, "became shorter while it was read");
-    values.insert(values.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(size));
-  }
-  return values;
 }
 
 template <typename Value>
@@ -75,47 +56,42 @@ void write_values(MPI_File file, std::uint64_t begin, const std::vector<std::int
 }  // namespace
 
 PointFile::PointFile(Ranks& ranks, const std::string& path) : path_(path) {
-  std::vector<std::uint64_t> found(3);
   ranks.together([&] {
-    if (ranks.rank() != 0) return;
-    const io::PointFormat format = io::point_format(path);
-    if (format != io::PointFormat::npy && format != io::PointFormat::binary)
+    const io::Format* const format = io::find_format(path, io::Use::read_records);
+    if (format == nullptr) {
       throw Error(ErrorKind::usage,
-                  fmt::format("{}: ranks read .npy and .bin files at the same time, and no others; "
-                              "convert it, or take flaunay triangulate",
-                              path));
-    const bool is_npy = format == io::PointFormat::npy;
-    io::InputFile file(path, is_npy ? io::kPointArray : io::kPairs);
+                  fmt::format("{}: ranks read {} at the same time, and no other files; convert it, or take "
+                              "flaunay triangulate",
+                              path, io::endings_for(io::Use::read_records)));
+    }
+    io::InputFile file(path, format->content);
     file.first(1);  // an error if there is none
     if (file.size() < 0) io::fail(path, "is no regular file, which ranks can read at the same time");
-    if (is_npy) {
-      const io::NpyPoints points = io::find_npy_points(path, file);
-      found = {points.size, points.data_begin, points.is_double ? 1u : 0u};
-    } else {
-      found = {io::count_pairs(path, static_cast<std::uint64_t>(file.size())), 0, 1};
-    }
+    records_ = format->records(path, file);
   });
-  ranks.broadcast(found);
-  size_ = found[0];
-  data_begin_ = found[1];
-  is_double_ = found[2] != 0;
 }
 
 std::vector<double> PointFile::read(Ranks& ranks) const {
   const auto rank = static_cast<std::uint64_t>(ranks.rank()),
              count = static_cast<std::uint64_t>(ranks.size());
   // As even as possible, without products that may overflow.
-  const auto begin_of = [&](std::uint64_t r) { return size_ / count * r + std::min(r, size_ % count); };
-  const std::uint64_t first = begin_of(rank), values = 2 * (begin_of(rank + 1) - first);
+  const auto begin_of = [&](std::uint64_t r) { return size() / count * r + std::min(r, size() % count); };
+  const std::uint64_t first = begin_of(rank);
   MPI_File file = MPI_FILE_NULL;
   const int code = MPI_File_open(ranks.communicator(), path_.c_str(), MPI_MODE_RDONLY, MPI_INFO_NULL, &file);
   ranks.together([&] { check_file(code, path_, "opened"); });
-  const std::uint64_t begin = data_begin_ + 2 * first * (is_double_ ? sizeof(double) : sizeof(float));
-  std::vector<double> points;
-  ranks.together([&] {
-    points = is_double_ ? read_values<double>(file, begin, values, path_)
-                        : read_values<float>(file, begin, values, path_);
-  });
+  std::vector<double> points(2 * (begin_of(rank + 1) - first));
+  const auto read = [&](std::uint64_t begin, std::size_t bytes, void* to) {
+    for (std::size_t done = 0; done < bytes; done += 8 * kPiece) {
+      const std::size_t size = std::min(8 * kPiece, bytes - done);
+      MPI_Status status;
+      check_file(MPI_File_read_at(file, static_cast<MPI_Offset>(begin + done), static_cast<char*>(to) + done,
+                                  static_cast<int>(size), MPI_BYTE, &status),
+                 path_, "read");
+      check_count(status, MPI_BYTE, size, path_, "became shorter while it was read");
+    }
+  };
+  ranks.together([&] { records_.read(read, first, points.size() / 2, points.data()); });
   MPI_File_close(&file);
   return points;
 }

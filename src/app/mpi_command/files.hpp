@@ -10,25 +10,24 @@
 #include <string>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "files/output.hpp"
 #include "large/mpi/ranks.hpp"
 
 namespace flaunay::mpi {
 
-/// Points of a .npy or .bin file, of which each rank reads an equal share.
+/// Points of a binary file, of which each rank reads an equal share.
 class PointFile {
  public:
-  /// Reads the header on rank 0. Throws Error(usage) for other formats, and Error(input) for what is no such
-  /// file.
+  /// Reads the header. Throws Error(usage) for other formats, and Error(input) for what is no such file.
   PointFile(Ranks& ranks, const std::string& path);
-  std::uint64_t size() const { return size_; }
+  std::uint64_t size() const { return records_.size; }
   /// This rank's share: x0 y0 x1 y1 ... Throws Error(input) if the file became shorter.
   std::vector<double> read(Ranks& ranks) const;
 
  private:
   std::string path_;
-  std::uint64_t size_ = 0, data_begin_ = 0;
-  bool is_double_ = true;
+  io::PointRecords records_;
 };
 
 /// A .npy file of indices among the outputs of rank 0.

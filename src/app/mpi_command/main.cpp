@@ -20,6 +20,7 @@
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
 #include "app/command/results.hpp"
+#include "app/files/formats.hpp"
 #include "app/mpi_command/files.hpp"
 #include "files/disk_space.hpp"
 #include "files/mesh_stream.hpp"
@@ -217,7 +218,8 @@ int triangulate(Ranks& ranks, const Request& request) {
 
 void add_triangulate(CLI::App& app, Request& request) {
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
-  command->add_option("input", request.input, "Points: .npy or .bin")->required();
+  command->add_option("input", request.input, "Points: " + io::endings_for(io::Use::read_records))
+      ->required();
   cli::add_result_arrays(command, request.results);
   command->add_option(
       "--device", request.options.device,
