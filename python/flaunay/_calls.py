@@ -19,8 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _declarations, _library
-from flaunay._arrays import FloatArray
-from flaunay._declarations import PART
+from flaunay._arrays import FloatArray, Mesh
+from flaunay._declarations import INDEX_TYPE, PART, PRECISION
 from flaunay._errors import UsageError
 from flaunay._library import DeviceHandle, Handle, check, library, text_of
 
@@ -92,21 +92,18 @@ def _views(
     }
 
 
-def _address_of(array: Any) -> int:
-    try:
-        # Quicker than the interface below, but only for arrays that can be written to and are not empty.
+def _address_of(array: Any) -> Optional[int]:
+    if array.size and array.flags.writeable:
+        # Quicker than NumPy's own way.
         return ctypes.addressof(ctypes.c_char.from_buffer(array))
-    except (TypeError, ValueError, BufferError):
-        return cast(int, array.__array_interface__["data"][0])
+    return cast(Optional[int], array.ctypes.data)
 
 
 def _as_indices(array: npt.NDArray[Any], name: str, shape: tuple[int, ...]) -> _Indices:
-    """Contiguous indices; -1 in the shape stands for any number. Users can replace arrays at any time."""
-    matches = len(array.shape) == len(shape) and all(
-        wanted in (-1, size) for wanted, size in zip(shape, array.shape)
-    )
-    if not matches:
-        raise UsageError(f"{name} were changed: their shape is {array.shape}, not {shape}")
+    """Contiguous indices; -1 stands for any number of rows. Users can replace arrays at any time."""
+    given = array.shape
+    if not given or given[1:] != shape[1:] or shape[0] not in (-1, given[0]):
+        raise UsageError(f"{name} were changed: their shape is {given}, not {shape}")
     if array.dtype != _INT32:
         raise UsageError(f"{name} were changed: they are {array.dtype}, not int32")
     return np.ascontiguousarray(array)
@@ -153,10 +150,15 @@ def _address_or_none(array: Optional[npt.NDArray[Any]]) -> Optional[int]:
     return None if array is None else _address_of(array)
 
 
-def _check_changed(status: int) -> None:
-    """Errors about indices of a mesh that the user has changed, in the user's words."""
+def _as_arguments(given: tuple[Any, ...]) -> list[Any]:
+    """Arrays by their addresses, everything else as ctypes takes it."""
+    return [_address_of(one) if type(one) is np.ndarray else one for one in given]
+
+
+def _call_with_mesh(function: Any, *arguments: Any) -> None:
+    """Calls a function, with errors about indices of a mesh that the user has changed in the user's words."""
     try:
-        check(status)
+        check(function(*_as_arguments(arguments)))
     except UsageError as error:
         name, separator, what = str(error).partition(": ")
         if not separator:
@@ -307,9 +309,6 @@ def _arrays_of(owner: Handle, mesh: Any, parts: int) -> dict[str, Any]:
 class _Triangulation(Handle):
     _destroy = library.triangulation_destroy
 
-    def arrays(self, parts: int) -> dict[str, Any]:
-        return _arrays_of(self, library.triangulation_mesh(self.pointer)[0], parts)
-
 
 class _Constrained(Handle):
     _destroy = library.constrained_destroy
@@ -336,177 +335,140 @@ class _Constrained(Handle):
         return result
 
 
-def triangulate_without_device(
-    points: _Doubles, given_offsets: Optional[_Offsets], mode: str, wanted: set[str]
-) -> dict[str, Any]:
-    """Triangulates points in a mode that runs on the host. wanted: names of the optional arrays."""
-    n = _count_points(points)
-    # The triangles' bit keeps the number from being 0, which means the default.
-    parts = _parts_of(wanted) | PART["triangles"]
-    options = _options_for(mode, parts)
-    points = _as_doubles(points)
-    offsets, sets = _as_offsets(given_offsets, n)
-    result = _Triangulation()
-    check(
-        library.triangulate_on_host(
-            _address_of(points), n, _address_or_none(offsets), sets, options, result.place
-        )
-    )
-    return result.arrays(parts)
-
-
 class Triangulator(DeviceHandle):
     """What computes on one device, or on the host."""
 
     _destroy = library.triangulator_destroy
 
-    def __init__(self, device: str) -> None:
+    def __init__(self, create: Any, *arguments: Any) -> None:
         super().__init__()
         # One thread can come here twice: if the garbage collector destroys a locator while the thread has the turn.
         self.turn = threading.RLock()
-        check(library.triangulator_create(_encoded(device), self.place))
+        check(create(*arguments, self.place))
 
     @staticmethod
-    def from_handles(context: int, device: int) -> Triangulator:
+    def of_name(device: str) -> Triangulator:
+        return Triangulator(library.triangulator_create, _encoded(device))
+
+    @staticmethod
+    def of_handles(context: int, device: int) -> Triangulator:
         """A triangulator in a context of the caller's, which is retained."""
-        self = Triangulator.__new__(Triangulator)
-        DeviceHandle.__init__(self)
-        self.turn = threading.RLock()
-        check(library.triangulator_create_in_context(context, device, self.place))
-        return self
-
-    def _known(self, value: Optional[int]) -> int:
-        if value is None:
-            raise _library.error_of(library.last_error_status())
-        return value
-
-    # These never change, and so need no turn.
-    @property
-    def context(self) -> int:
-        return self._known(library.triangulator_context(self.pointer))
+        return Triangulator(library.triangulator_create_in_context, context, device)
 
     @property
     def device(self) -> int:
-        return self._known(library.triangulator_device_id(self.pointer))
+        # It never changes, and so needs no turn.
+        found: Optional[int] = library.triangulator_device_id(self.pointer)
+        if found is None:
+            raise _library.error_of(library.last_error_status())
+        return found
 
-    @property
-    def queue(self) -> int:
-        return self._known(library.triangulator_queue(self.pointer))
-
-    def capacity(self) -> int:
-        """The largest number of points of one call."""
+    def call(self, function: Any, *arguments: Any) -> None:
+        """Calls a function of the library when it is this thread's turn."""
         with self.turn:
-            return self._known(library.triangulator_capacity(self.pointer) or None)
+            check(function(*_as_arguments(arguments)))
 
-    def triangulate(
-        self, points: FloatArray, given_offsets: Optional[_Offsets], mode: str, wanted: set[str]
-    ) -> dict[str, Any]:
-        """Triangulates points in host memory. wanted: names of the optional arrays."""
-        n = _count_points(points)
-        parts = _parts_of(wanted) | PART["triangles"]
-        options = _options_for(mode, parts)
-        coordinates: FloatArray
-        if points.dtype == _FLOAT32:
-            call = library.triangulate_float
-            coordinates = cast(FloatArray, np.ascontiguousarray(points))
-        else:
-            call, coordinates = library.triangulate, _as_doubles(points)
-        offsets, sets = _as_offsets(given_offsets, n)
-        result = _Triangulation()
-        with self.turn:
-            check(
-                call(
-                    self.pointer,
-                    _address_of(coordinates),
-                    n,
-                    _address_or_none(offsets),
-                    sets,
-                    options,
-                    result.place,
-                )
-            )
-        return result.arrays(parts)
 
-    def triangulate_constrained(
-        self,
-        points: _Doubles,
-        given_offsets: Optional[_Offsets],
-        segments: _Indices,
-        holes: _Doubles,
-        hole_offsets: Optional[_Offsets],
-        rules: dict[str, int],
-        wanted: set[str],
-    ) -> dict[str, Any]:
-        """Triangulates points with segments. rules: members of flaunay_constraints that are no arrays."""
-        n = _count_points(points)
-        parts = _parts_of(wanted) | PART["triangles"]
-        offsets, sets = _as_offsets(given_offsets, n)
-        kept_holes, hole_sets = _as_offsets(hole_offsets, len(holes), "hole_offsets", "holes")
-        if kept_holes is not None and hole_sets != max(sets, 1):
-            raise UsageError(f"hole_offsets are of {hole_sets} sets, but there are {max(sets, 1)}")
-        points, holes = _as_doubles(points), _as_doubles(holes)
-        constraints = _declarations.Constraints(
-            segments=_address_of(segments),
-            segment_count=len(segments),
-            holes=_address_of(holes),
-            hole_count=len(holes),
-            hole_offsets=_address_or_none(kept_holes),
-            **rules,
-        )
-        result = _Constrained()
-        with self.turn:
-            check(
-                library.triangulate_constrained(
-                    self.pointer,
-                    _address_of(points),
-                    n,
-                    _address_or_none(offsets),
-                    sets,
-                    ctypes.byref(constraints),
-                    _options_for("blocks", parts),
-                    result.place,
-                )
-            )
-        return result.arrays(parts, bool(rules["labels"]))
+def triangulate(
+    triangulator: Optional[Triangulator],
+    points: FloatArray,
+    given_offsets: Optional[_Offsets],
+    mode: str,
+    wanted: set[str],
+) -> dict[str, Any]:
+    """Triangulates points in host memory. wanted: names of the optional arrays.
 
-    def triangulate_polygons(
-        self,
-        points: _Doubles,
-        ring_offsets: _Offsets,
-        polygon_offsets: _Offsets,
-        part_offsets: Optional[_Offsets],
-        rules: dict[str, int],
-        wanted: set[str],
-    ) -> dict[str, Any]:
-        """Triangulates polygons. rules: members of flaunay_polygons that are no arrays."""
-        parts = _parts_of(wanted) | PART["triangles"]
-        rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
-        outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
-        inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
-        points = _as_doubles(points)
-        polygons = _declarations.Polygons(
-            coordinates=_address_of(points),
-            ring_offsets=_address_or_none(rings),
-            ring_count=ring_count,
-            polygon_offsets=_address_or_none(outer),
-            polygon_count=count,
-            part_offsets=_address_or_none(inner),
-            part_count=part_count,
-            has_outside=1,
-            has_fill_rule=1,
-            **rules,
-        )
-        result = _Constrained()
-        with self.turn:
-            check(
-                library.triangulate_polygons(
-                    self.pointer,
-                    ctypes.byref(polygons),
-                    _options_for("blocks", parts),
-                    result.place,
-                )
-            )
-        return result.arrays(parts, bool(rules["labels"]), bool(rules["map"]))
+    triangulator: None in modes that run on the host, for points that are float64.
+    """
+    n = _count_points(points)
+    # The triangles' bit keeps the number from being 0, which means the default.
+    parts = _parts_of(wanted) | PART["triangles"]
+    options = _options_for(mode, parts)
+    function: Any
+    coordinates: FloatArray
+    if points.dtype == _FLOAT32 and triangulator is not None:
+        function = library.triangulate_float
+        coordinates = cast(FloatArray, np.ascontiguousarray(points))
+    else:
+        function, coordinates = library.triangulate, _as_doubles(points)
+    offsets, sets = _as_offsets(given_offsets, n)
+    result = _Triangulation()
+    # Written out, since for small sets every call counts.
+    first, sizes = _address_of(coordinates), _address_or_none(offsets)
+    if triangulator is None:
+        check(library.triangulate_on_host(first, n, sizes, sets, options, result.place))
+    else:
+        with triangulator.turn:
+            check(function(triangulator.pointer, first, n, sizes, sets, options, result.place))
+    return _arrays_of(result, library.triangulation_mesh(result.pointer)[0], parts)
+
+
+def triangulate_constrained(
+    triangulator: Triangulator,
+    points: _Doubles,
+    given_offsets: Optional[_Offsets],
+    segments: _Indices,
+    holes: _Doubles,
+    hole_offsets: Optional[_Offsets],
+    rules: dict[str, int],
+    wanted: set[str],
+) -> dict[str, Any]:
+    """Triangulates points with segments. rules: members of flaunay_constraints that are no arrays."""
+    n = _count_points(points)
+    parts = _parts_of(wanted) | PART["triangles"]
+    offsets, sets = _as_offsets(given_offsets, n)
+    kept_holes, hole_sets = _as_offsets(hole_offsets, len(holes), "hole_offsets", "holes")
+    if kept_holes is not None and hole_sets != max(sets, 1):
+        raise UsageError(f"hole_offsets are of {hole_sets} sets, but there are {max(sets, 1)}")
+    points, holes = _as_doubles(points), _as_doubles(holes)
+    constraints = _declarations.Constraints(
+        segments=_address_of(segments),
+        segment_count=len(segments),
+        holes=_address_of(holes),
+        hole_count=len(holes),
+        hole_offsets=_address_or_none(kept_holes),
+        **rules,
+    )
+    result, options = _Constrained(), _options_for("blocks", parts)
+    triangulator.call(
+        library.triangulate_constrained,
+        *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
+    )
+    return result.arrays(parts, bool(rules["labels"]))
+
+
+def triangulate_polygons(
+    triangulator: Triangulator,
+    points: _Doubles,
+    ring_offsets: _Offsets,
+    polygon_offsets: _Offsets,
+    part_offsets: Optional[_Offsets],
+    rules: dict[str, int],
+    wanted: set[str],
+) -> dict[str, Any]:
+    """Triangulates polygons. rules: members of flaunay_polygons that are no arrays."""
+    parts = _parts_of(wanted) | PART["triangles"]
+    rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
+    outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
+    inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
+    points = _as_doubles(points)
+    polygons = _declarations.Polygons(
+        coordinates=_address_of(points),
+        ring_offsets=_address_or_none(rings),
+        ring_count=ring_count,
+        polygon_offsets=_address_or_none(outer),
+        polygon_count=count,
+        part_offsets=_address_or_none(inner),
+        part_count=part_count,
+        has_outside=1,
+        has_fill_rule=1,
+        **rules,
+    )
+    result, options = _Constrained(), _options_for("blocks", parts)
+    triangulator.call(
+        library.triangulate_polygons, triangulator.pointer, polygons, options, result.place
+    )
+    return result.arrays(parts, bool(rules["labels"]), bool(rules["map"]))
 
 
 def _encoded(text: str) -> bytes:
@@ -519,9 +481,7 @@ def first_triangles(triangles: _Indices, n: int) -> _Indices:
     """For each point the first triangle that has it, -1 where there is none."""
     corners = _as_corners(triangles)
     first = np.empty(n, _INT32)
-    _check_changed(
-        library.first_triangles(_address_of(corners), len(corners), n, _address_of(first))
-    )
+    _call_with_mesh(library.first_triangles, corners, len(corners), n, first)
     return first
 
 
@@ -533,51 +493,43 @@ def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indi
     corners, ring = _as_corners(triangles), _as_indices(hull, "hull", (-1,))
     starts = np.empty(n + 1, _INT32)
     neighbors = np.empty(corners.size + ring.size if len(corners) else 0, _INT32)
-    _check_changed(
-        library.vertex_neighbors(
-            _address_of(corners),
-            len(corners),
-            _address_of(ring),
-            len(ring),
-            n,
-            _address_of(starts),
-            _address_of(neighbors),
-        )
+    _call_with_mesh(
+        library.vertex_neighbors, corners, len(corners), ring, len(ring), n, starts, neighbors
     )
     return starts, neighbors
 
 
 def _of_triangles(
-    function: Any, points: _Doubles, triangles: _Indices, results: npt.NDArray[Any], *others: Any
+    function: Any, points: FloatArray, triangles: _Indices, results: npt.NDArray[Any], *others: Any
 ) -> None:
     """Has a function of the library write what it finds out about triangles of points."""
-    corners, points = _as_corners(triangles), _as_doubles(points)
-    given = (_address_of(points), _count_points(points), _address_of(corners), len(corners))
-    _check_changed(function(*given, *map(_address_of, others), _address_of(results)))
+    corners = _as_corners(triangles)
+    given = (np.ascontiguousarray(points, _FLOAT64), _count_points(points), corners, len(corners))
+    _call_with_mesh(function, *given, *others, results)
 
 
-def turns(points: _Doubles, triangles: _Indices) -> npt.NDArray[np.int8]:
+def turns(points: FloatArray, triangles: _Indices) -> npt.NDArray[np.int8]:
     """Whether the corners of each triangle turn left, 1, or right, -1, or are on one line, 0: exactly."""
     results = np.empty(len(triangles), np.int8)
     _of_triangles(library.triangle_turns, points, triangles, results)
     return results
 
 
-def angles(points: _Doubles, triangles: _Indices) -> npt.NDArray[np.int8]:
+def angles(points: FloatArray, triangles: _Indices) -> npt.NDArray[np.int8]:
     """Whether the angle at each corner is acute, 1, right, 0, or obtuse, -1: exactly."""
     results = np.empty((len(triangles), 3), np.int8)
     _of_triangles(library.triangle_angles, points, triangles, results)
     return results
 
 
-def circumradii(points: _Doubles, triangles: _Indices) -> _Doubles:
+def circumradii(points: FloatArray, triangles: _Indices) -> _Doubles:
     """The circumradii of triangles, with a relative error below 2**-45; infinite if there is none."""
     results = np.empty(len(triangles))
     _of_triangles(library.circumradii, points, triangles, results)
     return results
 
 
-def same_circles(points: _Doubles, triangles: _Indices, neighbors: _Indices) -> _Indices:
+def same_circles(points: FloatArray, triangles: _Indices, neighbors: _Indices) -> _Indices:
     """For each triangle of a triangulation the first one that has the same circumcircle, exactly."""
     beyond = _as_indices(neighbors, "neighbors", (len(triangles), 3))
     results = np.empty(len(triangles), np.int32)
@@ -604,9 +556,7 @@ class DevicePoints:
         self.struct = _declarations.DevicePoints(
             memory=memory or None,
             count=count,
-            precision=(
-                _declarations.PRECISION["float32"] if single else _declarations.PRECISION["float64"]
-            ),
+            precision=PRECISION["float32" if single else "float64"],
             first=first,
             device_offsets=device_offsets or None,
             sets=sets,
@@ -635,15 +585,21 @@ class Enqueue:
         return self._event.value or 0
 
 
-class DeviceResult(DeviceHandle):
+class DeviceTriangulation(DeviceHandle):
     """A triangulation in device memory, with the triangulator that made it."""
 
     _destroy = library.device_triangulation_destroy
 
-    def __init__(self, triangulator: Triangulator) -> None:
+    def __init__(
+        self, triangulator: Triangulator, points: DevicePoints, wanted: set[str], enqueue: Enqueue
+    ) -> None:
         super().__init__()
         self._triangulator = triangulator
         check(library.device_triangulation_create(self.place))
+        triangulator.call(
+            library.triangulate_device,
+            *(triangulator.pointer, points.struct, _parts_of(wanted), enqueue.struct, self.pointer),
+        )
 
     def arrays(self) -> dict[str, Optional[tuple[int, tuple[int, ...], np.dtype[Any]]]]:
         """For each array the handle of its buffer, its shape and its type; None if it was not computed."""
@@ -694,35 +650,31 @@ class DeviceResult(DeviceHandle):
         return _statistics_of(library.device_triangulation_statistics(self.pointer)[0])
 
 
-def triangulate_device(
-    triangulator: Triangulator, points: DevicePoints, wanted: set[str], enqueue: Enqueue
-) -> DeviceResult:
-    """Triangulates points in device memory."""
-    result = DeviceResult(triangulator)
-    with triangulator.turn:
-        check(
-            library.triangulate_device(
-                triangulator.pointer,
-                points.struct,
-                _parts_of(wanted),
-                enqueue.struct,
-                result.pointer,
-            )
-        )
-    return result
-
-
 class _DeviceArrays(DeviceHandle):
     """What a call computes in buffers of its own; these are alive as long as it, or retained."""
 
     _create: Any
+    _compute: Any
     _buffer: Any
     _parts: dict[str, int]
     _table: _Arrays
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: DevicePoints,
+        mesh: DeviceTriangulation,
+        *given: Any,
+    ) -> None:
+        """Computes from a triangulation of points, what else is given, and at last an `Enqueue`."""
         super().__init__()
         check(self._create(self.place))
+        *others, enqueue = given
+        triangulator.call(
+            self._compute,
+            *(triangulator.pointer, points.struct, mesh.pointer, *others),
+            *(enqueue.struct, self.pointer),
+        )
 
     def arrays(self, **counts: int) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
         """For each array the handle of its buffer, 0 if it is empty, its shape and its type.
@@ -743,60 +695,32 @@ class DeviceVoronoi(_DeviceArrays):
     """The dual of a triangulation in device memory."""
 
     _create, _destroy = library.device_voronoi_create, library.device_voronoi_destroy
-    _buffer, _parts = library.device_voronoi_buffer, _declarations.VORONOI_PART
-    _table = _VORONOI
+    _compute, _buffer = library.voronoi_compute_device, library.device_voronoi_buffer
+    _parts, _table = _declarations.VORONOI_PART, _VORONOI
 
 
 class DeviceClippedVoronoi(_DeviceArrays):
-    """Clipped cells in device memory."""
+    """Cells in device memory, clipped to a polygon with corners."""
 
     _create = library.device_clipped_voronoi_create
     _destroy = library.device_clipped_voronoi_destroy
-    _buffer, _parts = library.device_clipped_voronoi_buffer, _declarations.CLIPPED_VORONOI_PART
-    _table = _CLIPPED_VORONOI
+    _compute, _buffer = library.voronoi_clip_device, library.device_clipped_voronoi_buffer
+    _parts, _table = _declarations.CLIPPED_VORONOI_PART, _CLIPPED_VORONOI
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: DevicePoints,
+        mesh: DeviceTriangulation,
+        corners: _Doubles,
+        enqueue: Enqueue,
+    ) -> None:
+        corners = _as_doubles(corners)
+        super().__init__(triangulator, points, mesh, corners, len(corners), enqueue)
 
     @property
     def vertex_count(self) -> int:
         return cast(int, library.device_clipped_voronoi_vertex_count(self.pointer))
-
-
-def voronoi_device(
-    triangulator: Triangulator, points: DevicePoints, mesh: DeviceResult, enqueue: Enqueue
-) -> DeviceVoronoi:
-    """The dual of a triangulation of these points."""
-    result = DeviceVoronoi()
-    with triangulator.turn:
-        check(
-            library.voronoi_compute_device(
-                triangulator.pointer, points.struct, mesh.pointer, enqueue.struct, result.pointer
-            )
-        )
-    return result
-
-
-def clipped_voronoi_device(
-    triangulator: Triangulator,
-    points: DevicePoints,
-    mesh: DeviceResult,
-    corners: _Doubles,
-    enqueue: Enqueue,
-) -> DeviceClippedVoronoi:
-    """The clipped cells of these points."""
-    corners = _as_doubles(corners)
-    result = DeviceClippedVoronoi()
-    with triangulator.turn:
-        check(
-            library.voronoi_clip_device(
-                triangulator.pointer,
-                points.struct,
-                mesh.pointer,
-                _address_of(corners),
-                len(corners),
-                enqueue.struct,
-                result.pointer,
-            )
-        )
-    return result
 
 
 def relax_device(
@@ -808,20 +732,16 @@ def relax_device(
 ) -> int:
     """The buffer of relaxed points, which is the caller's to release; 0 if there are no points."""
     corners = _as_doubles(corners)
-    relaxed = ctypes.c_void_p()
-    with triangulator.turn:
-        check(
-            library.relax_device(
-                triangulator.pointer,
-                points.struct,
-                _address_of(corners),
-                len(corners),
-                iterations,
-                enqueue.struct,
-                ctypes.byref(relaxed),
-            )
-        )
-    return relaxed.value or 0
+    given = (points.struct, corners, len(corners), iterations)
+    return _buffer_of(triangulator, library.relax_device, triangulator.pointer, *given, enqueue)
+
+
+def _buffer_of(triangulator: Triangulator, function: Any, *given: Any) -> int:
+    """The buffer that a function makes, 0 if it is empty. The last that is given is an `Enqueue`."""
+    *others, enqueue = given
+    buffer = ctypes.c_void_p()
+    triangulator.call(function, *others, enqueue.struct, ctypes.byref(buffer))
+    return buffer.value or 0
 
 
 # ---- Chunks
@@ -849,20 +769,12 @@ class _ChunkCall:
         self._struct = _declarations.StridedPoints(
             coordinates=points.__array_interface__["data"][0] if n else None,
             count=n,
-            precision=(
-                _declarations.PRECISION["float64"]
-                if points.dtype == _FLOAT64
-                else _declarations.PRECISION["float32"]
-            ),
+            precision=PRECISION["float64" if points.dtype == _FLOAT64 else "float32"],
             point_stride=points.strides[0],
             coordinate_stride=points.strides[1],
         )
         self.arrays: dict[str, npt.NDArray[Any]] = {}
-        self._places = _declarations.MeshArrays(
-            index_type=(
-                _declarations.INDEX_TYPE["int64"] if wide else _declarations.INDEX_TYPE["int32"]
-            )
-        )
+        self._places = _declarations.MeshArrays(index_type=INDEX_TYPE["int64" if wide else "int32"])
         self._files = _declarations.MeshFiles()
         for name, path in wanted.items():
             if path is not None:
@@ -966,53 +878,32 @@ def triangulate_chunks(
 # ---- Voronoi diagrams and queries
 
 
-def _triangulation_of(
-    n: int, triangles: _Indices, neighbors: _Indices, hull: _Indices, representatives: _Indices
-) -> _Triangulation:
-    corners = _as_corners(triangles)
-    t = len(corners)
-    beyond = _as_indices(neighbors, "neighbors", (t, 3))
-    ring = _as_indices(hull, "hull", (-1,))
-    equal = _as_indices(representatives, "representatives", (n,))
+def _triangulation_of(mesh: Mesh) -> tuple[_Doubles, int, _Triangulation]:
+    """The points of a mesh, how many there are, and what the library knows of it."""
+    points = np.ascontiguousarray(mesh.points, _FLOAT64)
+    n, corners = _count_points(points), _as_corners(mesh.simplices)
+    beyond = _as_indices(mesh.neighbors, "neighbors", (len(corners), 3))
+    ring = _as_indices(mesh.hull, "hull", (-1,))
+    equal = _as_indices(mesh.representatives, "representatives", (n,))
     result = _Triangulation()
-    _check_changed(
-        library.triangulation_create(
-            n,
-            _address_of(corners),
-            t,
-            _address_of(beyond),
-            _address_of(ring),
-            len(ring),
-            _address_of(equal),
-            result.place,
-        )
+    _call_with_mesh(
+        library.triangulation_create,
+        *(n, corners, len(corners), beyond, ring, len(ring), equal, result.place),
     )
-    return result
+    return points, n, result
 
 
 class _Voronoi(Handle):
     _destroy = library.voronoi_destroy
 
 
-def voronoi(
-    triangulator: Triangulator,
-    points: _Doubles,
-    triangles: _Indices,
-    neighbors: _Indices,
-    hull: _Indices,
-    representatives: _Indices,
-) -> dict[str, Any]:
+def voronoi(triangulator: Triangulator, mesh: Mesh) -> dict[str, Any]:
     """The circumcentres of triangles, the cell_offsets, the corners of cells, and which are unbounded."""
-    n = _count_points(points)
-    points = _as_doubles(points)
-    primal = _triangulation_of(n, triangles, neighbors, hull, representatives)
+    points, n, primal = _triangulation_of(mesh)
     result = _Voronoi()
-    with triangulator.turn:
-        check(
-            library.voronoi_compute(
-                triangulator.pointer, _address_of(points), n, primal.pointer, result.place
-            )
-        )
+    triangulator.call(
+        library.voronoi_compute, triangulator.pointer, points, n, primal.pointer, result.place
+    )
     of = result.pointer
     counts = {
         "triangle": library.voronoi_triangle_count(of),
@@ -1027,32 +918,15 @@ class _ClippedVoronoi(Handle):
     _destroy = library.clipped_voronoi_destroy
 
 
-def clipped_voronoi(
-    triangulator: Triangulator,
-    points: _Doubles,
-    triangles: _Indices,
-    neighbors: _Indices,
-    hull: _Indices,
-    representatives: _Indices,
-    corners: _Doubles,
-) -> dict[str, Any]:
+def clipped_voronoi(triangulator: Triangulator, mesh: Mesh, corners: _Doubles) -> dict[str, Any]:
     """The vertices of clipped cells, their offsets, the cells' areas and centroids."""
-    n = _count_points(points)
-    points, corners = _as_doubles(points), _as_doubles(corners)
-    primal = _triangulation_of(n, triangles, neighbors, hull, representatives)
+    points, n, primal = _triangulation_of(mesh)
+    corners = _as_doubles(corners)
     result = _ClippedVoronoi()
-    with triangulator.turn:
-        check(
-            library.voronoi_clip(
-                triangulator.pointer,
-                _address_of(points),
-                n,
-                primal.pointer,
-                _address_of(corners),
-                len(corners),
-                result.place,
-            )
-        )
+    triangulator.call(
+        library.voronoi_clip,
+        *(triangulator.pointer, points, n, primal.pointer, corners, len(corners), result.place),
+    )
     of = result.pointer
     counts = {
         "vertex": library.clipped_voronoi_vertex_count(of),
@@ -1074,18 +948,10 @@ def relax(
     n = _count_points(points)
     points, corners = _as_doubles(points), _as_doubles(corners)
     relaxed = np.empty((n, 2), np.float64)
-    with triangulator.turn:
-        check(
-            library.relax(
-                triangulator.pointer,
-                _address_of(points),
-                n,
-                _address_of(corners),
-                len(corners),
-                iterations,
-                _address_of(relaxed),
-            )
-        )
+    triangulator.call(
+        library.relax,
+        *(triangulator.pointer, points, n, corners, len(corners), iterations, relaxed),
+    )
     return relaxed
 
 
@@ -1106,48 +972,30 @@ class _Locator(DeviceHandle):
 class Locator(_Locator):
     """Answers queries on a triangulation."""
 
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: _Doubles,
-        triangles: _Indices,
-        neighbors: _Indices,
-        hull: _Indices,
-        representatives: _Indices,
-    ) -> None:
+    def __init__(self, triangulator: Triangulator, mesh: Mesh) -> None:
         super().__init__(triangulator)
-        self._point_count = n = _count_points(points)
-        points = _as_doubles(points)
-        mesh = _triangulation_of(n, triangles, neighbors, hull, representatives)
-        with triangulator.turn:
-            check(
-                library.locator_create(
-                    triangulator.pointer,
-                    _address_of(points),
-                    n,
-                    None,
-                    0,
-                    mesh.pointer,
-                    self.place,
-                )
-            )
+        points, self._point_count, primal = _triangulation_of(mesh)
+        triangulator.call(
+            library.locator_create,
+            *(triangulator.pointer, points, self._point_count, None, 0, primal.pointer, self.place),
+        )
 
-    def _answers(self, ask: Any, queries: _Doubles) -> _Indices:
-        """One answer for each query."""
+    def _find(self, function: Any, queries: _Doubles) -> _Indices:
+        """What a function answers to each query."""
         m = _count_points(queries)
-        queries = _as_doubles(queries)
-        answers = np.empty(m, _INT32)
+        queries, answers = _as_doubles(queries), np.empty(m, _INT32)
+        # Written out, since for few queries every call counts.
         with self._triangulator.turn:
-            check(ask(self.pointer, _address_of(queries), m, None, 0, _address_of(answers)))
+            check(function(self.pointer, _address_of(queries), m, None, 0, _address_of(answers)))
         return answers
 
     def locate(self, queries: _Doubles) -> _Indices:
         """The triangle of each query; -1 outside of the hull."""
-        return self._answers(library.locator_locate, queries)
+        return self._find(library.locator_locate, queries)
 
     def nearest(self, queries: _Doubles) -> _Indices:
         """The point that is nearest to each query; -1 if there is none."""
-        return self._answers(library.locator_nearest, queries)
+        return self._find(library.locator_nearest, queries)
 
     def _check_rows(self, values: _Doubles) -> None:
         if len(values) != self._point_count:
@@ -1183,19 +1031,10 @@ class Locator(_Locator):
             gradients = _as_doubles(gradients)
             options.gradients = _address_of(gradients)
         results = np.empty((m, values.shape[1]))
-        with self._triangulator.turn:
-            check(
-                library.locator_interpolate_with(
-                    self.pointer,
-                    _address_of(values),
-                    _address_of(queries),
-                    m,
-                    None,
-                    0,
-                    ctypes.byref(options),
-                    _address_of(results),
-                )
-            )
+        self._triangulator.call(
+            library.locator_interpolate_with,
+            *(self.pointer, values, queries, m, None, 0, options, results),
+        )
         return results
 
     def gradients(self, values: _Doubles, tolerance: float, iterations: int) -> _Doubles:
@@ -1206,12 +1045,7 @@ class Locator(_Locator):
             columns=values.shape[1], gradient_tolerance=tolerance, gradient_iterations=iterations
         )
         results = np.empty((*values.shape, 2))
-        with self._triangulator.turn:
-            check(
-                library.locator_gradients(
-                    self.pointer, _address_of(values), ctypes.byref(options), _address_of(results)
-                )
-            )
+        self._triangulator.call(library.locator_gradients, self.pointer, values, options, results)
         return results
 
 
@@ -1222,30 +1056,24 @@ class DeviceLocator(_Locator):
         self,
         triangulator: Triangulator,
         points: DevicePoints,
-        mesh: DeviceResult,
+        mesh: DeviceTriangulation,
         enqueue: Enqueue,
     ) -> None:
         super().__init__(triangulator)
-        with triangulator.turn:
-            check(
-                library.locator_create_device(
-                    triangulator.pointer, points.struct, mesh.pointer, enqueue.struct, self.place
-                )
-            )
-
-    def _answers(self, ask: Any, *given: Any) -> int:
-        results = ctypes.c_void_p()
-        with self._triangulator.turn:
-            check(ask(self.pointer, *given, ctypes.byref(results)))
-        return results.value or 0
+        triangulator.call(
+            library.locator_create_device,
+            *(triangulator.pointer, points.struct, mesh.pointer, enqueue.struct, self.place),
+        )
 
     def locate(self, queries: DevicePoints, enqueue: Enqueue) -> int:
         """The triangle of each query."""
-        return self._answers(library.locator_locate_device, queries.struct, enqueue.struct)
+        function = library.locator_locate_device
+        return _buffer_of(self._triangulator, function, self.pointer, queries.struct, enqueue)
 
     def nearest(self, queries: DevicePoints, enqueue: Enqueue) -> int:
         """The point that is nearest to each query."""
-        return self._answers(library.locator_nearest_device, queries.struct, enqueue.struct)
+        function = library.locator_nearest_device
+        return _buffer_of(self._triangulator, function, self.pointer, queries.struct, enqueue)
 
     def interpolate(
         self,
@@ -1265,13 +1093,9 @@ class DeviceLocator(_Locator):
             fill=fill,
             device_gradients=gradients or None,
         )
-        return self._answers(
-            library.locator_interpolate_with_device,
-            values or None,
-            queries.struct,
-            options,
-            enqueue.struct,
-        )
+        function = library.locator_interpolate_with_device
+        given = (self.pointer, values or None, queries.struct, options, enqueue)
+        return _buffer_of(self._triangulator, function, *given)
 
     def gradients(
         self, values: int, columns: int, tolerance: float, iterations: int, enqueue: Enqueue
@@ -1280,5 +1104,7 @@ class DeviceLocator(_Locator):
         options = _declarations.InterpolationOptions(
             columns=columns, gradient_tolerance=tolerance, gradient_iterations=iterations
         )
-        ask = library.locator_gradients_device
-        return self._answers(ask, values or None, options, enqueue.struct)
+        function = library.locator_gradients_device
+        return _buffer_of(
+            self._triangulator, function, self.pointer, values or None, options, enqueue
+        )

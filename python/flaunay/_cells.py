@@ -136,15 +136,7 @@ class ClippedVoronoi:
 def clip(tri: Delaunay, bounds: Any) -> ClippedVoronoi:
     """As `Voronoi.clipped` says, of the cells of a triangulation's points."""
     corners = corners_of(bounds)
-    arrays = _calls.clipped_voronoi(
-        _triangulators.of_device(tri._device),
-        np.asarray(tri.points, np.float64),
-        tri.simplices,
-        tri.neighbors,
-        tri.hull,
-        tri.representatives,
-        corners,
-    )
+    arrays = _calls.clipped_voronoi(_triangulators.of_device(tri._device), tri, corners)
     return ClippedVoronoi(**arrays, bounds=corners)
 
 

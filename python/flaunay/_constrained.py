@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _export, _triangulators
+from flaunay import _calls, _export, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
@@ -309,8 +309,8 @@ def arrays_of_constrained(
     if sets_of_holes is None and offsets is not None and len(offsets) != 2 and len(places):
         raise UsageError("holes of several sets need hole_offsets")
     triangulator = _triangulators.of_device(device)
-    result = triangulator.triangulate_constrained(
-        coordinates, offsets, pairs, places, sets_of_holes, rules, wanted
+    result = _calls.triangulate_constrained(
+        triangulator, coordinates, offsets, pairs, places, sets_of_holes, rules, wanted
     )
     del result["polygons"]
     return with_points(result, coordinates)

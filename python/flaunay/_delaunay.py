@@ -415,14 +415,7 @@ class Delaunay:
             if self._locator_or_none is None or self._locator_or_none[1] != os.getpid():
                 # A forked child must not use its parent's device, not even to release memory.
                 _triangulators.keep(self._locator_or_none)
-                locator = _calls.Locator(
-                    _triangulators.of_device(self._device),
-                    np.asarray(self.points, np.float64),
-                    self.simplices,
-                    self.neighbors,
-                    self.hull,
-                    self.representatives,
-                )
+                locator = _calls.Locator(_triangulators.of_device(self._device), self)
                 self._locator_or_none = locator, os.getpid()
             return self._locator_or_none[0]
 

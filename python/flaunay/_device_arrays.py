@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Optional, Union
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import pyopencl.array
 
 Offsets = Union[npt.ArrayLike, "pyopencl.array.Array", None]
+
+_Result = TypeVar("_Result")
 
 _COORDINATES = (np.dtype(np.float64), np.dtype(np.float32))
 
@@ -171,19 +173,26 @@ class DeviceCall:
         self.reads(copy)
         return _handle(copy)
 
-    def begin(self) -> _calls.Enqueue:
-        """What the library takes; to be made when all that is read is known."""
-        self._events = self._wait_for + [event for array in self._arrays for event in array.events]
-        return _calls.Enqueue(
-            int(self.queue.int_ptr), [int(event.int_ptr) for event in self._events]
-        )
+    def run(self, work: Callable[..., _Result], *given: Any) -> tuple[_Result, pyopencl.Event]:
+        """What a call of the library makes of what is given, and the call's event.
 
-    def end(self, enqueue: _calls.Enqueue) -> pyopencl.Event:
-        """The event of the call, which the arrays that it reads know from then on."""
+        To be called when all that is read is known. The arrays that it reads know the event from then on.
+        """
+        events = self._wait_for + [event for array in self._arrays for event in array.events]
+        handles = [int(event.int_ptr) for event in events]
+        enqueue = _calls.Enqueue(int(self.queue.int_ptr), handles)
+        result = work(*given, enqueue)
         event = import_pyopencl().Event.from_int_ptr(enqueue.event, retain=False)
         for array in self._arrays:
             array.add_event(event)
-        return event
+        return result, event
+
+    def array(
+        self, shape: tuple[int, ...], dtype: npt.DTypeLike, work: Callable[..., int], *given: Any
+    ) -> pyopencl.array.Array:
+        """The array over a buffer that a call of the library makes."""
+        buffer, event = self.run(work, *given)
+        return view(buffer, shape, dtype, self.queue, event, retain=False)
 
 
 def view(

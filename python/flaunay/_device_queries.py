@@ -9,7 +9,7 @@ import numpy as np
 
 from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
-from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
+from flaunay._device_arrays import DeviceCall, Offsets, queue_for
 from flaunay._errors import UsageError
 
 if TYPE_CHECKING:
@@ -60,15 +60,12 @@ class DeviceLocator:
     """
 
     def __init__(
-        self, call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceResult
+        self, call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceTriangulation
     ) -> None:
-        enqueue = call.begin()
         triangulator = _triangulators.of_queue(call.queue)
-        self._handle: Optional[_calls.DeviceLocator] = _calls.DeviceLocator(
-            triangulator, points, mesh, enqueue
-        )
+        self._handle: Optional[_calls.DeviceLocator]
+        self._handle, self.event = call.run(_calls.DeviceLocator, triangulator, points, mesh)
         self.npoints, _ = mesh.sizes
-        self.event: pyopencl.Event = call.end(enqueue)
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints)
@@ -111,8 +108,7 @@ class DeviceLocator:
         handle = self._opened()
         call = DeviceCall(queue_for(queries, queue, "queries"), wait_for)
         given = call.points(queries, offsets, "queries")
-        enqueue = call.begin()
-        return _answers(call, enqueue, handle.locate(given, enqueue), queries.shape[:1], np.int32)
+        return call.array(queries.shape[:1], np.int32, handle.locate, given)
 
     def nearest(
         self,
@@ -128,8 +124,7 @@ class DeviceLocator:
         handle = self._opened()
         call = DeviceCall(queue_for(queries, queue, "queries"), wait_for)
         given = call.points(queries, offsets, "queries")
-        enqueue = call.begin()
-        return _answers(call, enqueue, handle.nearest(given, enqueue), queries.shape[:1], np.int32)
+        return call.array(queries.shape[:1], np.int32, handle.nearest, given)
 
     def interpolate(
         self,
@@ -189,12 +184,9 @@ class DeviceLocator:
         slopes = 0
         if gradients is not None:
             slopes = call.numbers(gradients, [(*values.shape, 2)], "gradients")
-        enqueue = call.begin()
-        buffer = handle.interpolate(
-            memory, columns, given, _METHODS[method], float(fill_value), slopes, enqueue
-        )
         shape = (*queries.shape[:1], *values.shape[1:])
-        return _answers(call, enqueue, buffer, shape, np.float64)
+        how = (_METHODS[method], float(fill_value), slopes)
+        return call.array(shape, np.float64, handle.interpolate, memory, columns, given, *how)
 
     def gradients(
         self,
@@ -228,22 +220,11 @@ class DeviceLocator:
             raise UsageError(f"maxiter must be 1 or more, not {maxiter}")
         call = DeviceCall(queue_for(values, queue, "values"), wait_for)
         memory, columns = self._values(call, values)
-        enqueue = call.begin()
-        buffer = handle.gradients(memory, columns, tol, maxiter, enqueue)
-        return _answers(call, enqueue, buffer, (*values.shape, 2), np.float64)
+        shape = (*values.shape, 2)
+        return call.array(shape, np.float64, handle.gradients, memory, columns, tol, maxiter)
 
     def _values(self, call: DeviceCall, values: pyopencl.array.Array) -> tuple[int, int]:
         """The buffer of values, and how many a point has."""
         n = self.npoints
         memory = call.numbers(values, [(n,), (n, -1)], "values")
         return memory, int(values.shape[1]) if values.ndim == 2 else 1
-
-
-def _answers(
-    call: DeviceCall,
-    enqueue: _calls.Enqueue,
-    buffer: int,
-    shape: tuple[int, ...],
-    dtype: Any,
-) -> pyopencl.array.Array:
-    return view(buffer, shape, dtype, call.queue, call.end(enqueue), retain=False)

@@ -84,13 +84,11 @@ class DeviceClippedVoronoi:
 
 
 def voronoi(
-    call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceResult
+    call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceTriangulation
 ) -> DeviceVoronoi:
     """As `DeviceTriangulation.voronoi` says."""
-    enqueue = call.begin()
     triangulator = _triangulators.of_queue(call.queue)
-    result = _calls.voronoi_device(triangulator, points, mesh, enqueue)
-    event = call.end(enqueue)
+    result, event = call.run(_calls.DeviceVoronoi, triangulator, points, mesh)
     n, triangles = mesh.sizes
     places = result.arrays(triangle=triangles, corner=3 * triangles, point=n, point_offset=n + 1)
     made = {name: view(*place, call.queue, event) for name, place in places.items()}
@@ -100,14 +98,12 @@ def voronoi(
 def clipped_voronoi(
     call: DeviceCall,
     points: _calls.DevicePoints,
-    mesh: _calls.DeviceResult,
+    mesh: _calls.DeviceTriangulation,
     corners: npt.NDArray[np.float64],
 ) -> DeviceClippedVoronoi:
     """As `DeviceTriangulation.clipped_voronoi` says."""
-    enqueue = call.begin()
     triangulator = _triangulators.of_queue(call.queue)
-    result = _calls.clipped_voronoi_device(triangulator, points, mesh, corners, enqueue)
-    event = call.end(enqueue)
+    result, event = call.run(_calls.DeviceClippedVoronoi, triangulator, points, mesh, corners)
     n, _ = mesh.sizes
     places = result.arrays(vertex=result.vertex_count, point=n, point_offset=n + 1)
     made = {name: view(*place, call.queue, event) for name, place in places.items()}
@@ -159,8 +155,6 @@ def relax_device(
     times, corners = as_iterations(iterations), corners_of(bounds)
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     given = call.points(points, None, "points")
-    enqueue = call.begin()
-    buffer = _calls.relax_device(
-        _triangulators.of_queue(call.queue), given, corners, times, enqueue
-    )
-    return view(buffer, points.shape, np.float64, call.queue, call.end(enqueue), retain=False)
+    triangulator = _triangulators.of_queue(call.queue)
+    relaxed = (_calls.relax_device, triangulator, given, corners, times)
+    return call.array(points.shape, np.float64, *relaxed)

@@ -258,7 +258,7 @@ def is_gabriel(tri: Mesh) -> Mask:
     if len(tri.simplices) == 0:
         return frozen(np.ones(len(tri.edges), np.bool_))
     # Of all points, a corner opposite to the edge is first in its disc, if any is.
-    acute = _calls.angles(np.asarray(tri.points, np.float64), tri.simplices) > 0
+    acute = _calls.angles(tri.points, tri.simplices) > 0
     first, second = tri.edges.T[:, :, None]
     gabriel = np.ones(len(tri.edges), np.bool_)
     for side in tri.edge_simplices.T:
@@ -296,8 +296,7 @@ def circumradii(tri: Mesh) -> Doubles:
     >>> flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).circumradii
     array([2.5])
     """
-    points = np.asarray(tri.points, np.float64)
-    return frozen(_calls.circumradii(points, tri.simplices))
+    return frozen(_calls.circumradii(tri.points, tri.simplices))
 
 
 def minimum_spanning_forest(

@@ -55,7 +55,7 @@ class DeviceTriangulation:
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
     event: pyopencl.Event
-    _mesh: _calls.DeviceResult = field(repr=False)
+    _mesh: _calls.DeviceTriangulation = field(repr=False)
     _queue: pyopencl.CommandQueue = field(repr=False)
 
     def __repr__(self) -> str:
@@ -299,11 +299,8 @@ def triangulate_device(
         hull=hull,
         representatives=representatives,
     )
-    enqueue = call.begin()
-    result = _calls.triangulate_device(
-        _triangulators.of_queue(call.queue), device_points, wanted, enqueue
-    )
-    event = call.end(enqueue)
+    triangulator = _triangulators.of_queue(call.queue)
+    result, event = call.run(_calls.DeviceTriangulation, triangulator, device_points, wanted)
     views = {
         name: None if place is None else view(*place, call.queue, event)
         for name, place in result.arrays().items()

@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen, names_of, summary
 from flaunay._constrained import (
     ConstrainedTriangulation,
@@ -410,7 +410,7 @@ def polygons(
             ) from None
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     triangulator = _triangulators.of_device(device)
-    result = triangulator.triangulate_polygons(points, rings, outer, parts, rules, wanted)
+    result = _calls.triangulate_polygons(triangulator, points, rings, outer, parts, rules, wanted)
     return PolygonTriangulation(
         **with_points(result, points), ring_offsets=frozen(rings), polygon_offsets=frozen(outer)
     )

@@ -79,9 +79,9 @@ def arrays_of_mesh(
         if device is not None:
             raise UsageError(f"mode {mode} runs on the host and takes no device")
         doubles = np.asarray(coordinates, dtype=np.float64)
-        return _calls.triangulate_without_device(doubles, offsets, mode, wanted)
+        return _calls.triangulate(None, doubles, offsets, mode, wanted)
     triangulator = _triangulators.of_device(device, may_be_host=mode == "blocks")
-    return triangulator.triangulate(coordinates, offsets, mode, wanted)
+    return _calls.triangulate(triangulator, coordinates, offsets, mode, wanted)
 
 
 def modes() -> list[dict[str, Any]]:

@@ -80,7 +80,7 @@ def of_device(device: Optional[str], may_be_host: bool = True) -> _calls.Triangu
                     "opening %s: kernels that it has not compiled before take seconds, once", name
                 )
             # The environment is left to the triangulator, which names it in its errors.
-            found = _calls.Triangulator(_HOST if name == _HOST else device or "")
+            found = _calls.Triangulator.of_name(_HOST if name == _HOST else device or "")
             # A device has more than one name; what it holds, it should hold once.
             for other_name, other in _by_name.items():
                 if {name, other_name} & {"", _HOST}:
@@ -119,7 +119,7 @@ def of_queue(queue: pyopencl.CommandQueue) -> _calls.Triangulator:
     with _lock:
         found = _by_handles.get(handles)
         if found is None:
-            found = _calls.Triangulator.from_handles(*handles)
+            found = _calls.Triangulator.of_handles(*handles)
             _by_handles[handles] = found
             if len(_by_handles) > _MOST_CONTEXTS:
                 dropped.append(_by_handles.popitem(last=False)[1])

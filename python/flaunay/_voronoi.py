@@ -105,22 +105,14 @@ class Voronoi:
             points, furthest_site, incremental, qhull_options, mode=mode, device=device
         )
         self.points: FloatArray = tri.points
-        coordinates = np.asarray(tri.points, np.float64)
-        arrays = _calls.voronoi(
-            _triangulators.of_device(device),
-            coordinates,
-            tri.simplices,
-            tri.neighbors,
-            tri.hull,
-            tri.representatives,
-        )
+        arrays = _calls.voronoi(_triangulators.of_device(device), tri)
         vertices, cells = arrays["circumcentres"], arrays["cells"]
         offsets = arrays["cell_offsets"]
         self.unbounded: npt.NDArray[np.bool_] = frozen(arrays["unbounded"])
         # The vertex of each triangle; None if it has its triangle's index.
         self._vertex_of: Optional[Indices] = None
         if merge:
-            first = _calls.same_circles(coordinates, tri.simplices, tri.neighbors)
+            first = _calls.same_circles(tri.points, tri.simplices, tri.neighbors)
             distinct, numbers = np.unique(first, return_inverse=True)
             vertices = vertices[distinct]
             offsets, cells = _merge_cells(numbers, offsets, cells, self.unbounded)

@@ -74,11 +74,11 @@ def test_a_locator_is_made_while_another_is(random, monkeypatch):
     make = _calls.Locator
     begun, other_is_done = threading.Event(), threading.Event()
 
-    def wait_with_the_large_one(triangulator, points, *mesh):
-        if len(points) == 1000:
+    def wait_with_the_large_one(triangulator, mesh):
+        if len(mesh.points) == 1000:
             begun.set()
             assert other_is_done.wait(60)
-        return make(triangulator, points, *mesh)
+        return make(triangulator, mesh)
 
     monkeypatch.setattr(_calls, "Locator", wait_with_the_large_one)
     large, small = (flaunay.Delaunay(random.random((n, 2))) for n in (1000, 10))
