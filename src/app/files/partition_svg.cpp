@@ -13,10 +13,9 @@
 namespace flaunay::io {
 namespace {
 
-constexpr double kUnits = 10;  // whole-number coordinates per pixel
 // Borders are drawn this far beyond the view, so that their lines cross its edge without a corner.
 constexpr double kRoom = 50;
-constexpr std::size_t kMostDots = 100'000;
+constexpr std::size_t kMostDots = 100'000;  // of more, nobody could tell one from another
 
 /// Colours whose hues are far apart for consecutive numbers, by the golden ratio.
 std::string region_color(std::size_t r, double saturation, double lightness) {
@@ -31,11 +30,6 @@ std::string region_color(std::size_t r, double saturation, double lightness) {
   return fmt::format("#{:02x}{:02x}{:02x}", channel(0), channel(8), channel(4));
 }
 
-std::string fill_color(std::size_t r) { return region_color(r, 0.55, 0.84); }
-std::string dot_color(std::size_t r) { return region_color(r, 0.6, 0.38); }
-
-std::int64_t unit(double pixels) { return std::llround(pixels * kUnits); }
-
 /// A border as closed walks. Where it passes a point several times, any walk on is right: what lies inside is
 /// what the edges wind around once, whatever their order.
 std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32_t>& border) {
@@ -43,23 +37,18 @@ std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32
   for (std::size_t k = 0; k + 1 < border.size(); k += 2) edges.emplace_back(border[k], border[k + 1]);
   std::sort(edges.begin(), edges.end());
   std::vector<char> walked(edges.size(), 0);
-  const auto edge_from = [&](std::int32_t vertex) {
-    auto edge = std::lower_bound(edges.begin(), edges.end(), std::make_pair(vertex, std::int32_t{0}));
-    while (edge != edges.end() && edge->first == vertex &&
-           walked[static_cast<std::size_t>(edge - edges.begin())]) {
-      ++edge;
-    }
-    return edge;
-  };
   std::vector<std::vector<std::int32_t>> walks;
   for (std::size_t first = 0; first < edges.size(); ++first) {
     if (walked[first]) continue;
     walks.emplace_back();
-    auto edge = edges.begin() + static_cast<std::ptrdiff_t>(first);
-    for (std::int32_t at = edge->first; edge != edges.end() && edge->first == at; edge = edge_from(at)) {
-      walked[static_cast<std::size_t>(edge - edges.begin())] = 1;
-      walks.back().push_back(at);
-      at = edge->second;
+    for (std::size_t e = first;;) {
+      walked[e] = 1;
+      walks.back().push_back(edges[e].first);
+      const std::int32_t at = edges[e].second;
+      const auto next = std::lower_bound(edges.begin(), edges.end(), std::make_pair(at, std::int32_t{0}));
+      e = static_cast<std::size_t>(next - edges.begin());
+      while (e < edges.size() && edges[e].first == at && walked[e]) ++e;
+      if (e == edges.size() || edges[e].first != at) break;
     }
   }
   return walks;
@@ -68,111 +57,85 @@ std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32
 class PartitionPicture {
  public:
   PartitionPicture(OutputFile& file, const Points& points, const research::Partition& partition)
-      : file_(file), path_(file_), page_(points), partition_(partition) {}
+      : file_(file), drawing_(file, points), partition_(partition) {}
 
   void write() {
-    page_.open(file_, "Regions of " + counted(page_.positions().size(), "point"), kUnits);
+    constexpr double kEdge = 3;  // room for the width of lines on the view's boundary
+    drawing_.begin("Regions of " + counted(points_.size(), "point"));
     file_.print("<clipPath id=\"view\"><rect x=\"{0}\" y=\"{0}\" width=\"{1}\" height=\"{2}\"/></clipPath>\n",
-                unit(-kEdge), unit(page_.width() + 2 * kEdge), unit(page_.height() + 2 * kEdge));
+                unit(-kEdge), unit(drawing_.width() + 2 * kEdge), unit(drawing_.height() + 2 * kEdge));
     file_.print("<g clip-path=\"url(#view)\">\n");
     write_finished();
     for (std::size_t r = 0; r < partition_.regions.size(); ++r) write_region(r);
-    write_dots();
+    if (points_.size() <= kMostDots) write_dots();
     file_.print("</g>\n");
-    page_.close(file_, caption());
+    drawing_.end(caption());
   }
 
  private:
-  static constexpr double kEdge = 3;  // room for the width of lines on the view's boundary
-
-  const Position& position(std::int32_t index) const {
-    return page_.positions()[static_cast<std::size_t>(index)];
-  }
-
-  void write_polygon(std::vector<Position> polygon) {
-    clip_polygon(polygon, kRoom, page_.width(), page_.height());
-    if (polygon.empty()) return;
-    path_.move_to(unit(polygon[0].x), unit(polygon[0].y));
-    for (std::size_t k = 1; k < polygon.size(); ++k) path_.line_to(unit(polygon[k].x), unit(polygon[k].y));
-    path_.close();
-  }
+  std::int64_t unit(double pixels) const { return drawing_.unit(pixels); }
 
   void write_finished() {
     if (partition_.triangles.empty()) return;
-    file_.print("<path id=\"finished\" fill=\"#e6e4df\" stroke=\"#b9b6ae\" stroke-width=\"{}\" d=\"",
-                unit(0.4));
-    path_.restart();
+    drawing_.begin_path("id=\"finished\" fill=\"#e6e4df\" stroke=\"#b9b6ae\" stroke-width=\"{}\"", unit(0.4));
     for (std::size_t t = 0; t + 2 < partition_.triangles.size(); t += 3) {
-      const std::int32_t* corners = &partition_.triangles[t];
-      write_polygon({position(corners[0]), position(corners[1]), position(corners[2])});
+      polygon_.clear();
+      for (std::size_t k = 0; k < 3; ++k) polygon_.push_back(drawing_.position(partition_.triangles[t + k]));
+      drawing_.polygon(polygon_, kRoom, true);
     }
-    file_.print("\"/>\n");
+    drawing_.end_path();
   }
 
   void write_region(std::size_t r) {
     const research::Region& region = partition_.regions[r];
-    file_.print("<path id=\"region-{}\" fill=\"{}\" stroke=\"#24405f\" stroke-width=\"{}\" d=\"", r,
-                fill_color(r), unit(0.8));
-    path_.restart();
+    drawing_.begin_path("id=\"region-{}\" fill=\"{}\" stroke=\"#24405f\" stroke-width=\"{}\"", r,
+                        region_color(r, 0.55, 0.84), unit(0.8));
     for (const std::vector<std::int32_t>& walk : closed_walks(region.border)) {
-      std::vector<Position> polygon;
+      polygon_.clear();
       for (const std::int32_t vertex : walk) {
-        polygon.push_back(position(region.points[static_cast<std::size_t>(vertex)]));
+        polygon_.push_back(drawing_.position(region.points[static_cast<std::size_t>(vertex)]));
       }
-      write_polygon(std::move(polygon));
+      drawing_.polygon(polygon_, kRoom, true);
     }
-    file_.print("\"/>\n");
+    drawing_.end_path();
   }
 
-  /// The points inside of regions, in the colours of the regions. Omitted if there are too many to tell
-  /// apart.
+  /// The points inside of regions, in the colours of the regions, and then all others.
   void write_dots() {
-    const std::size_t count = page_.positions().size();
-    if (count > kMostDots) return;
-    const double size = std::clamp(120 / std::sqrt(static_cast<double>(count) + 1), 0.8, 5.0);
-    std::vector<char> inside(count, 0);
+    const double size = std::clamp(120 / std::sqrt(static_cast<double>(points_.size()) + 1), 0.8, 5.0);
+    std::vector<char> inside(points_.size(), 0);
     for (std::size_t r = 0; r < partition_.regions.size(); ++r) {
       const research::Region& region = partition_.regions[r];
       std::vector<char> on_border(region.points.size(), 0);
       for (const std::int32_t vertex : region.border) on_border[static_cast<std::size_t>(vertex)] = 1;
-      open_dots(dot_color(r), size);
+      drawing_.begin_path("stroke=\"{}\" stroke-width=\"{}\"", region_color(r, 0.6, 0.38), unit(size));
       for (std::size_t k = 0; k < region.points.size(); ++k) {
         if (on_border[k]) continue;
         inside[static_cast<std::size_t>(region.points[k])] = 1;
-        write_dot(position(region.points[k]));
+        drawing_.dot(drawing_.position(region.points[k]));
       }
-      file_.print("\"/>\n");
+      drawing_.end_path();
     }
-    open_dots("#24405f", size);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!inside[i]) write_dot(page_.positions()[i]);
+    drawing_.begin_path("stroke=\"#24405f\" stroke-width=\"{}\"", unit(size));
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!inside[i]) drawing_.dot(points_[i]);
     }
-    file_.print("\"/>\n");
-  }
-
-  void open_dots(const std::string& color, double size) {
-    file_.print("<path stroke=\"{}\" stroke-width=\"{}\" d=\"", color, unit(size));
-    path_.restart();
-  }
-  /// A line of no length with round ends is a dot.
-  void write_dot(const Position& p) {
-    if (!page_.contains(p)) return;
-    path_.move_to(unit(p.x), unit(p.y));
-    file_.print("h0");
+    drawing_.end_path();
   }
 
   std::string caption() const {
     std::string text =
-        counted(page_.positions().size(), "point") + " · " + counted(partition_.regions.size(), "region");
+        counted(points_.size(), "point") + " · " + counted(partition_.regions.size(), "region");
     const std::size_t finished = partition_.triangles.size() / 3;
     if (finished > 0) text += " · " + counted(finished, "finished triangle") + " (grey)";
     return text;
   }
 
   OutputFile& file_;
-  PathData path_;
-  const Page page_;
+  Drawing drawing_;
+  const std::vector<Position>& points_ = drawing_.positions();
   const research::Partition& partition_;
+  std::vector<Position> polygon_;  // kept for its memory
 };
 
 }  // namespace

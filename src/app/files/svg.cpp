@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
-#include <string_view>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "app/files/drawing.hpp"
@@ -16,122 +17,112 @@ namespace flaunay::io {
 namespace {
 
 constexpr int kShades = 24;
-constexpr std::size_t kDotsUpTo = 1000;  // points of larger sets are not drawn, because edges show them
-
-/// Colours from shade 0 to shade kShades - 1, in equal steps.
-template <std::size_t count>
-using Ramp = std::array<std::array<double, 3>, count>;
-/// From blue over sand to coral.
-constexpr Ramp<6> kRamp = {{{0x6f, 0x9f, 0xc4},
-                            {0x93, 0xc4, 0xcb},
-                            {0xcb, 0xe2, 0xc9},
-                            {0xf7, 0xec, 0xc2},
-                            {0xf6, 0xc8, 0x9c},
-                            {0xe3, 0x93, 0x8a}}};
-/// Inside of constraints, which are orange: blues alone, so that everybody can tell them from the lines.
-constexpr Ramp<3> kInsideRamp = {{{0x7f, 0xb0, 0xd8}, {0xae, 0xd0, 0xe6}, {0xdc, 0xea, 0xf3}}};
-constexpr const char* kEdgeColor = "#4a5d73";
-constexpr const char* kInnerEdgeColor = "#6d8299";
-constexpr const char* kConstraintColor = "#c84c09";
-constexpr const char* kOutsideColor = "#eeece6";
 constexpr int kOutsideShade = kShades;
+constexpr std::size_t kDotsUpTo = 1000;  // points of larger sets are not drawn, because edges show them
+/// Of triangles and edges that are measured, where all would take long.
+constexpr std::size_t kSample = 100'000;
+/// Trails per path element: viewers draw several short paths faster than a long one.
+constexpr std::size_t kTrailsPerPath = 500;
 
-template <std::size_t count>
-std::string ramp_color(const Ramp<count>& ramp, int shade) {
-  const double at = static_cast<double>(shade) / (kShades - 1) * (count - 1);
-  const auto low = std::min(static_cast<std::size_t>(at), count - 2);
-  std::array<int, 3> rgb{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double value = ramp[low][c] + (at - static_cast<double>(low)) * (ramp[low + 1][c] - ramp[low][c]);
-    rgb[c] = static_cast<int>(std::lround(value));
+/// From blue over sand to coral.
+constexpr std::array<int, 6> kRamp = {0x6f9fc4, 0x93c4cb, 0xcbe2c9, 0xf7ecc2, 0xf6c89c, 0xe3938a};
+/// Inside of constraints, which are orange: blues alone, so that everybody can tell them from the lines.
+constexpr std::array<int, 3> kInsideRamp = {0x7fb0d8, 0xaed0e6, 0xdceaf3};
+
+/// The colour of a shade from 0 to kShades - 1, in equal steps through the ramp.
+std::string ramp_color(std::span<const int> ramp, int shade) {
+  const double at = static_cast<double>(shade) / (kShades - 1) * static_cast<double>(ramp.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(at), ramp.size() - 2);
+  std::string color = "#";
+  for (const int shift : {16, 8, 0}) {
+    const int from = ramp[low] >> shift & 0xff, to = ramp[low + 1] >> shift & 0xff;
+    color += fmt::format("{:02x}", std::lround(from + (at - static_cast<double>(low)) * (to - from)));
   }
-  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+  return color;
 }
 
 class Picture {
  public:
-  /// constraints: the same mesh if it has some, otherwise null.
-  Picture(OutputFile& file, const Points& points, const Triangulation& mesh,
-          const ConstrainedTriangulation* constraints = nullptr, FillRule fill_rule = FillRule::nesting)
-      : file_(file),
-        path_(file_),
-        points_(points),
-        mesh_(mesh),
-        constraints_(constraints),
-        fill_rule_(fill_rule),
-        page_(points) {
-    choose_units();
-  }
+  Picture(OutputFile& file, const MeshContents& contents)
+      : points_(contents.points.size()),
+        mesh_(contents.mesh),
+        constraints_(contents.constrained),
+        fill_rule_(contents.fill_rule),
+        drawing_(file, contents.points) {}
 
   void write() {
+    choose_units();
     const char* kind = constraints_ == nullptr ? "Delaunay" : "Constrained Delaunay";
-    page_.open(file_, fmt::format("{} triangulation of {}", kind, counted(point_count(), "point")), units_);
+    drawing_.begin(fmt::format("{} triangulation of {}", kind, counted(points_, "point")));
     write_triangles();
-    write_edges();
+    if (!mesh_.triangles.empty()) write_edges();
     if (constraints_ == nullptr) {
       write_hull();
     } else {
       write_constraints();
     }
-    write_dots();
-    page_.close(file_, caption());
+    if (points_ <= kDotsUpTo) write_dots();
+    drawing_.end(caption());
   }
 
  private:
   std::size_t triangle_count() const { return mesh_.triangles.size() / 3; }
-  std::size_t point_count() const { return points_.size(); }
-
-  bool inside(std::int32_t v) const { return page_.contains(position(v)); }
-  const Position& position(std::int32_t v) const { return positions_[static_cast<std::size_t>(v)]; }
+  std::size_t added_count() const {
+    return constraints_ == nullptr ? 0 : constraints_->added_points.size() / 2;
+  }
+  bool inside(std::int32_t v) const { return drawing_.contains(drawing_.position(v)); }
+  std::array<Position, 3> corners(std::size_t t) const {
+    const std::int32_t* const v = &mesh_.triangles[3 * t];
+    return {drawing_.position(v[0]), drawing_.position(v[1]), drawing_.position(v[2])};
+  }
+  /// The corner after one, in its triangle.
+  static std::size_t next(std::size_t i) { return i % 3 == 2 ? i - 2 : i + 1; }
 
   /// Chooses line widths and the resolution of coordinates by the length of the typical visible edge.
   void choose_units() {
-    constexpr std::size_t kSample = 100'000;
     std::vector<double> lengths;
-    const std::size_t stride = mesh_.triangles.size() / kSample + 1;
-    for (std::size_t i = 0; i < mesh_.triangles.size(); i += stride) {
-      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[i % 3 == 2 ? i - 2 : i + 1];
-      if (inside(v) && inside(w)) {
-        lengths.push_back(std::hypot(position(v).x - position(w).x, position(v).y - position(w).y));
-      }
+    for (std::size_t i = 0; i < mesh_.triangles.size(); i += mesh_.triangles.size() / kSample + 1) {
+      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[next(i)];
+      if (!inside(v) || !inside(w)) continue;
+      const Position &p = drawing_.position(v), &q = drawing_.position(w);
+      lengths.push_back(std::hypot(p.x - q.x, p.y - q.y));
     }
     typical_edge_ = lengths.empty() ? kCanvas / 10 : quantile(lengths, 0.5);
     units_ = std::clamp(std::ceil(30 / std::max(typical_edge_, 0.1)), 5.0, 40.0);
+    drawing_.set_units(units_);
     line_width_ = std::clamp(0.06 * typical_edge_, 0.18, 1.4);
   }
 
-  std::int64_t unit(double pixels) const { return std::llround(pixels * units_); }
-
   /// Writes one path element per shade of the triangles' colours.
   void write_triangles() {
-    struct Shaded {
-      std::uint64_t order;  // shade, then tile by tile, so that relative coordinates are short
-      std::size_t triangle;
-    };
+    measure_areas();
     const double tile = std::max(8 * typical_edge_, 4.0);
-    std::vector<Shaded> shaded;
-    shaded.reserve(triangle_count());
-    const Areas areas = measure_areas();
+    // Shade, then tile by tile, so that relative coordinates are short; and the triangle.
+    std::vector<std::pair<std::uint64_t, std::size_t>> shaded;
     for (std::size_t t = 0; t < triangle_count(); ++t) {
       if (!visible(t)) continue;
-      const Position center = clamped_center(t);
-      const int shade = is_inside(t) ? choose_shade(center, area(t), areas) : kOutsideShade;
+      Position center{0, 0};
+      for (const Position& p : corners(t)) {
+        center.x += std::clamp(p.x, 0.0, drawing_.width()) / 3;
+        center.y += std::clamp(p.y, 0.0, drawing_.height()) / 3;
+      }
+      const auto shade = static_cast<std::uint64_t>(is_inside(t) ? choose_shade(center, t) : kOutsideShade);
       const auto row = static_cast<std::uint64_t>(center.y / tile);
       auto column = static_cast<std::uint64_t>(center.x / tile);
       if (row % 2) column = 0xffff - column;  // every other row from right to left
-      shaded.push_back({(static_cast<std::uint64_t>(shade) << 32) | (row << 16) | column, t});
+      shaded.emplace_back(shade << 32 | row << 16 | column, t);
     }
-    std::sort(shaded.begin(), shaded.end(), [](const Shaded& a, const Shaded& b) {
-      return a.order != b.order ? a.order < b.order : a.triangle < b.triangle;
-    });
-    for (std::size_t begin = 0; begin < shaded.size();) {
-      const std::uint64_t shade = shaded[begin].order >> 32;
-      file_.print("<path fill=\"{}\" d=\"", color(static_cast<int>(shade)));
-      path_.restart();
-      for (; begin < shaded.size() && shaded[begin].order >> 32 == shade; ++begin) {
-        write_triangle(shaded[begin].triangle);
+    std::sort(shaded.begin(), shaded.end());
+    std::vector<Position> polygon;
+    for (auto at = shaded.begin(); at != shaded.end();) {
+      const auto shade = static_cast<int>(at->first >> 32);
+      drawing_.begin_path("fill=\"{}\"", color(shade));
+      for (; at != shaded.end() && static_cast<int>(at->first >> 32) == shade; ++at) {
+        const std::array<Position, 3> triangle = corners(at->second);
+        polygon.assign(triangle.begin(), triangle.end());
+        drawing_.polygon(polygon, 0, false);
       }
-      file_.print("\"/>\n");
+      drawing_.end_path();
     }
   }
 
@@ -142,269 +133,167 @@ class Picture {
     return fill_rule_ == FillRule::nesting ? depth % 2 == 1 : depth != 0;
   }
   std::string color(int shade) const {
-    if (shade == kOutsideShade) return kOutsideColor;
+    if (shade == kOutsideShade) return "#eeece6";
     return constraints_ == nullptr ? ramp_color(kRamp, shade) : ramp_color(kInsideRamp, shade);
-  }
-
-  struct Areas {
-    double middle = 0;  // of the logarithms
-    double spread = 1;
-  };
-  double area(std::size_t t) const {
-    const Position &a = position(mesh_.triangles[3 * t]), &b = position(mesh_.triangles[3 * t + 1]),
-                   &c = position(mesh_.triangles[3 * t + 2]);
-    return std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
-  }
-  static double log_area(double area) { return std::log2(std::clamp(area, 1e-9, 1e12)); }
-  Areas measure_areas() const {
-    constexpr std::size_t kSample = 100'000;
-    std::vector<double> logs;
-    for (std::size_t t = 0; t < triangle_count(); t += triangle_count() / kSample + 1) {
-      if (visible(t)) logs.push_back(log_area(area(t)));
-    }
-    if (logs.empty()) return {};
-    const double middle = quantile(logs, 0.5);
-    const double low = quantile(logs, 0.1), high = quantile(logs, 0.9);
-    return {middle, std::max(1.0, high - low)};
-  }
-  /// The shade depends on the place, so that even a grid has a gradient, and on the size, so that neighbours
-  /// differ.
-  int choose_shade(const Position& center, double triangle_area, const Areas& areas) const {
-    const double size = std::clamp((log_area(triangle_area) - areas.middle) / areas.spread, -0.7, 0.7);
-    const double place = (center.x / std::max(width_, 1.0) + 1 - center.y / std::max(height_, 1.0)) / 2;
-    const double value = 0.5 + 0.75 * (place - 0.5) + 0.5 * size;
-    return static_cast<int>(std::clamp(value, 0.0, 1.0) * (kShades - 1) + 0.5);
   }
 
   /// Whether the bounding box meets the view.
   bool visible(std::size_t t) const {
-    const Position &a = position(mesh_.triangles[3 * t]), &b = position(mesh_.triangles[3 * t + 1]),
-                   &c = position(mesh_.triangles[3 * t + 2]);
-    return std::max({a.x, b.x, c.x}) >= 0 && std::min({a.x, b.x, c.x}) <= width_ &&
-           std::max({a.y, b.y, c.y}) >= 0 && std::min({a.y, b.y, c.y}) <= height_;
+    const auto [a, b, c] = corners(t);
+    return std::max({a.x, b.x, c.x}) >= 0 && std::min({a.x, b.x, c.x}) <= drawing_.width() &&
+           std::max({a.y, b.y, c.y}) >= 0 && std::min({a.y, b.y, c.y}) <= drawing_.height();
   }
-  Position clamped_center(std::size_t t) const {
-    Position center{0, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Position& p = position(mesh_.triangles[3 * t + k]);
-      center.x += std::clamp(p.x, 0.0, width_) / 3;
-      center.y += std::clamp(p.y, 0.0, height_) / 3;
+  double log_area(std::size_t t) const {
+    const auto [a, b, c] = corners(t);
+    const double area = std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+    return std::log2(std::clamp(area, 1e-9, 1e12));
+  }
+  void measure_areas() {
+    std::vector<double> logs;
+    for (std::size_t t = 0; t < triangle_count(); t += triangle_count() / kSample + 1) {
+      if (visible(t)) logs.push_back(log_area(t));
     }
-    return center;
+    if (logs.empty()) return;
+    middle_area_ = quantile(logs, 0.5);
+    const double low = quantile(logs, 0.1), high = quantile(logs, 0.9);
+    spread_of_areas_ = std::max(1.0, high - low);
+  }
+  /// The shade depends on the place, so that even a grid has a gradient, and on the size, so that neighbours
+  /// differ.
+  int choose_shade(const Position& center, std::size_t t) const {
+    const double size = std::clamp((log_area(t) - middle_area_) / spread_of_areas_, -0.7, 0.7);
+    const double x = center.x / std::max(drawing_.width(), 1.0),
+                 y = center.y / std::max(drawing_.height(), 1.0);
+    const double value = 0.5 + 0.75 * ((x + 1 - y) / 2 - 0.5) + 0.5 * size;
+    return static_cast<int>(std::clamp(value, 0.0, 1.0) * (kShades - 1) + 0.5);
   }
 
-  /// Writes the part of the triangle that is inside the view, unless it has no area at the picture's
-  /// resolution.
-  void write_triangle(std::size_t t) {
-    std::vector<Position>& polygon = polygon_;
-    polygon.clear();
-    bool clipped = false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      polygon.push_back(position(mesh_.triangles[3 * t + k]));
-      clipped = clipped || !page_.contains(polygon.back());
-    }
-    if (clipped) clip_polygon(polygon, 0, width_, height_);
-    std::int64_t doubled_area = 0;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Position &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-      doubled_area += unit(p.x) * unit(q.y) - unit(p.y) * unit(q.x);
-    }
-    if (doubled_area == 0) return;
-    path_.move_to(unit(polygon[0].x), unit(polygon[0].y));
-    for (std::size_t k = 1; k < polygon.size(); ++k) path_.line_to(unit(polygon[k].x), unit(polygon[k].y));
-    path_.close();
+  /// width: in pixels
+  void begin_stroke(const std::string& name, const char* color, double width) {
+    drawing_.begin_path("id=\"{}\" stroke=\"{}\" stroke-width=\"{:.3g}\"", name, color, width * units_);
+  }
+  void begin_edges(const std::string& name) {
+    begin_stroke(name, constraints_ == nullptr ? "#4a5d73" : "#6d8299", line_width_);
   }
 
-  /// The part of an edge inside the view (Liang and Barsky); false if there is none.
-  bool clip_edge(Position& p, Position& q) const {
-    double begin = 0, end = 1;
-    const double dx = q.x - p.x, dy = q.y - p.y;
-    const double steps[4] = {-dx, dx, -dy, dy};
-    const double room[4] = {p.x, width_ - p.x, p.y, height_ - p.y};
-    for (int side = 0; side < 4; ++side) {
-      if (steps[side] == 0) {
-        if (room[side] < 0) return false;
-      } else if (steps[side] < 0) {
-        begin = std::max(begin, room[side] / steps[side]);
-      } else {
-        end = std::min(end, room[side] / steps[side]);
-      }
-    }
-    if (begin > end) return false;
-    const Position start = p;
-    p = {start.x + begin * dx, start.y + begin * dy};
-    q = {start.x + end * dx, start.y + end * dy};
-    return true;
+  /// Whether the edge from corner i to the next one is to be drawn here: of the two triangles at an inner
+  /// edge, one has it from its smaller index to its larger. Others are at the border, which has a path of its
+  /// own without constraints: the hull.
+  bool is_drawn(std::size_t i) const {
+    const bool is_border = constraints_ != nullptr && !mesh_.neighbors.empty() &&
+                           mesh_.neighbors[i % 3 == 0 ? i + 2 : i - 1] < 0;
+    return is_border || mesh_.triangles[i] < mesh_.triangles[next(i)];
   }
 
-  void write_segment(std::int32_t v, std::int32_t w) {
-    Position p = position(v), q = position(w);
-    if (!clip_edge(p, q)) return;
-    if (unit(p.x) == unit(q.x) && unit(p.y) == unit(q.y)) return;  // too short to show
-    path_.move_to(unit(p.x), unit(p.y));
-    path_.line_to(unit(q.x), unit(q.y));
-  }
-
-  void open_stroke(const char* name, std::string_view color, double pixels) {
-    file_.print("<path id=\"{}\" stroke=\"{}\" stroke-width=\"{:.3g}\" d=\"", name, color, pixels * units_);
-    path_.restart();
-  }
-
-  /// Whether the edge from corner i is at the border of a mesh whose hull is not drawn, and from its larger
-  /// index to its smaller.
-  bool is_border(std::size_t i) const {
-    return constraints_ != nullptr && !mesh_.neighbors.empty() &&
-           mesh_.neighbors[i % 3 == 0 ? i + 2 : i - 1] < 0;
-  }
-
-  /// Every edge once: of the two triangles at an inner edge, one has it from its smaller index to its larger.
-  /// Without constraints, the hull's other edges are in the hull's own path. Edges inside the view are joined
-  /// to long trails, which takes half the characters of single segments.
+  /// Every edge once. Edges inside the view are joined to long trails, which takes half the characters of
+  /// single segments.
   void write_edges() {
-    if (mesh_.triangles.empty()) return;
-    const char* color = constraints_ == nullptr ? kEdgeColor : kInnerEdgeColor;
-    struct Neighbor {
-      std::int32_t vertex;
-      std::uint32_t edge;
-    };
-    std::vector<std::size_t> begin(point_count() + 1, 0);
-    std::size_t joined = 0;
-    const auto for_each_edge = [&](auto&& visit) {
-      for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-        const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[i % 3 == 2 ? i - 2 : i + 1];
-        if (v < w || is_border(i)) visit(v, w);
-      }
-    };
-    const auto shown_whole = [&](std::int32_t v, std::int32_t w) {
-      const Position &p = position(v), &q = position(w);
-      return inside(v) && inside(w) && (unit(p.x) != unit(q.x) || unit(p.y) != unit(q.y));
-    };
-    open_stroke("edges", color, line_width_);
-    for_each_edge([&](std::int32_t v, std::int32_t w) {
-      if (shown_whole(v, w)) {
+    std::vector<std::array<std::int32_t, 2>> edges;
+    std::vector<std::size_t> begin(points_ + 1, 0);  // of each point's edges in `around`
+    begin_edges("edges");
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[next(i)];
+      if (!is_drawn(i)) continue;
+      if (!inside(v) || !inside(w)) {
+        drawing_.edge(v, w);
+      } else if (!drawing_.is_same(drawing_.position(v), drawing_.position(w))) {
+        edges.push_back({v, w});
         ++begin[static_cast<std::size_t>(v) + 1];
         ++begin[static_cast<std::size_t>(w) + 1];
-        ++joined;
-      } else if (!inside(v) || !inside(w)) {
-        write_segment(v, w);
       }
-    });
+    }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Neighbor> neighbors(2 * joined);
-    std::vector<std::size_t> at(begin.begin(), begin.end() - 1);
-    std::uint32_t edge = 0;
-    for_each_edge([&](std::int32_t v, std::int32_t w) {
-      if (!shown_whole(v, w)) return;
-      neighbors[at[static_cast<std::size_t>(v)]++] = {w, edge};
-      neighbors[at[static_cast<std::size_t>(w)]++] = {v, edge};
-      ++edge;
-    });
-
+    std::vector<std::size_t> at(begin.begin(), begin.end() - 1), around(2 * edges.size());
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      for (const std::int32_t v : edges[e]) around[at[static_cast<std::size_t>(v)]++] = e;
+    }
     at.assign(begin.begin(), begin.end() - 1);
-    std::vector<bool> drawn(joined, false);
+    std::vector<bool> drawn(edges.size(), false);
     // The next edge at v that is not drawn yet; none at the end of v's list.
-    const auto next_edge = [&](std::size_t v) {
-      while (at[v] != begin[v + 1] && drawn[neighbors[at[v]].edge]) ++at[v];
+    const auto has_edge = [&](std::size_t v) {
+      while (at[v] != begin[v + 1] && drawn[around[at[v]]]) ++at[v];
       return at[v] != begin[v + 1];
     };
-    for (std::size_t v = 0; v < point_count(); ++v) {
-      while (next_edge(v)) {
-        if (++trails_ % kTrailsPerPath == 0) {
-          file_.print("\"/>\n");
-          open_stroke(fmt::format("edges-{}", trails_ / kTrailsPerPath).c_str(), color, line_width_);
+    std::size_t trails = 0;
+    for (std::size_t v = 0; v < points_; ++v) {
+      while (has_edge(v)) {
+        if (++trails % kTrailsPerPath == 0) {
+          drawing_.end_path();
+          begin_edges(fmt::format("edges-{}", trails / kTrailsPerPath));
         }
-        path_.move_to(unit(positions_[v].x), unit(positions_[v].y));
-        for (std::size_t from = v; next_edge(from);) {
-          const Neighbor& next = neighbors[at[from]];
-          drawn[next.edge] = true;
-          path_.line_to(unit(position(next.vertex).x), unit(position(next.vertex).y));
-          from = static_cast<std::size_t>(next.vertex);
+        drawing_.move_to(drawing_.positions()[v]);
+        for (std::size_t from = v; has_edge(from);) {
+          const std::size_t e = around[at[from]];
+          drawn[e] = true;
+          from = static_cast<std::size_t>(edges[e][0]) + static_cast<std::size_t>(edges[e][1]) - from;
+          drawing_.line_to(drawing_.positions()[from]);
         }
       }
     }
-    file_.print("\"/>\n");
+    drawing_.end_path();
   }
 
+  /// The hull of each set. Those of collinear points are closed too: they go back along the same line.
   void write_hull() {
     if (mesh_.hull.empty()) return;
-    open_stroke("hull", "#24405f", std::clamp(2.5 * line_width_, 1.0, 2.6));
-    for (std::size_t set = 0; set + 1 < mesh_.hull_offsets.size() || set == 0; ++set) {
-      const bool whole = mesh_.hull_offsets.size() < 2;
-      const std::size_t begin = whole ? 0 : mesh_.hull_offsets[set];
-      const std::size_t end = whole ? mesh_.hull.size() : mesh_.hull_offsets[set + 1];
-      // The hull of collinear points is closed too: it goes back along the same line.
-      for (std::size_t i = begin; i < end; ++i)
-        write_segment(mesh_.hull[i], mesh_.hull[i + 1 < end ? i + 1 : begin]);
+    begin_stroke("hull", "#24405f", std::clamp(2.5 * line_width_, 1.0, 2.6));
+    std::vector<std::size_t> offsets(mesh_.hull_offsets.begin(), mesh_.hull_offsets.end());
+    if (offsets.size() < 2) offsets = {0, mesh_.hull.size()};
+    for (std::size_t set = 0; set + 1 < offsets.size(); ++set) {
+      for (std::size_t i = offsets[set]; i < offsets[set + 1]; ++i) {
+        drawing_.edge(mesh_.hull[i], mesh_.hull[i + 1 < offsets[set + 1] ? i + 1 : offsets[set]]);
+      }
     }
-    file_.print("\"/>\n");
+    drawing_.end_path();
   }
 
   void write_constraints() {
-    open_stroke("constraints", kConstraintColor, std::clamp(2.8 * line_width_, 1.2, 3.0));
+    begin_stroke("constraints", "#c84c09", std::clamp(2.8 * line_width_, 1.2, 3.0));
     const std::vector<std::int32_t>& edges = constraints_->constraint_edges;
-    for (std::size_t e = 0; e < edges.size(); e += 2) write_segment(edges[e], edges[e + 1]);
-    file_.print("\"/>\n");
+    for (std::size_t e = 0; e < edges.size(); e += 2) drawing_.edge(edges[e], edges[e + 1]);
+    drawing_.end_path();
   }
 
   void write_dots() {
-    if (point_count() > kDotsUpTo) return;
     const double size = std::clamp(0.14 * typical_edge_, 2.0, 7.0);
-    const std::size_t added = constraints_ == nullptr ? 0 : constraints_->added_points.size() / 2;
-    write_dots("points", "#24405f", size, 0, point_count());
-    if (added > 0) write_dots("added", "#ffffff", 0.6 * size, point_count() - added, point_count());
+    write_dots("points", "#24405f", size, 0);
+    if (added_count() > 0) write_dots("added", "#ffffff", 0.6 * size, points_ - added_count());
   }
-  void write_dots(const char* name, std::string_view color, double size, std::size_t begin, std::size_t end) {
-    // A line of no length with round ends is a dot.
-    open_stroke(name, color, size);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!page_.contains(positions_[i])) continue;
-      path_.move_to(unit(positions_[i].x), unit(positions_[i].y));
-      file_.print("h0");
-    }
-    file_.print("\"/>\n");
+  void write_dots(const char* name, const char* color, double size, std::size_t begin) {
+    begin_stroke(name, color, size);
+    for (std::size_t i = begin; i < points_; ++i) drawing_.dot(drawing_.positions()[i]);
+    drawing_.end_path();
   }
 
   std::string caption() const {
-    std::string text = counted(point_count(), "point") + " · " + counted(triangle_count(), "triangle");
+    std::string text = counted(points_, "point") + " · " + counted(triangle_count(), "triangle");
     if (constraints_ == nullptr) {
       text += " · " + with_thousands(mesh_.hull.size()) + " on the hull";
     } else {
       text += " · " + counted(constraints_->constraint_edges.size() / 2, "constraint edge");
-      const std::size_t added = constraints_->added_points.size() / 2;
-      if (added > 0) text += " · " + counted(added, "point") + " added where segments cross";
+      if (added_count() > 0) text += " · " + counted(added_count(), "point") + " added where segments cross";
     }
     std::size_t duplicates = 0;
     for (std::size_t i = 0; i < mesh_.representatives.size(); ++i) {
       duplicates += mesh_.representatives[i] != static_cast<std::int32_t>(i);
     }
-    if (duplicates > 0) text += " · " + counted(duplicates, "duplicate");
-    return text;
+    return duplicates > 0 ? text + " · " + counted(duplicates, "duplicate") : text;
   }
 
-  /// Trails per path element: viewers draw several short paths faster than a long one.
-  static constexpr std::size_t kTrailsPerPath = 500;
-
-  OutputFile& file_;
-  PathData path_;
-  const Points& points_;
+  const std::size_t points_;
   const Triangulation& mesh_;
   const ConstrainedTriangulation* constraints_;
   const FillRule fill_rule_;
-  const Page page_;
-  const std::vector<Position>& positions_ = page_.positions();
-  const double width_ = page_.width(), height_ = page_.height();
-  double typical_edge_ = 0;  // pixels
-  double units_ = 1;         // whole-number coordinates per pixel
-  double line_width_ = 1;    // pixels
-  std::size_t trails_ = 0;
-  std::vector<Position> polygon_;  // of write_triangle, kept for its memory
+  Drawing drawing_;
+  double typical_edge_ = 0, line_width_ = 1;      // pixels
+  double units_ = 1;                              // whole-number coordinates per pixel
+  double middle_area_ = 0, spread_of_areas_ = 1;  // of their logarithms
 };
 
 }  // namespace
 
 void write_svg(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  Picture(outputs.open(path), contents.points, contents.mesh, contents.constrained, contents.fill_rule)
-      .write();
+  Picture(outputs.open(path), contents).write();
 }
 
 }  // namespace flaunay::io
