@@ -19,7 +19,7 @@ using namespace statistics;
 namespace {
 
 // Bytes per input point that the arenas reserve, which are enough for points in general position
-// (docs/performance.md). If an input needs more, the arenas allocate further blocks.
+// (docs/performance-history.md). If an input needs more, the arenas allocate further blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 54;
 constexpr std::size_t kStateBytesPerPoint = 37;  // needed twice: for the current level and for the next one
 constexpr std::size_t kScratchBytesPerPoint = 118;
