@@ -624,14 +624,6 @@ class DeviceTriangulation(DeviceHandle):
             for name, (dtype, row, columns, _) in _TRIANGULATION.items()
         }
 
-    @property
-    def sizes(self) -> tuple[int, int]:
-        """The numbers of points and of triangles."""
-        return (
-            library.device_triangulation_point_count(self.pointer),
-            library.device_triangulation_triangle_count(self.pointer),
-        )
-
     def _offsets(self, address: Optional[int]) -> _Offsets:
         # A copy: the caller keeps the offsets for longer than the buffers.
         sets = library.device_triangulation_set_count(self.pointer)

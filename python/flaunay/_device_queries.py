@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
@@ -59,13 +59,10 @@ class DeviceLocator:
         Complete when the points and the triangulation have been read.
     """
 
-    def __init__(
-        self, call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceTriangulation
-    ) -> None:
-        triangulator = _triangulators.of_queue(call.queue)
-        self._handle: Optional[_calls.DeviceLocator]
-        self._handle, self.event = call.run(_calls.DeviceLocator, triangulator, points, mesh)
-        self.npoints, _ = mesh.sizes
+    def __init__(self, handle: _calls.DeviceLocator, npoints: int, event: pyopencl.Event) -> None:
+        self._handle: Optional[_calls.DeviceLocator] = handle
+        self.npoints = npoints
+        self.event = event
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
 from flaunay._cells import ClippedVoronoi, as_iterations, corners_of
-from flaunay._device_arrays import DeviceCall, queue_for, view
+from flaunay._device_arrays import DeviceCall, queue_for
 
 if TYPE_CHECKING:
     import pyopencl
@@ -81,33 +81,6 @@ class DeviceClippedVoronoi:
             self.centroids.get(),
             self.bounds,
         )
-
-
-def voronoi(
-    call: DeviceCall, points: _calls.DevicePoints, mesh: _calls.DeviceTriangulation
-) -> DeviceVoronoi:
-    """As `DeviceTriangulation.voronoi` says."""
-    triangulator = _triangulators.of_queue(call.queue)
-    result, event = call.run(_calls.DeviceVoronoi, triangulator, points, mesh)
-    n, triangles = mesh.sizes
-    places = result.arrays(triangle=triangles, corner=3 * triangles, point=n, point_offset=n + 1)
-    made = {name: view(*place, call.queue, event) for name, place in places.items()}
-    return DeviceVoronoi(vertices=made.pop("circumcentres"), **made, event=event)
-
-
-def clipped_voronoi(
-    call: DeviceCall,
-    points: _calls.DevicePoints,
-    mesh: _calls.DeviceTriangulation,
-    corners: npt.NDArray[np.float64],
-) -> DeviceClippedVoronoi:
-    """As `DeviceTriangulation.clipped_voronoi` says."""
-    triangulator = _triangulators.of_queue(call.queue)
-    result, event = call.run(_calls.DeviceClippedVoronoi, triangulator, points, mesh, corners)
-    n, _ = mesh.sizes
-    places = result.arrays(vertex=result.vertex_count, point=n, point_offset=n + 1)
-    made = {name: view(*place, call.queue, event) for name, place in places.items()}
-    return DeviceClippedVoronoi(**made, bounds=corners, event=event)
 
 
 def relax_device(

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _device_voronoi, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import names_of, summary
 from flaunay._cells import corners_of
 from flaunay._device_arrays import DeviceCall, Offsets, import_pyopencl, queue_for, view
@@ -21,6 +21,8 @@ from flaunay._triangulation import Triangulation
 if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
+
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,8 +126,8 @@ class DeviceTriangulation:
         >>> locator.nearest(cl.array.to_device(queue, np.array([[1, 3], [9, 9.0]])))
         cl.Array([3, 2], dtype=int32)
         """
-        call, points = self._begin("a locator", queue, wait_for)
-        return DeviceLocator(call, points, self._mesh)
+        handle, _, event = self._run(_calls.DeviceLocator, "a locator", queue, wait_for)
+        return DeviceLocator(handle, int(self.points.shape[0]), event)
 
     def voronoi(
         self,
@@ -160,8 +162,11 @@ class DeviceTriangulation:
         >>> tri.voronoi().vertices
         cl.Array([[1., 1.]])
         """
-        call, points = self._begin("a Voronoi diagram", queue, wait_for)
-        return _device_voronoi.voronoi(call, points, self._mesh)
+        made, own, event = self._run(_calls.DeviceVoronoi, "a Voronoi diagram", queue, wait_for)
+        n, m = int(self.points.shape[0]), int(self.triangle_offsets[-1])
+        places = made.arrays(triangle=m, corner=3 * m, point=n, point_offset=n + 1)
+        views = {name: view(*place, own, event) for name, place in places.items()}
+        return DeviceVoronoi(vertices=views.pop("circumcentres"), **views, event=event)
 
     def clipped_voronoi(
         self,
@@ -205,16 +210,25 @@ class DeviceTriangulation:
         16.0
         """
         corners = corners_of(bounds)
-        call, points = self._begin("a Voronoi diagram", queue, wait_for)
-        return _device_voronoi.clipped_voronoi(call, points, self._mesh, corners)
+        work, what = _calls.DeviceClippedVoronoi, "a Voronoi diagram"
+        made, own, event = self._run(work, what, queue, wait_for, corners)
+        n = int(self.points.shape[0])
+        places = made.arrays(vertex=made.vertex_count, point=n, point_offset=n + 1)
+        views = {name: view(*place, own, event) for name, place in places.items()}
+        return DeviceClippedVoronoi(**views, bounds=corners, event=event)
 
-    def _begin(
+    def _run(
         self,
+        work: Callable[..., _Result],
         what: str,
         queue: Optional[pyopencl.CommandQueue],
         wait_for: Optional[Sequence[pyopencl.Event]],
-    ) -> tuple[DeviceCall, _calls.DevicePoints]:
-        """A call that reads the triangulation, and its points. what: what it makes, for errors."""
+        *given: Any,
+    ) -> tuple[_Result, pyopencl.CommandQueue, pyopencl.Event]:
+        """What a call makes of the points, the triangulation and what is given, its queue and its event.
+
+        what: what it makes, for errors.
+        """
         arrays = {name: getattr(self, name) for name in ("neighbors", "hull", "representatives")}
         missing = [name for name, array in arrays.items() if array is None]
         if missing:
@@ -225,7 +239,10 @@ class DeviceTriangulation:
         own = self._queue if queue is None else queue
         call = DeviceCall(queue_for(self.points, own, "points"), wait_for)
         call.reads(self.triangles, *arrays.values())
-        return call, call.points(self.points, None, "points")
+        points = call.points(self.points, None, "points")
+        triangulator = _triangulators.of_queue(call.queue)
+        result, event = call.run(work, triangulator, points, self._mesh, *given)
+        return result, call.queue, event
 
 
 def triangulate_device(

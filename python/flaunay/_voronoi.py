@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _cells, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
+from flaunay._cells import ClippedVoronoi, clip
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._plot import Bounds, draw_voronoi
@@ -204,7 +205,7 @@ class Voronoi:
         has_cell = np.diff(self.cell_offsets)[representatives] > 0
         return frozen(np.where(has_cell, representatives, -1).astype(np.intp))
 
-    def clipped(self, bounds: Any) -> _cells.ClippedVoronoi:
+    def clipped(self, bounds: Any) -> ClippedVoronoi:
         """The cells, clipped to a box or a convex polygon.
 
         Parameters
@@ -238,7 +239,7 @@ class Voronoi:
         >>> len(cells.polygon(0))
         4
         """
-        return _cells.clip(self.delaunay, bounds)
+        return clip(self.delaunay, bounds)
 
     def plot(
         self,
