@@ -48,6 +48,7 @@ class Mesh(Triangles, Protocol):
     edges: Indices
     edge_lengths: Doubles
     edge_simplices: Indices
+    _edge_order: tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
     vertex_neighbor_vertices: tuple[Indices, Indices]
 
 

@@ -156,6 +156,7 @@ class Delaunay:
     edges = cached_property(_graphs.edges)
     edge_lengths = cached_property(_graphs.edge_lengths)
     edge_simplices = cached_property(_graphs.edge_simplices)
+    _edge_order = cached_property(_graphs.edge_order)
     is_gabriel = cached_property(_graphs.is_gabriel)
     vertex_neighbor_vertices = cached_property(_graphs.vertex_neighbor_vertices)
     spanning_tree = cached_property(_graphs.spanning_tree)

@@ -96,6 +96,15 @@ def edge_lengths(tri: Mesh) -> Doubles:
     return frozen(_lengths(tri.points, tri.edges))
 
 
+def edge_order(tri: Mesh) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """A triangle that has each of the edges, and its corner opposite to the edge."""
+    # Of two triangles the one of the larger index; -1 is the smallest.
+    triangle, corner = np.nonzero(tri.neighbors < np.arange(len(tri.simplices))[:, None])
+    ends = [tri.simplices[triangle, (corner + k) % 3].astype(np.int64) for k in (1, 2)]
+    order = np.argsort(np.minimum(*ends) * len(tri.points) + np.maximum(*ends))
+    return triangle[order], corner[order]
+
+
 def edge_simplices(tri: Mesh) -> Indices:
     """The two simplices at each of `edges`, int32, shape (e, 2); the first is -1 on the hull.
 
@@ -109,11 +118,7 @@ def edge_simplices(tri: Mesh) -> Indices:
     """
     if len(tri.simplices) == 0:
         return frozen(np.full(tri.edges.shape, -1, np.int32))
-    # Of two triangles the one of the larger index has the edge; -1 is the smallest.
-    triangle, corner = np.nonzero(tri.neighbors < np.arange(len(tri.simplices))[:, None])
-    ends = [tri.simplices[triangle, (corner + k) % 3].astype(np.int64) for k in (1, 2)]
-    order = np.argsort(np.minimum(*ends) * len(tri.points) + np.maximum(*ends))
-    triangle, corner = triangle[order], corner[order]
+    triangle, corner = tri._edge_order
     sides = [tri.neighbors[triangle, corner], triangle.astype(np.int32)]
     return frozen(np.stack(sides, axis=1))
 
@@ -259,13 +264,10 @@ def is_gabriel(tri: Mesh) -> Mask:
         return frozen(np.ones(len(tri.edges), np.bool_))
     # Of all points, a corner opposite to the edge is first in its disc, if any is.
     acute = _calls.angles(tri.points, tri.simplices) > 0
-    first, second = tri.edges.T[:, :, None]
-    gabriel = np.ones(len(tri.edges), np.bool_)
-    for side in tri.edge_simplices.T:
-        corners = tri.simplices[side]
-        is_opposite = (corners != first) & (corners != second)
-        gabriel &= (side < 0) | (acute[side] & is_opposite).any(axis=1)
-    return frozen(gabriel)
+    triangle, corner = tri._edge_order
+    beyond = tri.neighbors[triangle, corner]
+    is_back = tri.neighbors[beyond] == triangle[:, None]
+    return frozen(acute[triangle, corner] & ((beyond < 0) | (acute[beyond] & is_back).any(axis=1)))
 
 
 def spanning_tree(tri: Mesh) -> Indices:
