@@ -131,7 +131,7 @@ def main():
                 if not np.array_equal(rows(found), rows(whole)):
                     fail(f"{name}: other triangles or neighbours")
 
-            for file in ("p.npy", "p.bin") if options.mpi else ():
+            for file in ("p.npy", "p.bin", "p.las") if options.mpi else ():
                 size = ["--round-points", str(int(rng.integers(max(1, n // 20), n + 2)))]
                 code, found = run(options.mpi, folder, file, size)
                 if code != 0:
@@ -148,7 +148,7 @@ def main():
                 elif found != first:
                     fail(f"{file}: other bytes than from p.npy")
             left = sorted(path.name for path in folder.iterdir())
-            if any(entry.startswith(".") for entry in left):
+            if any(entry.startswith(".") or entry.endswith(".partial") for entry in left):
                 fail(f"left behind: {left}")
             case += 1
     print(f"{case} sets of points in 6 formats are the same in chunks as in memory (seed {options.seed})")
