@@ -128,9 +128,7 @@ int assemble(const AssembleRequest& request) {
 
   Options options;
   ask_for(request.results, options);
-  options.progress = [&progress](const std::string& stage, int level, double done) {
-    progress.update(stage, level, done);
-  };
+  options.progress = progress.callback();
   research::Triangulation mesh;
   static_cast<Triangulation&>(mesh) = put_together(points, partition, solutions, reader, paths, options);
 

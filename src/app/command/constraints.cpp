@@ -115,9 +115,7 @@ ConstrainedOptions options_of(const ConstrainedWork& work, const ConstraintReque
   options.outside = request.outside;
   options.fill_rule = request.fill;
   options.labels = wants_labels(work, request);
-  options.progress = [&progress](const std::string& stage, int level, double done) {
-    progress.update(stage, level, done);
-  };
+  options.progress = progress.callback();
   return options;
 }
 

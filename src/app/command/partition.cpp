@@ -34,10 +34,8 @@ research::Partition compute(const PartitionRequest& request, const io::Points& p
   research::Options options;
   options.cut = request.cut;
   options.hull = request.dividing_paths;
-  options.progress = [&progress](const std::string& stage, int level, double done) {
-    progress.update(stage, level, done);
-  };
-  progress.update_slow("preparing the device", "compiling kernels, cached for next time");
+  options.progress = progress.callback();
+  progress.update_slow("preparing the device", kCompiling);
   const Stopwatch stopwatch;
   Triangulator triangulator(request.device);
   facts.opening_seconds = stopwatch.seconds();

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -22,6 +23,10 @@ class Progress {
   /// level: -1 if the stage has none; done: the finished share from 0 to 1, or -1 if it is unknown. If it
   /// grows for some seconds, the line says about how long the rest takes.
   void update(const std::string& stage, int level = -1, double done = -1);
+  /// update as a function, for the options of calls.
+  std::function<void(const std::string& stage, int level, double done)> callback() {
+    return [this](const std::string& stage, int level, double done) { update(stage, level, done); };
+  }
   /// For a stage that needs an explanation only if it takes longer: `if_slow` is shown after half a second.
   void update_slow(const std::string& stage, const std::string& if_slow);
   /// Clears the line and stops drawing. The destructor does this too.

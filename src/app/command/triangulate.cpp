@@ -135,9 +135,7 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
   options.count = request.count;
   options.partition_levels = request.partition_levels;
   options.threads = request.threads;
-  options.progress = [&progress](const std::string& stage, int level, double done) {
-    progress.update(stage, level, done);
-  };
+  options.progress = progress.callback();
   return options;
 }
 
