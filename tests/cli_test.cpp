@@ -1456,7 +1456,10 @@ TEST_F(CommandPartitionTest, NothingIsReplacedUnlessForced) {
                {"partition", path("missing.npy"), "--levels", "1", "-o", path("p"), "--force"});
   EXPECT_EQ(folder(), before);
   write_file(path("p/notes.txt"), "precious");
+  // The solution of a region that will not be there. What it links to is no part of the partition.
+  fs::create_symlink("notes.txt", path("p/region-00003.ele"));
   run_well({"partition", path("points.npy"), "--levels", "1", "-o", path("p"), "--force"});
+  EXPECT_EQ(contents(path("p/notes.txt")), "precious");
   EXPECT_EQ(folder(),
             (std::vector<std::string>{"finished.npy", "notes.txt", "partition.json", "region-00000.node",
                                       "region-00000.poly", "region-00001.node", "region-00001.poly"}));

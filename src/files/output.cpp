@@ -36,7 +36,7 @@ std::string followed(std::string path) {
 std::string name_beside(const Target& target, const char* what) {
   static const unsigned process = std::random_device()();
   constexpr std::size_t kLongest = 200;  // of the 255 bytes that a name may have
-  std::string name = target.path.substr(target.folder == "./" ? 0 : target.folder.size());
+  std::string name = target.path.substr(target.path.find_last_of('/') + 1);
   if (name.size() > kLongest) {
     name = fmt::format("{}-{:x}", name.substr(0, kLongest), std::hash<std::string>()(name));
   }
@@ -190,7 +190,9 @@ void Outputs::commit() {
   const Uninterrupted until_placed;
   for (const auto& file : files_) file->close();
   try {
-    for (const std::string& path : removed_) keep_old(path, find_target(path), /* is_removed */ true);
+    for (const std::string& path : removed_) {
+      keep_old(path, {path, path.substr(0, path.find_last_of('/') + 1)}, /* is_removed */ true);
+    }
     for (const auto& file : files_) {
       if (!file->target_.is_direct) place(*file);
     }

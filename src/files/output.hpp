@@ -86,7 +86,7 @@ class Outputs {
   void announce(const std::string& path);
   /// A file that was announced, or else a new one. The reference is valid until commit.
   OutputFile& open(const std::string& path);
-  /// An old file that commit removes.
+  /// An old file, or a link to one, that commit removes. No output of this run may have the path.
   void remove(const std::string& path) { removed_.push_back(path); }
 
   /// Writes and closes the files that were opened, so that there may be more than the system keeps open.

@@ -730,17 +730,19 @@ TEST_F(IoTest, IfOneOutputFailsAllStayAsTheyWere) {
 TEST_F(IoTest, OldFilesAreRemovedWithTheCommit) {
   write("removed", "old");
   write("replaced", "old");
+  write("linked", "old");
+  std::filesystem::create_symlink("linked", path("link"));
   Outputs outputs;
   outputs.remove(path("removed"));
-  outputs.remove(path("replaced"));
+  outputs.remove(path("link"));
   outputs.open(path("replaced")).print("new");
   outputs.close();
   outputs.open(path("last")).print("last");
   outputs.write_out();
   EXPECT_EQ(read(path("replaced")) + read(path("removed")), "oldold");
   outputs.commit();
-  EXPECT_EQ(names(), (std::set<std::string>{"replaced", "last"}));
-  EXPECT_EQ(read(path("replaced")) + read(path("last")), "newlast");
+  EXPECT_EQ(names(), (std::set<std::string>{"replaced", "last", "linked"}));
+  EXPECT_EQ(read(path("replaced")) + read(path("last")) + read(path("linked")), "newlastold");
 }
 
 TEST(PrintableTest, EscapesWhatATerminalWouldObey) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -143,13 +144,18 @@ void announce_partition(io::Outputs& outputs, const std::string& folder) {
 
 void write_partition(io::Outputs& outputs, const std::string& folder, const io::Points& points,
                      const research::Partition& partition, const PartitionFacts& facts) {
-  for (const fs::path& old : partition_files(folder)) outputs.remove(old.string());
+  std::set<std::string> old;  // without those that are replaced
+  for (const fs::path& file : partition_files(folder)) old.insert(file.string());
   for (std::size_t r = 0; r < partition.regions.size(); ++r) {
-    io::write_region(outputs, region_stem(folder, r), points, partition.regions[r]);
+    const std::string stem = region_stem(folder, r);
+    io::write_region(outputs, stem, points, partition.regions[r]);
     outputs.close();
+    for (const char* ending : {".node", ".poly"}) old.erase(stem + ending);
   }
   io::write_npy_indices(outputs, inside(folder, kFinished), partition.triangles, 3);
   outputs.open(inside(folder, kDescription)).print("{}", description(partition, facts));
+  for (const char* name : {kFinished, kDescription}) old.erase(inside(folder, name));
+  for (const std::string& path : old) outputs.remove(path);
 }
 
 PartitionReader::PartitionReader(const std::string& folder) : folder_(folder) {
