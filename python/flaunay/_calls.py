@@ -30,6 +30,7 @@ _Offsets = npt.NDArray[np.int64]
 
 __version__: str = text_of(library.version())
 
+_ARRAY = np.ndarray
 _INT32, _INT64 = np.dtype(np.int32), np.dtype(np.int64)
 _FLOAT64, _FLOAT32 = np.dtype(np.float64), np.dtype(np.float32)
 _BOOL, _UINT8 = np.dtype(np.bool_), np.dtype(np.uint8)
@@ -152,7 +153,7 @@ def _address_or_none(array: Optional[npt.NDArray[Any]]) -> Optional[int]:
 
 def _as_arguments(given: tuple[Any, ...]) -> list[Any]:
     """Arrays by their addresses, everything else as ctypes takes it."""
-    return [_address_of(one) if type(one) is np.ndarray else one for one in given]
+    return [_address_of(one) if type(one) is _ARRAY else one for one in given]
 
 
 def _call_with_mesh(function: Any, *arguments: Any) -> None:
@@ -1023,10 +1024,11 @@ class Locator(_Locator):
             gradients = _as_doubles(gradients)
             options.gradients = _address_of(gradients)
         results = np.empty((m, values.shape[1]))
-        self._triangulator.call(
-            library.locator_interpolate_with,
-            *(self.pointer, values, queries, m, None, 0, options, results),
-        )
+        first, at, out = _address_of(values), _address_of(queries), _address_of(results)
+        with self._triangulator.turn:
+            check(
+                library.locator_interpolate_with(self.pointer, first, at, m, None, 0, options, out)
+            )
         return results
 
     def gradients(self, values: _Doubles, tolerance: float, iterations: int) -> _Doubles:
