@@ -1,4 +1,4 @@
-# cmake -DOUTPUT=embedded.cpp -DDIRECTORY=kernels "-DFILES=a.cl;shared/b.h" -P embed.cmake
+# cmake -DOUTPUT=embedded.cpp -DDIRECTORY=kernels "-DFILES=a.cl;blocks/b.h" -P embed.cmake
 set(CODE "#include \"kernels/embedded.hpp\"\n\nnamespace flaunay {\nnamespace {\n")
 set(TABLE "")
 set(INDEX 0)

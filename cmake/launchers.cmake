@@ -6,7 +6,7 @@
 # file that is built: the file itself, or the one that includes it.
 #
 # It understands the forms that our kernel files use: signatures `kernel void name(arguments)` without macros other than
-# COUNTERS (shared/counting.h), which Runtime sets; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
+# COUNTERS (operations/counting.h), which Runtime sets; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
 #
 # With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp).
 cmake_policy(VERSION 3.25)
@@ -28,7 +28,7 @@ set(CPP_int4 cl_int4)
 set(CPP_uint2 cl_uint2)
 set(CPP_uint8 cl_uint8)
 set(CPP_double2 cl_double2)
-# Of shared/numbers.h; in fixed point they are 64-bit integers, of as many bytes.
+# Of arithmetic/numbers.h; in fixed point they are 64-bit integers, of as many bytes.
 set(CPP_coordinate cl_double)
 set(CPP_coordinate2 cl_double2)
 set(CPP_filter_bound cl_float)

@@ -27,7 +27,7 @@ enum class Form {
   Plain,       ///< no such arguments
   PerElement,  ///< the number of elements; there is one work-item per element
   PerChunk,    ///< the number of elements and the chunk size; there is one work-item per chunk
-  ArgReduce,   ///< the arguments of kernels/shared/segmented_arg_reduce.h
+  ArgReduce,   ///< the arguments of kernels/operations/segmented_arg_reduce.h
 };
 
 /// An array that a kernel reads. The launcher keeps it alive.

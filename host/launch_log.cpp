@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "shared/counting.h"
+#include "operations/counting.h"
 
 namespace flaunay::host {
 

@@ -32,7 +32,7 @@ class LaunchLog {
   LaunchLog(MemorySource memory, bool counts_steps);
 
   bool counts_steps() const { return counts_steps_; }
-  /// Kernels count here (kernels/shared/counting.h).
+  /// Kernels count here (kernels/operations/counting.h).
   const Buffer<cl_uint>& counters() const { return counters_; }
 
   void add(Launch launch) { launches_.push_back(std::move(launch)); }

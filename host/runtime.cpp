@@ -19,7 +19,7 @@
 #include "host/program_cache.hpp"
 #include "host/system_memory.hpp"
 #include "kernels/embedded.hpp"
-#include "shared/counting.h"
+#include "operations/counting.h"
 
 namespace flaunay::host {
 namespace {

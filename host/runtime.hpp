@@ -293,7 +293,7 @@ class Runtime {
   void note_spread(std::size_t spread) { spread_ = spread; }
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
-  /// counters as their last argument; see kernels/shared/counting.h. An empty buffer ends this.
+  /// counters as their last argument; see kernels/operations/counting.h. An empty buffer ends this.
   void set_counters(const Buffer<cl_uint>& counters);
   /// The times per kernel since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();

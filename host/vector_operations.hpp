@@ -38,8 +38,8 @@ void add_count(Runtime& runtime, const Buffer<cl_uint>& count, const Buffer<cl_u
 void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads,
                  std::size_t n);
 
-/// Finds the best element of each segment by a kernel that is made with shared/segmented_arg_reduce.h. Passes
-/// are repeated until a single chunk is left. The kernel's result must hold a negative value for every
+/// Finds the best element of each segment by a kernel that is made with operations/segmented_arg_reduce.h.
+/// Passes are repeated until a single chunk is left. The kernel's result must hold a negative value for every
 /// segment before. Temporary memory: a few values per chunk.
 template <typename Kernel>
 void segmented_arg_reduce(Runtime& runtime, std::size_t n, const Kernel& kernel) {

@@ -1,5 +1,5 @@
-// What kernel files use of OpenCL C beyond the text that kernels and host share (kernels/shared/language.h),
-// for kernel files that are compiled as C++.
+// What kernel files use of OpenCL C beyond the text that kernels and host share
+// (kernels/arithmetic/language.h), for kernel files that are compiled as C++.
 #pragma once
 
 #include <climits>
@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "host/native/function.hpp"
-// Kernels do not count what they do, see shared/counting.h.
+// Kernels do not count what they do, see operations/counting.h.
 #define FLAUNAY_NATIVE_KERNELS
-#include "shared/language.h"
+#include "arithmetic/language.h"
 
 namespace flaunay::kernel {
 
@@ -59,7 +59,7 @@ inline int atomic_cmpxchg(volatile int* at, int expected, int value) {
   __atomic_compare_exchange_n(at, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
   return expected;
 }
-// Of what other work-items change meanwhile; see shared/meanwhile.h.
+// Of what other work-items change meanwhile; see constrained/meanwhile.h.
 inline int read_shared(const volatile int* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
 inline uint read_shared(const volatile uint* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
 inline void write_shared(volatile int* at, int value) { __atomic_store_n(at, value, __ATOMIC_RELAXED); }

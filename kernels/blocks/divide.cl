@@ -2,16 +2,16 @@
 //
 // solve_blocks is one launch; each work-item takes one block after the other. It sorts the block's points along x and
 // along y, drops duplicates, cuts the block in halves down to leaves of one to four vertices, each time across the
-// longer interquartile range, and merges from the leaves up (shared/rings.h). Vertices are numbered in the order of the
+// longer interquartile range, and merges from the leaves up (mesh/rings.h). Vertices are numbered in the order of the
 // leaves, so what a merge touches lies together. merge_blocks merges the two triangulations on either side of the cut
 // of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
 
+#include "blocks/halving.h"
+#include "blocks/rings_account.h"
+#include "mesh/rings.h"
+#include "operations/prefetch.h"
+#include "points/cut_tree.h"
 #include "shared/codes.h"
-#include "shared/cut_tree.h"
-#include "shared/halving.h"
-#include "shared/prefetch.h"
-#include "shared/rings.h"
-#include "shared/rings_account.h"
 
 #define MOST_DEPTH 32
 #define FETCHED_VERTICES_AHEAD 256

@@ -1,6 +1,6 @@
 // Makes the edge rings of cocircular points canonical: their polygons become fans from their first vertices along x.
 //
-// Merges leave such polygons as they meet them (shared/rings.h): a merge of two fans would rebuild one of them. These
+// Merges leave such polygons as they meet them (mesh/rings.h): a merge of two fans would rebuild one of them. These
 // passes follow the last merge. They do nothing if there were no ties, by the account of the merges:
 // 1. find_inside, with one work-item per pair of edges, marks the edges inside of polygons; find_inside_exactly decides
 //    what floating point could not.
@@ -11,9 +11,9 @@
 // 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes nothing but what lies
 //    inside of one polygon.
 
+#include "mesh/rings.h"
+#include "operations/prefetch.h"
 #include "shared/codes.h"
-#include "shared/prefetch.h"
-#include "shared/rings.h"
 
 // The third corner of the triangle left of edge e; NO_VERTEX if there is no such triangle. (For a set whose hull has
 // three corners that is also the third of them, seen from outside.)

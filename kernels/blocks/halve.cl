@@ -1,5 +1,5 @@
 // The first half of solving blocks on devices with many lanes: each block's points are sorted along x and along y,
-// duplicates are dropped, and what is left is cut in halves down to leaves (shared/halving.h), exactly as solve_blocks
+// duplicates are dropped, and what is left is cut in halves down to leaves (blocks/halving.h), exactly as solve_blocks
 // of blocks/divide.cl does. blocks/merge.cl does the rest.
 //
 // name_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
@@ -12,12 +12,12 @@
 // If most blocks are tiny, halve_tiny_blocks, per block, does those of at most TINY_BLOCK points; flag_larger_blocks
 // and a scan list the others for the groups of halve_blocks.
 
-#include "shared/halving.h"
+#include "blocks/halving.h"
+#include "mesh/rings.h"
+#include "operations/search.h"
+#include "operations/work_group.h"
+#include "predicates/order.h"
 #include "shared/limits.h"
-#include "shared/order.h"
-#include "shared/rings.h"
-#include "shared/search.h"
-#include "shared/work_group.h"
 
 // A block's own arrays, which begin at its place in those of all points.
 typedef struct {

@@ -1,5 +1,5 @@
-// The second half of solving blocks on devices with many lanes: leaves and merges, see shared/halves.h and
-// shared/rings.h. What meets a predicate that floating point cannot decide stops there, so that no exact predicates
+// The second half of solving blocks on devices with many lanes: leaves and merges, see blocks/halves.h and
+// mesh/rings.h. What meets a predicate that floating point cannot decide stops there, so that no exact predicates
 // take registers here; blocks/merge_exact.cl continues it.
 //
 // There is a launch of merge_parts per height, the first of which makes the leaves of all blocks, and then one of
@@ -8,9 +8,9 @@
 // that continue merges have the same arguments; the account is theirs alone.
 
 #define RINGS_STOP
-#include "shared/cut_tree.h"
-#include "shared/halves.h"
-#include "shared/work_group.h"
+#include "blocks/halves.h"
+#include "operations/work_group.h"
+#include "points/cut_tree.h"
 
 kernel void merge_parts(int n, int spread, int height, int places, global const int* restrict offsets,
                         global const int* restrict distinct, global const int* restrict block_of_place,

@@ -4,11 +4,11 @@
 
 // Compiled in half the time, and these are called rarely.
 #define OUT_OF_LINE __attribute__((noinline))
-#include "shared/cut_tree.h"
-#include "shared/halves.h"
-#include "shared/rings_account.h"
-#include "shared/seams.h"
-#include "shared/work_group.h"
+#include "blocks/halves.h"
+#include "blocks/rings_account.h"
+#include "blocks/seams.h"
+#include "operations/work_group.h"
+#include "points/cut_tree.h"
 
 kernel void finish_parts(int n, int spread, int height, int places, global const int* restrict offsets,
                          global const int* restrict distinct, global const int* restrict block_of_place,

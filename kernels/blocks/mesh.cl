@@ -1,4 +1,4 @@
-// Edge rings (shared/rings.h) to triangles, neighbours and hulls.
+// Edge rings (mesh/rings.h) to triangles, neighbours and hulls.
 //
 // A triangle belongs to its middle vertex along x. A vertex is the middle one of two triangles, the one right below it
 // and the one right above; on the lower hull it has only the one above, on the upper hull only the one below, and the
@@ -7,10 +7,10 @@
 // outside and subtracts the rows that hull vertices do not have. After a scan, write_triangles, write_neighbors and
 // write_halfedges are one pass each over pairs of edges. write_hulls walks the hulls again.
 
-#include "shared/halfedges.h"
-#include "shared/prefetch.h"
-#include "shared/rings.h"
-#include "shared/rows.h"
+#include "blocks/rows.h"
+#include "mesh/halfedges.h"
+#include "mesh/rings.h"
+#include "operations/prefetch.h"
 
 kernel void vertex_triangles(int n, global const int* restrict vertex_edge, global uint* restrict counts) {
   const int v = get_global_id(0);

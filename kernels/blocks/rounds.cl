@@ -1,10 +1,10 @@
 // Rounds of blocks: what is final in the blocks' triangulations is emitted, and the points around which something is
 // missing go on to the next round, in other blocks.
 //
-// A triangle is final if its circumcircle lies within the block's rectangle (shared/certify.h): then it is one of the
+// A triangle is final if its circumcircle lies within the block's rectangle (blocks/certify.h): then it is one of the
 // triangulation of all points of the round. These are the points that are not done yet, so that triangulation also has
 // triangles that cover what was emitted in rounds before; they are told from those still missing by the open sectors at
-// one of their vertices (shared/open_sectors.h). The outside is emitted likewise, hull edge by hull edge.
+// one of their vertices (blocks/open_sectors.h). The outside is emitted likewise, hull edge by hull edge.
 //
 // Each round, when the blocks are solved:
 // 1. In the first round, box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box
@@ -21,15 +21,15 @@
 //    many follow each; write_hull writes them in order.
 // measure_open and measure_sets tell the host how large the sets' parts are.
 
-#include "shared/certify.h"
-#include "shared/coordinates.h"
-#include "shared/cut_tree.h"
-#include "shared/halfedges.h"
+#include "arithmetic/coordinates.h"
+#include "blocks/certify.h"
+#include "blocks/open_sectors.h"
+#include "blocks/rows.h"
+#include "mesh/halfedges.h"
+#include "mesh/rings.h"
+#include "operations/search.h"
+#include "points/cut_tree.h"
 #include "shared/limits.h"
-#include "shared/open_sectors.h"
-#include "shared/rings.h"
-#include "shared/rows.h"
-#include "shared/search.h"
 
 static inline vertex_box joined_boxes(vertex_box a, vertex_box b) {
   vertex_box both;

@@ -1,9 +1,9 @@
-// Merges of large halves on devices with many lanes, from both ends of their seam at once: see shared/seams.h. A launch
+// Merges of large halves on devices with many lanes, from both ends of their seam at once: see blocks/seams.h. A launch
 // of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
 // cross the seam and mark those that go. Walks that stopped are done again by finish_walks of blocks/merge_exact.cl; in
 // fixed point none stops, since exact predicates of integers take few registers and no stack to speak of. A launch of
 // sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
-// in the rings. Each is one pass over what begins in the cells of that height (shared/halves.h).
+// in the rings. Each is one pass over what begins in the cells of that height (blocks/halves.h).
 //
 // Walks that do not meet would be an error of the program. Such halves stay as they are, which is safe for all later
 // kernels, and the account tells the host.
@@ -11,11 +11,11 @@
 #ifndef FIXED_POINT
 #define RINGS_STOP
 #endif
+#include "blocks/halves.h"
+#include "blocks/rings_account.h"
+#include "blocks/seams.h"
+#include "operations/work_group.h"
 #include "shared/codes.h"
-#include "shared/halves.h"
-#include "shared/rings_account.h"
-#include "shared/seams.h"
-#include "shared/work_group.h"
 
 kernel void walk_seams(int n, int spread, int height, int places, global const int* restrict offsets,
                        global const int* restrict distinct, global const int* restrict block_of_place,

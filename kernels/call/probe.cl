@@ -2,7 +2,7 @@
 // launch, to wait for a load that needs the one before, and to compute with a result that was just computed. One pass
 // each.
 
-#include "shared/language.h"
+#include "arithmetic/language.h"
 
 kernel void do_nothing(int n, global int* restrict ends) {
   const int i = get_global_id(0);

@@ -4,7 +4,7 @@
 // Nothing is ever written, since all x stay positive, which no compiler knows. Loops are unrolled, so that counting
 // does not take as long as computing.
 
-#include "shared/language.h"
+#include "arithmetic/language.h"
 
 kernel void compute_in_single(int steps, float factor, global float* restrict result) {
   float x = get_local_id(0);

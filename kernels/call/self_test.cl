@@ -1,8 +1,8 @@
 // The arithmetic that exactness rests on, on known bit patterns: one work-item, one pass. Bit k of failed[0] is set if
 // check k fails. operands keep the compiler from folding anything.
 
-#include "shared/exact_arithmetic.h"
-#include "shared/turns.h"
+#include "arithmetic/exact_arithmetic.h"
+#include "call/turns.h"
 
 // Forms that a compiler may contract: in vectors, and where a product and a sum meet only after inlining.
 static inline double2 products_in_vectors(double2 a, double2 b) { return a * b; }

@@ -2,9 +2,9 @@
 // failed[0] is set if check k fails. operands keep the compiler from folding anything. Filters rest on errors of one
 // unit in the last place, whichever way a device rounds.
 
-#include "shared/integer_arithmetic.h"
-#include "shared/numbers.h"
-#include "shared/turns.h"
+#include "arithmetic/integer_arithmetic.h"
+#include "arithmetic/numbers.h"
+#include "call/turns.h"
 
 // Whether two positive floats differ by at most so many units in the last place.
 static inline int is_near(float x, uint expected, int units) {

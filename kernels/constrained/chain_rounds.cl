@@ -17,9 +17,9 @@
 // plus the number of ancestors whose left children lead to it. Vertex j is the apex of one triangle, so this number is
 // one more for k = j: link_apexes and jump_apexes find it by pointer jumping. write_chain_rows writes the triangles.
 
-#include "shared/chains.h"
-#include "shared/counting.h"
-#include "shared/search.h"
+#include "constrained/chains.h"
+#include "operations/counting.h"
+#include "operations/search.h"
 
 // Of the vertices in a list: before and after it. A vertex that is removed has NOT_LISTED.
 #define NOT_LISTED VECTOR(int2, -2, -2)

@@ -10,7 +10,7 @@
 // gather_vertices copies the vertices' places, so that those of a chain follow each other. triangulate_chains has a
 // work-item per chain. Short chains are gift-wrapped; of longer ones it inserts the vertices in random order.
 
-#include "shared/chains.h"
+#include "constrained/chains.h"
 
 kernel void gather_vertices(int n, int count, global const int* restrict offsets,
                             global const coordinate2* restrict points, global const int* restrict chain,

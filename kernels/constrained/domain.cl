@@ -18,13 +18,13 @@
 // 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets and
 //    write_depths do the rest.
 
-#include "shared/bit_account.h"
-#include "shared/domains.h"
-#include "shared/language.h"
-#include "shared/meanwhile.h"
+#include "arithmetic/bit_account.h"
+#include "arithmetic/language.h"
+#include "constrained/domains.h"
+#include "constrained/meanwhile.h"
 
 // Where another work-item has joined meanwhile: an older parent is an ancestor, too, and what an old root is taken for
-// is checked when it is joined (shared/meanwhile.h).
+// is checked when it is joined (constrained/meanwhile.h).
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Regions

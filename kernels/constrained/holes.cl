@@ -2,11 +2,11 @@
 // in its range of x. Seeds are any places, whose coordinates need not be on a grid with those of the points. So this is
 // for double precision alone; where a device computes in fixed point, another one or the host finds holes.
 
-#include "shared/coordinates.h"
-#include "shared/language.h"
-#include "shared/planar.h"
+#include "arithmetic/coordinates.h"
+#include "arithmetic/language.h"
+#include "operations/search.h"
+#include "predicates/planar.h"
 #include "shared/records.h"
-#include "shared/search.h"
 
 #ifndef FIXED_POINT
 

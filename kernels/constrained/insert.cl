@@ -24,16 +24,16 @@
 #define OUT_OF_LINE __attribute__((noinline))
 #endif
 
+#include "arithmetic/language.h"
+#include "constrained/meanwhile.h"
+#include "constrained/segment_walks.h"
+#include "mesh/halfedges.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
+#include "predicates/planar.h"
 #include "shared/codes.h"
-#include "shared/halfedges.h"
-#include "shared/language.h"
 #include "shared/limits.h"
-#include "shared/meanwhile.h"
-#include "shared/planar.h"
-#include "shared/prefetch.h"
 #include "shared/records.h"
-#include "shared/search.h"
-#include "shared/segment_walks.h"
 
 // A random number below RANK_WON for each number below that, each once.
 static inline uint rank_of(int constraint) {

@@ -5,10 +5,10 @@
 // goes and where its neighbours refer to it. put_rows: writes the copies to their places. write_row_halfedges and
 // write_constrained, over all rows.
 
-#include "shared/halfedges.h"
-#include "shared/language.h"
-#include "shared/prefetch.h"
-#include "shared/segment_walks.h"
+#include "arithmetic/language.h"
+#include "constrained/segment_walks.h"
+#include "mesh/halfedges.h"
+#include "operations/prefetch.h"
 
 // The corner of a row with the smallest vertex.
 static inline int first_corner(int row, global const int* triangles) {

@@ -14,12 +14,12 @@
 // - edge_keys, over the edges, by which the host sorts chains; sorted_lengths, over these; number_edges and
 //   write_segments.
 
+#include "arithmetic/language.h"
+#include "constrained/meanwhile.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
+#include "predicates/planar.h"
 #include "shared/codes.h"
-#include "shared/language.h"
-#include "shared/meanwhile.h"
-#include "shared/planar.h"
-#include "shared/prefetch.h"
-#include "shared/search.h"
 
 #define NO_KEY 0xffffffffffffffffUL
 

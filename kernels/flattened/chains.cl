@@ -20,12 +20,12 @@
 // The kernels but hull_chains and write_paths have one work-item per element, or share elements whose number only the
 // device knows.
 
+#include "flattened/frame.h"
+#include "flattened/hull_height.h"
+#include "operations/search.h"
+#include "operations/work_group.h"
 #include "shared/codes.h"
-#include "shared/frame.h"
-#include "shared/hull_height.h"
 #include "shared/limits.h"
-#include "shared/search.h"
-#include "shared/work_group.h"
 
 // Where the list of region r begins that is made of lists with these offsets: a place for each BUCKET points and one
 // for the rest, so that no list is empty.

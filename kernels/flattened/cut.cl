@@ -5,8 +5,8 @@
 // chosen axis. By default that is the axis of the longer interquartile range, which keeps regions round and borders
 // short. find_ends finds the ends of the hulls among the border's corners, with one work-group per region.
 
-#include "shared/counting.h"
-#include "shared/hull_height.h"
+#include "flattened/hull_height.h"
+#include "operations/counting.h"
 #include "shared/limits.h"
 
 kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets,

@@ -4,8 +4,8 @@
 // distinct_flags and distinct_write give each distinct point the id that is its rank in (set, x, y). sets_of_ids writes
 // the set of each id. Each kernel is one pass over the points of all sets, with one work-item per point.
 
-#include "shared/coordinates.h"
-#include "shared/search.h"
+#include "arithmetic/coordinates.h"
+#include "operations/search.h"
 
 kernel void keys_y(int n, global const double2* restrict input, scaling scale, global ulong* restrict keys,
                    global int* restrict order) {

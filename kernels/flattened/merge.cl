@@ -6,11 +6,11 @@
 // does the same for internal points on the path. children.cl lays out the children, and emit_corners and emit_path
 // write their corners. Each kernel is one pass, with one work-item per corner or path vertex.
 
+#include "flattened/frame.h"
+#include "operations/counting.h"
+#include "operations/search.h"
+#include "predicates/planar.h"
 #include "shared/codes.h"
-#include "shared/counting.h"
-#include "shared/frame.h"
-#include "shared/planar.h"
-#include "shared/search.h"
 
 // A corner's code: the child it goes to (0, 1), if its vertex is off the path; CODE_UNDECIDED; else CODE_ON_PATH and
 // how the path's two edges at the vertex lie in the corner's wedge. Angles are counter-clockwise from the edge to

@@ -7,7 +7,7 @@
 //
 // loose_edges flags half-edges that have no twin yet; insert_loose and match_loose do the same for a list of them.
 
-#include "shared/halfedges.h"
+#include "mesh/halfedges.h"
 
 static inline uint edge_hash(int low, int high) {
   ulong z = ((ulong)(uint)low << 32 | (uint)high) * 0x9e3779b97f4a7c15UL;

@@ -5,7 +5,7 @@
 // their twins, if they are known. Each kernel is one pass, with one
 // work-item per triangle or hull vertex.
 
-#include "shared/halfedges.h"
+#include "mesh/halfedges.h"
 
 kernel void finish_rows(int n, int with_neighbors, global const int* restrict triangles,
                         global const int* restrict twins, global const int* restrict source, global int* restrict rows,

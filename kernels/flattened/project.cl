@@ -1,7 +1,7 @@
 // The projections of every region's internal points for its cut line. One pass, with one work-item per point.
 
-#include "shared/counting.h"
-#include "shared/hull_height.h"
+#include "flattened/hull_height.h"
+#include "operations/counting.h"
 
 // The internal points' projections, in the places of the list that is sorted along their region's cut line.
 kernel void project_points(int n, global const int* restrict regions, global const int* restrict x_list,

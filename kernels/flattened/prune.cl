@@ -13,11 +13,11 @@
 // together by their chords. Or it begins with the ends of the hull alone: begin_paths and gather_points bring flagged
 // elements together by region.
 
+#include "flattened/hull_height.h"
+#include "operations/counting.h"
+#include "operations/search.h"
 #include "shared/codes.h"
-#include "shared/counting.h"
-#include "shared/hull_height.h"
 #include "shared/limits.h"
-#include "shared/search.h"
 
 kernel void candidate_flags(int n, int elements, global const int* restrict regions,
                             global const double2* restrict projections, global uchar* restrict flags COUNTERS) {

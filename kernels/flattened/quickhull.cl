@@ -21,10 +21,10 @@
 // deepest_points takes the greatest. drop_pairs then finds, in each pair on one side of it, a point that is above a
 // chord, and drops that point.
 
+#include "flattened/hull_height.h"
+#include "operations/counting.h"
+#include "operations/segmented_arg_reduce.h"
 #include "shared/codes.h"
-#include "shared/counting.h"
-#include "shared/hull_height.h"
-#include "shared/segmented_arg_reduce.h"
 
 // projections[i]: of point i, as path_projections. flags: 1 strictly below the chord, 0 not, or FLAG_UNDECIDED.
 kernel void hull_depths(int n, filter_bound bound, global const int* restrict segment,

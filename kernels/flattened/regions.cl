@@ -13,8 +13,8 @@
 //
 // Each kernel is one pass, with one work-item per region, point, corner or vertex.
 
+#include "mesh/rings.h"
 #include "shared/codes.h"
-#include "shared/rings.h"
 
 kernel void region_offsets(int n, global const int* restrict point_offsets, global const int* restrict corner_offsets,
                            global int* restrict offsets) {

@@ -5,7 +5,7 @@
 //
 // 1. large_sizes, gather_large, vertex_flags and write_vertices bring each large region's distinct vertices into the
 //    order of ids, which is by x: one pass each.
-// 2. merge_strips merges the two halves of each block of consecutive vertices (shared/rings.h): one pass per level from
+// 2. merge_strips merges the two halves of each block of consecutive vertices (mesh/rings.h): one pass per level from
 //    the leaves up, with one work-item per vertex, of which the first of a block works.
 // 3. Of cocircular points the merges may have chosen other edges than the border's. border_edges looks each border edge
 //    up, and restore_border flips in those that are missing, within the polygon of their circle.
@@ -16,9 +16,9 @@
 // Borders are not canonical, and a merge of two canonical triangulations of one circle's points would change every
 // edge.
 #define RINGS_TIE(a, b, c, d, bounds) 0
+#include "mesh/rings.h"
+#include "operations/search.h"
 #include "shared/codes.h"
-#include "shared/rings.h"
-#include "shared/search.h"
 
 kernel void large_sizes(int n, global const int* restrict large, global const int* restrict offsets,
                         global uint* restrict sizes) {

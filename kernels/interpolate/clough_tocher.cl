@@ -8,10 +8,10 @@
 //
 // One pass, with one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
-#include "shared/barycentric.h"
-#include "shared/queries_ahead.h"
+#include "interpolate/queries_ahead.h"
+#include "mesh/barycentric.h"
+#include "operations/search.h"
 #include "shared/records.h"
-#include "shared/search.h"
 
 // Where the direction across the edge opposite to corner k of the triangle leads, of which p are the corners: from the
 // centroid, c, to a point of the edge's line, which is a + g (a - b) with the edge from a to b. Beyond the edge is

@@ -16,12 +16,12 @@
 // 4. take_gradients brings them to the points, in the caller's units; place_gradients brings the caller's to vertices.
 // Passes have one work-item per vertex, which walks through its edges.
 
-#include "shared/coordinates.h"
-#include "shared/halfedges.h"
-#include "shared/prefetch.h"
+#include "arithmetic/coordinates.h"
+#include "mesh/halfedges.h"
+#include "mesh/stars.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
 #include "shared/records.h"
-#include "shared/search.h"
-#include "shared/stars.h"
 
 // How many edges ahead of its use memory is fetched that is read by vertex.
 #define EDGES_AHEAD 192

@@ -1,10 +1,10 @@
 // Interpolation from the corners of the triangle that a query lies in, and from the nearest point. One pass each, with
 // one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
-#include "shared/barycentric.h"
-#include "shared/queries_ahead.h"
+#include "interpolate/queries_ahead.h"
+#include "mesh/barycentric.h"
+#include "operations/search.h"
 #include "shared/records.h"
-#include "shared/search.h"
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. A corner without weight does
 // not count, not even if its value is NaN.

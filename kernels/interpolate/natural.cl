@@ -22,17 +22,18 @@
 // or
 //    the weights are not certain to NATURAL_ERROR, it leaves the query to the second pass.
 // 2. interpolate_natural_exactly decides exactly. It multiplies and adds positive numbers with small relative errors
-//    alone, which shared/determinants.h computes, so that its weights have small relative errors, whatever the points.
+//    alone, which interpolate/determinants.h computes, so that its weights have small relative errors, whatever the
+//    points.
 // docs/exactness.md has the bounds. Lists of neighbours with weights take count_neighbors and, after a scan of the
 // counts, list_neighbors. Each does both for its query, one after the other.
 
-#include "shared/coordinates.h"
-#include "shared/determinants.h"
-#include "shared/halfedges.h"
-#include "shared/natural.h"
-#include "shared/prefetch.h"
+#include "arithmetic/coordinates.h"
+#include "interpolate/determinants.h"
+#include "interpolate/natural.h"
+#include "mesh/halfedges.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
 #include "shared/records.h"
-#include "shared/search.h"
 
 // A triangulation, as locators have it, and how much more the queries of its set are scaled. source: the points that
 // vertices are.

@@ -1,6 +1,6 @@
 // What locators need in fixed point alone.
 //
-// Queries that are not on the grid of points (shared/off_grid.h): locate.cl takes each for the place of the grid
+// Queries that are not on the grid of points (locate/off_grid.h): locate.cl takes each for the place of the grid
 // nearest to it, mostly less than one place away. From its answers two kernels go on, with exact predicates alone. Each
 // is one pass with one work-item per query, and leaves queries on the grid as they are:
 // - locate_off_grid, after find_triangles: a visibility walk from that triangle. Queries beyond the last place are
@@ -12,12 +12,12 @@
 // The programs of devices with double precision have these kernels too, which then do nothing, as every query is on the
 // grid.
 
-#include "shared/halfedges.h"
-#include "shared/nearest_search.h"
-#include "shared/off_grid.h"
+#include "locate/nearest_search.h"
+#include "locate/off_grid.h"
+#include "mesh/halfedges.h"
+#include "mesh/stars.h"
+#include "operations/search.h"
 #include "shared/records.h"
-#include "shared/search.h"
-#include "shared/stars.h"
 
 #ifdef FIXED_POINT
 

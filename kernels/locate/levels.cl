@@ -1,4 +1,4 @@
-// Makes what the search for nearest vertices through levels needs: shared/nearest_search.h has the search.
+// Makes what the search for nearest vertices through levels needs: locate/nearest_search.h has the search.
 //
 // 1. draw_entries, with one work-item per entry of all levels' samples, draws a vertex of each group of the level
 //    below. In fixed point give_coordinates (fixed_point.cl) makes doubles of them. The host triangulates the samples
@@ -9,8 +9,8 @@
 //    cocircular polygon. reach_along_fans doubles how far links lead, until all lead to their fan's last triangle.
 // 5. box_vertices and box_boxes make the tree of boxes from below, with one work-item per box.
 
-#include "shared/nearest_search.h"
-#include "shared/search.h"
+#include "locate/nearest_search.h"
+#include "operations/search.h"
 
 // A number below ratio that looks like a random one (the finaliser of MurmurHash3, Appleby 2011).
 static inline int pick(int i, int level, int ratio) {

@@ -21,14 +21,14 @@
 // 2. nearest_points continues from these triangles, with one work-item per query, and so do the kernels that
 // interpolate
 //    (interpolate/). Where a walk to the nearest vertex takes long, nearest_points searches through levels
-//    (shared/nearest_search.h), which are made when the first query needs them (locate/levels.cl).
+//    (locate/nearest_search.h), which are made when the first query needs them (locate/levels.cl).
 
-#include "shared/cut_tree.h"
-#include "shared/halfedges.h"
-#include "shared/nearest_search.h"
-#include "shared/prefetch.h"
+#include "locate/nearest_search.h"
+#include "mesh/halfedges.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
+#include "points/cut_tree.h"
 #include "shared/records.h"
-#include "shared/search.h"
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Making

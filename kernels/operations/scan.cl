@@ -5,7 +5,7 @@
 // output[n], so that a list's length is where the device finds it. Input and output may be the same array. A scan of at
 // most one chunk is one pass, of scan_write_T alone.
 
-#include "shared/language.h"
+#include "arithmetic/language.h"
 
 #define SCAN_REDUCE(T, ZERO)                          \
   const int c = get_global_id(0);                     \

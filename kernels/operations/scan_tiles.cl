@@ -5,8 +5,8 @@
 // prefix, tile by tile. In a tile each work-item has `items` consecutive elements. A scan of a single span is one pass,
 // of scan_spans_T alone. The total goes to output[n]. Input and output may be the same array.
 
-#include "shared/language.h"
-#include "shared/work_group.h"
+#include "arithmetic/language.h"
+#include "operations/work_group.h"
 
 SCAN_IN_GROUP(scan_in_group_uint, uint)
 SCAN_IN_GROUP(scan_in_group_uint2, uint2)

@@ -1,4 +1,4 @@
-// Cut trees (shared/cut_tree.h) of sets of points, made from samples of the points; all sets at once.
+// Cut trees (points/cut_tree.h) of sets of points, made from samples of the points; all sets at once.
 //
 // The samples of a tree are cut in halves down to the leaves: those of each node at the median, across the longer of
 // their interquartile ranges. One work-item takes one chunk of samples of one tree: those of a leaf, or 2, 4, 8...
@@ -12,10 +12,10 @@
 // So each level of nodes larger than chunks costs one pass over the samples for sorting and two for cutting. The levels
 // below cost one pass each, all in two launches.
 
-#include "shared/order.h"
+#include "operations/search.h"
+#include "points/sampled_cuts.h"
+#include "predicates/order.h"
 #include "shared/records.h"
-#include "shared/sampled_cuts.h"
-#include "shared/search.h"
 
 // A chunk's tree and its first sample.
 typedef struct {

@@ -8,11 +8,11 @@
 // where blocks begin. That makes two passes over the points, or one where there is no tree. distribute_tiles.cl does
 // the same for devices with many lanes.
 
+#include "arithmetic/coordinates.h"
+#include "operations/prefetch.h"
 #include "points/cut_tree.cl"
+#include "points/cut_tree.h"
 #include "points/inspect.cl"
-#include "shared/coordinates.h"
-#include "shared/cut_tree.h"
-#include "shared/prefetch.h"
 #include "shared/records.h"
 
 kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const coordinate* restrict input,

@@ -1,4 +1,4 @@
-// Cut trees (shared/cut_tree.h) of points that lie along the cuts of an earlier tree, made from sorted samples of them
+// Cut trees (points/cut_tree.h) of points that lie along the cuts of an earlier tree, made from sorted samples of them
 // (cut_tree_tiles.cl), on devices with many lanes.
 //
 // Medians would fall onto the old cuts, since that is where the points are. Each node is cut in the middle of its
@@ -10,11 +10,11 @@
 // writes the node, and splits the samples of the other order than the one along the axis. That makes one launch per
 // level.
 
+#include "operations/search.h"
+#include "operations/work_group.h"
+#include "points/sampled_cuts.h"
 #include "shared/limits.h"
 #include "shared/records.h"
-#include "shared/sampled_cuts.h"
-#include "shared/search.h"
-#include "shared/work_group.h"
 
 SCAN_IN_GROUP(scan_low, uint)
 

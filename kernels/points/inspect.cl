@@ -5,11 +5,11 @@
 // has one work-item per point. In fixed point it always runs, and makes integers. widen_points converts floats to
 // doubles, with one work-item per point. For devices with many lanes, inspect_tiles.cl takes the place of inspect.
 
-#include "shared/bit_account.h"
+#include "arithmetic/bit_account.h"
+#include "arithmetic/coordinates.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
 #include "shared/codes.h"
-#include "shared/coordinates.h"
-#include "shared/prefetch.h"
-#include "shared/search.h"
 
 // Points of single precision from `first` on. The bits are those of doubles.
 kernel void widen_points(int n, ulong first, global const float_bits* restrict narrow,

@@ -1,7 +1,7 @@
 // The account of the coordinates as in inspect.cl, for devices with many lanes. One pass: neighbouring work-items read
 // neighbouring points, each work-group makes an account in local memory, and adds it to the whole.
 
-#include "shared/bit_account.h"
+#include "arithmetic/bit_account.h"
 
 // workers: how many work-items share the points.
 kernel void inspect_tiles(int n, int workers, global const double_bits* restrict input,

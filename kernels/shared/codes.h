@@ -2,7 +2,7 @@
 #ifndef FLAUNAY_CODES_H
 #define FLAUNAY_CODES_H
 
-#include "shared/language.h"
+#include "arithmetic/language.h"
 
 BEGIN_SHARED
 

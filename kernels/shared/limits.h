@@ -2,7 +2,7 @@
 #ifndef FLAUNAY_LIMITS_H
 #define FLAUNAY_LIMITS_H
 
-#include "shared/language.h"
+#include "arithmetic/language.h"
 
 BEGIN_SHARED
 

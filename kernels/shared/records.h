@@ -2,14 +2,14 @@
 #ifndef FLAUNAY_RECORDS_H
 #define FLAUNAY_RECORDS_H
 
-#include "shared/language.h"
-#include "shared/numbers.h"
+#include "arithmetic/language.h"
+#include "arithmetic/numbers.h"
 
 BEGIN_SHARED
 
-// Bounds of the predicates' filters: HULL_DEPTH_BOUND, ORIENT_BOUND and CIRCLE_BOUND of shared/bounds.h, or 0 where the
-// input is so coarse that floating point is exact. In fixed point, `coarse` says instead that products of differences
-// fit into 64 bits (COARSE_FIXED_BITS).
+// Bounds of the predicates' filters: HULL_DEPTH_BOUND, ORIENT_BOUND and CIRCLE_BOUND of predicates/bounds.h, or 0 where
+// the input is so coarse that floating point is exact. In fixed point, `coarse` says instead that products of
+// differences fit into 64 bits (COARSE_FIXED_BITS).
 typedef struct {
   filter_bound hull, orient, circle;
   int coarse;

@@ -23,13 +23,13 @@
 // inside of the polygon; see docs/exactness.md. Only coordinates are rounded. Indices that are out of range are
 // skipped.
 
-#include "shared/bounds.h"
-#include "shared/centre_side.h"
+#include "arithmetic/coordinates.h"
+#include "mesh/halfedges.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
+#include "predicates/bounds.h"
 #include "shared/codes.h"
-#include "shared/coordinates.h"
-#include "shared/halfedges.h"
-#include "shared/prefetch.h"
-#include "shared/search.h"
+#include "voronoi/centre_side.h"
 
 // As in voronoi.cl.
 #define TRIANGLES_AHEAD 32

@@ -7,11 +7,11 @@
 // whatever the order of the points is, so walks read what is in the cache. mark_hull marks the cells that are
 // unbounded. Indices that are out of range are skipped.
 
-#include "shared/bounds.h"
-#include "shared/coordinates.h"
-#include "shared/halfedges.h"
-#include "shared/planar.h"
-#include "shared/prefetch.h"
+#include "arithmetic/coordinates.h"
+#include "mesh/halfedges.h"
+#include "operations/prefetch.h"
+#include "predicates/bounds.h"
+#include "predicates/planar.h"
 
 // How many triangles ahead a pass fetches the points or cells that it will need.
 #define TRIANGLES_AHEAD 32

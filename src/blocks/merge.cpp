@@ -1,10 +1,10 @@
 #include <algorithm>
 
+#include "blocks/halving.h"
 #include "blocks/stages.hpp"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/merge_exact.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"
-#include "shared/halving.h"
 #include "shared/limits.h"
 #include "tuning/tuning.hpp"
 

@@ -6,11 +6,11 @@
 #include <numeric>
 #include <optional>
 
+#include "blocks/open_sectors.h"
 #include "geometry/euler.hpp"
 #include "host/vector_operations.hpp"
 #include "launchers/blocks/rounds.cl.hpp"
 #include "points/device_mesh.hpp"
-#include "shared/open_sectors.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {

@@ -1,24 +1,27 @@
 #include "blocks/small.hpp"
 
+// clang-format off: before the headers of kernels
+#include "host/native/opencl.hpp"
+// clang-format on
+
 #include <algorithm>
 #include <numeric>
 
+#include "arithmetic/bit_account.h"
+#include "arithmetic/coordinates.h"
+#include "blocks/halving.h"
+#include "blocks/rings_account.h"
+#include "blocks/rows.h"
 #include "blocks/run.hpp"
 #include "blocks/stages.hpp"
 #include "geometry/magnitudes.hpp"
-#include "host/native/opencl.hpp"
 #include "host/of_thread.hpp"
-#include "shared/bit_account.h"
+#include "mesh/halfedges.h"
+#include "mesh/rings.h"
+#include "operations/prefetch.h"
+#include "operations/search.h"
+#include "points/cut_tree.h"
 #include "shared/codes.h"
-#include "shared/coordinates.h"
-#include "shared/cut_tree.h"
-#include "shared/halfedges.h"
-#include "shared/halving.h"
-#include "shared/prefetch.h"
-#include "shared/rings.h"
-#include "shared/rings_account.h"
-#include "shared/rows.h"
-#include "shared/search.h"
 
 namespace flaunay::kernel {
 #include "host/native/words.h"

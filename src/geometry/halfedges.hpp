@@ -1,8 +1,8 @@
-// Half-edges of a list of triangles, numbered as in kernels/shared/halfedges.h.
+// Half-edges of a list of triangles, numbered as in kernels/mesh/halfedges.h.
 #pragma once
 
 #include "flaunay/flaunay.hpp"
-#include "shared/halfedges.h"
+#include "mesh/halfedges.h"
 
 namespace flaunay::geometry {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "arithmetic/numbers.h"
 #include "flaunay/flaunay.hpp"
-#include "shared/bounds.h"
-#include "shared/numbers.h"
+#include "predicates/bounds.h"
 
 namespace flaunay::geometry {
 namespace {

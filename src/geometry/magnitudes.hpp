@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "arithmetic/coordinates.h"
 #include "flaunay/flaunay.hpp"
 #include "shared/codes.h"
-#include "shared/coordinates.h"
 #include "shared/records.h"
 
 namespace flaunay::geometry {

@@ -1,13 +1,13 @@
 // The kernels' predicates on the host: the same files (kernels/shared), compiled as C++.
 #pragma once
 
+#include "flattened/hull_height.h"
 #include "geometry/magnitudes.hpp"
-#include "shared/hull_height.h"
-#include "shared/planar.h"
+#include "predicates/planar.h"
 
 namespace flaunay::geometry {
 
-/// A point: (x, y), or (s, u) in the coordinates of a region's cut line; see kernels/shared/frame.h.
+/// A point: (x, y), or (s, u) in the coordinates of a region's cut line; see kernels/flattened/frame.h.
 using Point = kernel::double2;
 
 inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }
@@ -25,7 +25,7 @@ struct Predicates {
 
   /// The depth of p below the chord from a to b, by the filter alone; positive if p lies strictly below. The
   /// points are projections (h, u) for one line, or with `planar` points of the plane; the u of a must not be
-  /// greater than that of b. See kernels/shared/hull_height.h.
+  /// greater than that of b. See kernels/flattened/hull_height.h.
   Depth depth_filtered(Point a, Point b, Point p, bool planar) const {
     const auto [depth, magnitude] = kernel::hull_depth(a, b, p, planar);
     const double error = bounds.hull * magnitude;

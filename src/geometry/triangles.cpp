@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "geometry/magnitudes.hpp"
-#include "shared/areas.h"
+#include "predicates/areas.h"
 
 namespace flaunay::geometry {
 namespace {

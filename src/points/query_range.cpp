@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "arithmetic/coordinates.h"
 #include "flaunay/flaunay.hpp"
+#include "locate/off_grid.h"
 #include "points/inspect.hpp"
-#include "shared/bounds.h"
-#include "shared/coordinates.h"
-#include "shared/off_grid.h"
+#include "predicates/bounds.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {

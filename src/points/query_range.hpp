@@ -7,7 +7,7 @@
 
 #include "geometry/magnitudes.hpp"
 #include "points/device_mesh.hpp"
-#include "shared/bounds.h"
+#include "predicates/bounds.h"
 #include "shared/records.h"
 
 namespace flaunay::points {

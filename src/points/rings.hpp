@@ -9,7 +9,7 @@
 
 namespace flaunay::points {
 
-/// Directed edges, each in the ring of its origin (shared/rings.h).
+/// Directed edges, each in the ring of its origin (mesh/rings.h).
 struct Rings {
   host::Buffer<kernel::ring_edge> edges{};  ///< kernel::EDGES_PER_VERTEX per point
   host::Buffer<cl_int> vertex_edge{};

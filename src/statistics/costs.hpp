@@ -1,11 +1,11 @@
-// Costs of operations by the rules of docs/counting.md: those of predicates, from kernels/shared/costs.h, and
-// steps in the scan model.
+// Costs of operations by the rules of docs/counting.md: those of predicates, from kernels/operations/costs.h,
+// and steps in the scan model.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "shared/costs.h"
+#include "operations/costs.h"
 
 namespace flaunay::statistics {
 

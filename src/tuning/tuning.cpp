@@ -9,8 +9,8 @@
 
 #include "host/device.hpp"
 #include "host/error.hpp"
+#include "operations/prefetch.h"
 #include "shared/limits.h"
-#include "shared/prefetch.h"
 
 namespace flaunay {
 namespace {

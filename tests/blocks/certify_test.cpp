@@ -1,6 +1,6 @@
-// What rounds of blocks decide by shared/certify.h and shared/open_sectors.h, as the host reads them, against
+// What rounds of blocks decide by blocks/certify.h and blocks/open_sectors.h, as the host reads them, against
 // rational numbers and against sorting by angle.
-#include "shared/certify.h"
+#include "blocks/certify.h"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/open_sectors.h"
 #include "shared/limits.h"
-#include "shared/open_sectors.h"
 #include "tests/support/fixtures.hpp"
 
 namespace flaunay::blocks {

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <vector>
 
+#include "blocks/halving.h"
 #include "launchers/blocks/halve.cl.hpp"
-#include "shared/halving.h"
 #include "tests/blocks/support.hpp"
 
 namespace flaunay::blocks {

@@ -6,13 +6,13 @@
 #include <set>
 #include <vector>
 
+#include "blocks/halving.h"
+#include "blocks/seams.h"
 #include "launchers/blocks/divide.cl.hpp"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"
-#include "shared/bounds.h"
+#include "predicates/bounds.h"
 #include "shared/codes.h"
-#include "shared/halving.h"
-#include "shared/seams.h"
 #include "tests/blocks/support.hpp"
 #include "tests/support/exact_points.hpp"
 

@@ -13,10 +13,10 @@
 #include <tuple>
 #include <vector>
 
+#include "blocks/open_sectors.h"
 #include "launchers/blocks/rounds.cl.hpp"
-#include "shared/bounds.h"
-#include "shared/open_sectors.h"
-#include "shared/sampled_cuts.h"
+#include "points/sampled_cuts.h"
+#include "predicates/bounds.h"
 #include "tests/blocks/support.hpp"
 
 namespace flaunay::blocks {

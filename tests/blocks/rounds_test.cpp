@@ -354,7 +354,7 @@ std::string with_short_walks(std::string seams) {
 /// last round, and with merging.
 TEST(Rounds, WalksThatDoNotMeetAreAnError) {
   if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
-  const testing::ChangedKernels changed("shared/seams.h", with_short_walks);
+  const testing::ChangedKernels changed("blocks/seams.h", with_short_walks);
   const auto runtime = points::make_runtime("lanes");
   const Coordinates points = make_fixture("uniform", 900, 61);
   for (const auto& [block_points, round_points] : {std::pair{100, 50}, {1000, 500}, {100, 0}}) {

@@ -9,7 +9,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
-#include "shared/rings.h"
+#include "mesh/rings.h"
 #include "tests/support/bounds.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"

@@ -98,7 +98,7 @@ TEST(SelfTest, ADeviceWhoseFmaRoundsTwiceDoesWithoutIt) {
     EXPECT_GT(mesh.statistics.undecided, 0u) << fixture;
     expected.push_back(mesh.triangles);
   }
-  const testing::ChangedKernels inexact("shared/language.h", with_inexact_fma);
+  const testing::ChangedKernels inexact("arithmetic/language.h", with_inexact_fma);
   const auto runtime = testing::make_tuned_runtime("own");
   EXPECT_EQ(tuning_of(*runtime).split_products, 0u);
   EXPECT_EQ(self_test_failure(*runtime), "");
@@ -200,7 +200,7 @@ TEST(SmallSelfTest, InFixedPointPassesHereAndFailsOnOtherBits) {
 // Mesa's llvmpipe does so. On a tenth of what loops need there, results are right.
 TEST(SelfTest, ADeviceWhoseLoopsEndEarlyIsForFewPoints) {
   if (testing::tests_native()) GTEST_SKIP() << "the host's loops do not";
-  const testing::ChangedKernels changed("shared/turns.h", [](std::string text) {
+  const testing::ChangedKernels changed("call/turns.h", [](std::string text) {
     const std::string condition = "k < MANY_TURNS";
     const std::size_t at = text.find(condition);
     if (at == std::string::npos) throw std::logic_error("no loop");
@@ -239,7 +239,7 @@ struct WrongDevice {
 
 TEST(SelfTest, InFixedPointFindsDevicesThatComputeOtherwise) {
   if (testing::tests_native()) GTEST_SKIP() << "the host computes in double precision";
-  const char* const language = "shared/language.h";
+  const char* const language = "arithmetic/language.h";
   const char* const kernel = "call/self_test_fixed.cl";
   const WrongDevice devices[] = {
       // Upper halves of products as those of unsigned numbers, without their last bit, and of upper halves.

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "flattened/frame.h"
 #include "launchers/flattened/chains.cl.hpp"
 #include "shared/codes.h"
-#include "shared/frame.h"
 #include "shared/limits.h"
 #include "tests/flattened/support.hpp"
 

@@ -1,4 +1,4 @@
-// Certificates of rounds (shared/certify.h) and heights along seams (shared/seams.h) in single precision:
+// Certificates of rounds (blocks/certify.h) and heights along seams (blocks/seams.h) in single precision:
 // against rational numbers, and how many triangles have a certificate in double precision alone.
 #include <gmpxx.h>
 #include <gtest/gtest.h>

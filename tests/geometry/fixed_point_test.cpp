@@ -1,5 +1,6 @@
-// The predicates in fixed point (shared/numbers.h), which filter in single precision, as C++ against GMP: at
-// every scale and with every rounding that docs/exactness.md allows for. On devices: fixed_kernels_test.cpp.
+// The predicates in fixed point (arithmetic/numbers.h), which filter in single precision, as C++ against GMP:
+// at every scale and with every rounding that docs/exactness.md allows for. On devices:
+// fixed_kernels_test.cpp.
 #include "tests/support/fixed_point.hpp"
 
 #include <gmpxx.h>

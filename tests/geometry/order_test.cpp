@@ -1,4 +1,4 @@
-// Sorting by coordinates on the device (kernels/shared/order.h), by exact comparison and step by step.
+// Sorting by coordinates on the device (kernels/predicates/order.h), by exact comparison and step by step.
 #include <gtest/gtest.h>
 
 #include <algorithm>

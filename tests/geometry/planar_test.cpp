@@ -1,4 +1,4 @@
-// The exact predicates of kernels/shared/planar.h as the host reads them, against GMP. On the device:
+// The exact predicates of kernels/predicates/planar.h as the host reads them, against GMP. On the device:
 // predicates_test.cpp.
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "points/query_range.hpp"
-#include "shared/nearness.h"
+#include "predicates/nearness.h"
 #include "tests/support/bounds.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/reference.hpp"
@@ -112,8 +112,8 @@ double spanning(Random& random, int bits) {
   return std::ldexp(random.integer(held), random.coin() ? bits - held : 0);
 }
 
-/// Integers next to the limits of what kernels/shared/integer_arithmetic.h takes: coordinates or differences
-/// as large as they can be, a unit off, or 0.
+/// Integers next to the limits of what kernels/arithmetic/integer_arithmetic.h takes: coordinates or
+/// differences as large as they can be, a unit off, or 0.
 void fill_largest(Random& random, int count, double* c) {
   const int all_bits[] = {24, 25, 26, 27, 29, 30, 31, 32, 33, 40, 41, 42, 43, 52, 53, 60, 61, 62, 63, 64};
   const int bits = all_bits[random.below(std::size(all_bits))];

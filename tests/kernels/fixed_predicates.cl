@@ -4,10 +4,10 @@
 #define FIXED_POINT
 #endif
 
-#include "shared/bit_account.h"
-#include "shared/certify.h"
-#include "shared/planar.h"
-#include "shared/seams.h"
+#include "arithmetic/bit_account.h"
+#include "blocks/certify.h"
+#include "blocks/seams.h"
+#include "predicates/planar.h"
 
 #define NOT_ASKED 3
 

@@ -1,7 +1,7 @@
-// Predicates of queries in fixed point (kernels/shared/off_grid.h, nearness.h), for tests that compare them
+// Predicates of queries in fixed point (kernels/locate/off_grid.h, nearness.h), for tests that compare them
 // with exact arithmetic. One work-item per case.
-#include "shared/nearness.h"
-#include "shared/off_grid.h"
+#include "locate/off_grid.h"
+#include "predicates/nearness.h"
 
 // Cases of 4 coordinates: a, b. queries: as the caller gives them, times 2^shift. placed: the place nearest
 // to each. results: per case, orientation and nearness of the query; whether it is on the grid; and if it is,

@@ -1,10 +1,10 @@
-// Sorting along an axis (shared/order.h) on arrays of cases, one case a work-item, for
+// Sorting along an axis (predicates/order.h) on arrays of cases, one case a work-item, for
 // order_test.cpp.
 //
 // Case c has the points [offsets[c], offsets[c + 1]) and as many elements, whose places are counted from its
 // first point.
 
-#include "shared/order.h"
+#include "predicates/order.h"
 
 static inline void copy_elements(global const keyed* restrict from, global keyed* restrict to, int n) {
   for (int i = 0; i < n; ++i) to[i] = from[i];

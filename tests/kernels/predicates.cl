@@ -3,9 +3,9 @@
 // A case is its points' coordinates one after the other (and the cut). The filters' bounds come from the
 // host, as they do in the library; 0 is for coarse input. The signs: -1, 0, 1 or UNDECIDED.
 
-#include "shared/hull_height.h"
-#include "shared/nearness.h"
-#include "shared/planar.h"
+#include "flattened/hull_height.h"
+#include "predicates/nearness.h"
+#include "predicates/planar.h"
 
 // Cases of 7: a, b, p, cut. The filter is that of hull_depths in quickhull.cl.
 kernel void hull_filtered(int n, int axis, filter_bound bound, global const double* restrict cases,

@@ -1,10 +1,10 @@
-// Instances of shared/segmented_arg_reduce.h: the least and the greatest value of each segment, of equal ones
-// the first; and the least positive one, so that some elements are no candidates.
+// Instances of operations/segmented_arg_reduce.h: the least and the greatest value of each segment, of equal
+// ones the first; and the least positive one, so that some elements are no candidates.
 
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 
-#include "shared/segmented_arg_reduce.h"
+#include "operations/segmented_arg_reduce.h"
 
 #define SELF(i) i
 #define KEPT(i) values[i] > 0 ? i : -1

@@ -22,8 +22,8 @@
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/locate/levels.hpp"
 #include "derived/locate/locator.hpp"
-#include "shared/nearest_search.h"
-#include "shared/off_grid.h"
+#include "locate/nearest_search.h"
+#include "locate/off_grid.h"
 #include "tests/locate/support.hpp"
 #include "tuning/tuning.hpp"
 

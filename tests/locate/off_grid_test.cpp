@@ -1,6 +1,6 @@
 // Queries in fixed point: their predicates, on the grid of points and off it, against exact arithmetic; and
 // answers for queries that are just on the grid, just off it, and far off it.
-#include "shared/off_grid.h"
+#include "locate/off_grid.h"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

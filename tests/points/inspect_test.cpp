@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/bounds.h"
+#include "predicates/bounds.h"
 #include "tests/points/support.hpp"
 
 namespace flaunay::points {

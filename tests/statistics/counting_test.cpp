@@ -52,7 +52,7 @@ struct double2 {
 double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; }
 double2 operator-(double2 a) { return {-a.x, -a.y}; }
 
-// The numbers of shared/numbers.h, which is not read again.
+// The numbers of arithmetic/numbers.h, which is not read again.
 using coordinate = Counted;
 using real = Counted;
 using filter_bound = Counted;
@@ -98,8 +98,8 @@ inline Counted convert_double(long x) { return kernel::convert_double(x); }
 #undef SHARED_NAMESPACE
 #define SHARED_NAMESPACE flaunay::testing::counted
 #define double Counted
-#include "shared/hull_height.h"
-#include "shared/planar.h"
+#include "flattened/hull_height.h"
+#include "predicates/planar.h"
 #undef double
 
 namespace flaunay::testing {

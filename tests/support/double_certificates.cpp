@@ -1,4 +1,4 @@
-#include "shared/certify.h"
+#include "blocks/certify.h"
 #include "tests/support/fixed_point.hpp"
 
 namespace flaunay::testing {

@@ -2,10 +2,10 @@
 // nothing else, and defines SHARED_NAMESPACE.
 #pragma GCC diagnostic ignored "-Wunused-parameter"  // scalings, which integers have not
 #define FIXED_POINT
-#include "shared/bit_account.h"
-#include "shared/certify.h"
-#include "shared/planar.h"
-#include "shared/seams.h"
+#include "arithmetic/bit_account.h"
+#include "blocks/certify.h"
+#include "blocks/seams.h"
+#include "predicates/planar.h"
 #include "tests/support/fixed_point.hpp"
 
 namespace SHARED_NAMESPACE {

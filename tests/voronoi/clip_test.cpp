@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "shared/centre_side.h"
 #include "tests/locate/support.hpp"
+#include "voronoi/centre_side.h"
 
 namespace flaunay::locate {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/areas.h"
+#include "predicates/areas.h"
 
 namespace flaunay::constrained {
 using namespace geometry;

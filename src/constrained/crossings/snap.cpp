@@ -10,7 +10,7 @@
 #include "constrained/crossings/crossing.hpp"
 #include "constrained/crossings/point_tree.hpp"
 #include "flaunay/flaunay.hpp"
-#include "shared/planar.h"
+#include "predicates/planar.h"
 
 namespace flaunay::constrained {
 using namespace geometry;

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "shared/domains.h"
+#include "constrained/domains.h"
 
 namespace flaunay::constrained {
 

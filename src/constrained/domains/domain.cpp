@@ -7,13 +7,13 @@
 #include <limits>
 #include <numeric>
 
+#include "constrained/domains.h"
 #include "constrained/domains/borders.hpp"
 #include "host/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
 #include "launchers/constrained/holes.cl.hpp"
 #include "points/device_mesh.hpp"
 #include "points/query_range.hpp"
-#include "shared/domains.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::constrained {

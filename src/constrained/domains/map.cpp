@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "shared/planar.h"
+#include "predicates/planar.h"
 
 namespace flaunay::constrained {
 namespace {

@@ -16,7 +16,7 @@ namespace {
 using host::Arena;
 using host::Runtime;
 
-// What kernels/shared/chains.h needs for chains with so many vertices.
+// What kernels/constrained/chains.h needs for chains with so many vertices.
 struct Scratch {
   Buffer<cl_double2> places;
   Buffer<kernel::chain_vertex> vertices;

@@ -17,7 +17,7 @@ struct DeviceChains {
   std::size_t vertices = 0;  ///< no fewer than offsets[count]
   /// No chain has more vertices. A small number spares work.
   std::size_t longest = std::numeric_limits<std::size_t>::max();
-  float circle_bound = 0;       ///< of in-circle tests, see shared/bounds.h
+  float circle_bound = 0;       ///< of in-circle tests, see predicates/bounds.h
   Buffer<cl_double2> points{};  ///< scaled
   Buffer<cl_int> offsets{};     ///< count + 1
   Buffer<cl_int> chain{};       ///< indices of points

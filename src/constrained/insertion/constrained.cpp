@@ -14,7 +14,7 @@
 #include "constrained/insertion/constraints.hpp"
 #include "constrained/insertion/mesh.hpp"
 #include "geometry/magnitudes.hpp"
-#include "shared/barycentric.h"
+#include "mesh/barycentric.h"
 
 namespace flaunay::constrained {
 using namespace geometry;

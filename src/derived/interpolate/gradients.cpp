@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "arithmetic/coordinates.h"
 #include "host/vector_operations.hpp"
 #include "launchers/interpolate/gradients.cl.hpp"
-#include "shared/coordinates.h"
 
 namespace flaunay::interpolate {
 namespace {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "derived/interpolate/interpolate.hpp"
-#include "shared/natural.h"
+#include "interpolate/natural.h"
 
 namespace flaunay::interpolate {
 
-/// How neighbours are weighed, as kernels know it (shared/natural.h).
+/// How neighbours are weighed, as kernels know it (interpolate/natural.h).
 enum class NaturalWeights : cl_int { sibson = kernel::SIBSON, laplace = kernel::LAPLACE };
 
 /// Interpolates between the natural neighbours of each query. Points and queries of a set together may span

@@ -8,7 +8,7 @@
 #include "host/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
 #include "launchers/locate/levels.cl.hpp"
-#include "shared/nearest_search.h"
+#include "locate/nearest_search.h"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 

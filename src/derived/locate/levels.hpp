@@ -1,5 +1,5 @@
 // The levels of a locator, for queries whose nearest point is far to walk to
-// (kernels/shared/nearest_search.h).
+// (kernels/locate/nearest_search.h).
 #pragma once
 
 #include <cstddef>

@@ -70,7 +70,7 @@ void nearest(host::Runtime& runtime, Locator& locator, const host::Buffer<cl_dou
 
 /// The queries of one call, in the order in which kernels answer them, with their triangles.
 struct LocatedQueries {
-  float orient_bound = 0;  ///< of the queries' orientations, see shared/bounds.h
+  float orient_bound = 0;  ///< of the queries' orientations, see predicates/bounds.h
   cl_int sets = 0;
   host::Buffer<kernel::query_frame> frames{};  ///< by set
   host::Buffer<cl_int> query_offsets{};        ///< by set; not filled if there is one set

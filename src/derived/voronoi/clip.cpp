@@ -7,7 +7,7 @@
 #include "host/vector_operations.hpp"
 #include "launchers/voronoi/clip.cl.hpp"
 #include "points/inspect.hpp"
-#include "shared/bounds.h"
+#include "predicates/bounds.h"
 #include "shared/codes.h"
 
 namespace flaunay::voronoi {

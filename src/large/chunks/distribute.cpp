@@ -8,9 +8,9 @@
 
 #include "large/chunks/point_account.hpp"
 #include "large/chunks/runs.hpp"
+#include "points/cut_tree.h"
+#include "points/sampled_cuts.h"
 #include "shared/codes.h"
-#include "shared/cut_tree.h"
-#include "shared/sampled_cuts.h"
 
 namespace flaunay::chunks {
 namespace {

@@ -6,10 +6,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "arithmetic/coordinates.h"
+#include "blocks/certify.h"
+#include "blocks/open_sectors.h"
 #include "large/chunks/runs.hpp"
-#include "shared/certify.h"
-#include "shared/coordinates.h"
-#include "shared/open_sectors.h"
 
 namespace flaunay::chunks {
 namespace {

@@ -1,6 +1,6 @@
 // What is final in a chunk's triangulation, and what is handed on: a round of blocks
-// (kernels/blocks/rounds.cl) with chunks in the place of blocks. Both decide by shared/certify.h and
-// shared/open_sectors.h. Unlike there, the outside is no triangle here: the vertices of the hull go on to the
+// (kernels/blocks/rounds.cl) with chunks in the place of blocks. Both decide by blocks/certify.h and
+// blocks/open_sectors.h. Unlike there, the outside is no triangle here: the vertices of the hull go on to the
 // last round, which has the hull.
 #pragma once
 

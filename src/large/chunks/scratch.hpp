@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "arithmetic/language.h"
 #include "files/scratch.hpp"
 #include "flaunay/chunks.hpp"
 #include "large/chunks/points.hpp"
-#include "shared/language.h"
 
 namespace flaunay::chunks {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "shared/cut_tree.h"
-#include "shared/sampled_cuts.h"
+#include "points/cut_tree.h"
+#include "points/sampled_cuts.h"
 
 namespace flaunay::chunks {
 namespace {

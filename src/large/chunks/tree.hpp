@@ -1,4 +1,4 @@
-// Trees of cuts between chunks, made from samples of the points on the host (kernels/shared/cut_tree.h).
+// Trees of cuts between chunks, made from samples of the points on the host (kernels/points/cut_tree.h).
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "shared/sampled_cuts.h"
+#include "points/sampled_cuts.h"
 
 namespace flaunay::mpi {
 namespace {

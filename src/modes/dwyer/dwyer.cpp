@@ -1,5 +1,5 @@
 // Guibas and Stolfi's divide and conquer (ACM Transactions on Graphics 4, 1985) with Dwyer's alternating cuts
-// (Algorithmica 2, 1987). The merge is that of the kernels (shared/rings.h), compiled as C++.
+// (Algorithmica 2, 1987). The merge is that of the kernels (mesh/rings.h), compiled as C++.
 //
 // Points are numbered again, as vertices, in the order of the leaves of the recursion, so that the vertices
 // of a merge are near each other in memory. A merge across the cut y = q is a merge across x = q in the
@@ -16,7 +16,7 @@
 // Among edges of cocircular points, the merge keeps those that it meets first. geometry::finish makes the
 // canonical result.
 #define RINGS_TIE(a, b, c, d, bounds) 0
-#include "shared/rings.h"
+#include "mesh/rings.h"
 
 namespace flaunay::dwyer {
 using namespace geometry;

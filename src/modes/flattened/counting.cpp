@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/sort.hpp"
-#include "shared/counting.h"
+#include "operations/counting.h"
 
 namespace flaunay::flattened {
 using namespace statistics;

@@ -90,7 +90,7 @@ struct RetiredRegions {
 struct Paths {
   std::size_t size = 0;  ///< there are no more vertices; their number is the last of `offsets`
   Buffer<cl_int> vertices{};
-  Buffer<cl_double2> projections{};  ///< (h, u); see kernels/shared/hull_height.h
+  Buffer<cl_double2> projections{};  ///< (h, u); see kernels/flattened/hull_height.h
   Buffer<cl_int> regions{};
   Buffer<cl_int> offsets{};  ///< regions + 1
   /// The flags that prune gave to internal points and corners; points with flag 0 are not on the path.

@@ -13,15 +13,15 @@ namespace flaunay::recursive {
 struct HullPoint {
   std::int32_t id;
   geometry::Point place;       ///< (s, u)
-  geometry::Point projection;  ///< (h, u), rounded; see project in kernels/shared/hull_height.h
+  geometry::Point projection;  ///< (h, u), rounded; see project in kernels/flattened/hull_height.h
 
   double s() const { return place.x; }
   double u() const { return place.y; }
   double height() const { return projection.x; }
 };
 
-/// The line that cuts a region. With one of the planar axes of kernels/shared/frame.h, hulls are the lower or
-/// the upper hull of the points in the plane.
+/// The line that cuts a region. With one of the planar axes of kernels/flattened/frame.h, hulls are the lower
+/// or the upper hull of the points in the plane.
 struct Line {
   int axis = kernel::AXIS_X;
   double q = 0;  ///< the line is s = q

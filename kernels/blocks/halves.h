@@ -1,0 +1,173 @@
+// The leaves of all blocks, and merges of their halves and of blocks. With RINGS_STOP they stop at a predicate that
+// floating point cannot decide, and a program without it continues them.
+//
+// A part of a block is a leaf, which has height 0, or what two parts of the height below are merged to. A part of
+// height h has at least 2^(h + 1) vertices, unless it is a block of one vertex. So if places are divided into cells of
+// that size, at most one part of the height begins in each, and one work-item per cell does all of them.
+#ifndef FLAUNAY_HALVES_H
+#define FLAUNAY_HALVES_H
+
+#include "blocks/halving.h"
+#include "mesh/rings.h"
+
+BEGIN_SHARED
+
+// The arrays of all blocks. parts: by half the place of the first vertex of a part; a whole block's is in `solved`.
+typedef struct {
+  int places;
+  GLOBAL const int* offsets;
+  GLOBAL const int* distinct;
+  GLOBAL const int* block_of_place;  // -1 behind the last block
+  GLOBAL const uchar* axes;
+  GLOBAL solved_block* parts;
+  GLOBAL solved_block* solved;
+} halved_blocks;
+
+static inline halved_blocks blocks_in(int places, GLOBAL const int* offsets, GLOBAL const int* distinct,
+                                      GLOBAL const int* block_of_place, GLOBAL const uchar* axes,
+                                      GLOBAL solved_block* parts, GLOBAL solved_block* solved) {
+  const halved_blocks blocks = {places, offsets, distinct, block_of_place, axes, parts, solved};
+  return blocks;
+}
+
+// Part `number` of those of its depth, which begins at vertex `begin` of its block. block: -1 for no part.
+typedef struct {
+  int block, first, count, depth, number, begin;
+} block_part;
+
+static inline int edge_at(int place) { return EDGES_PER_VERTEX * place; }
+
+// Frees the edges of a place that has no vertex, in a list of those of all such places up to `end`.
+static inline void free_place(rings* g, int place, int end) {
+  g->vertex_edge[place] = NO_EDGE;
+  for (int e = edge_at(place); e < edge_at(place + 1); e += 2) {
+    put_edge(g, e, NO_VERTEX, e + 2 < edge_at(end) ? e + 2 : NO_EDGE, e);
+    put_edge(g, e + 1, NO_VERTEX, e, e);
+  }
+}
+
+static inline void finish_part(rings* g, const halved_blocks* blocks, block_part part, hull_ends ends) {
+  if (part.depth == 0) {
+    // The edges of places without vertices are the block's, too.
+    const int from = part.first + part.count, end = blocks->offsets[part.block + 1];
+    const free_edges none = {NO_EDGE, NO_EDGE}, spare = {edge_at(from), edge_at(end) - 2};
+    join_free_lists(g, free_list(g), from < end ? spare : none);
+  }
+  const solved_block done = {ends, free_list(g)};
+  if (part.depth == 0) {
+    blocks->solved[part.block] = done;
+  } else {
+    blocks->parts[(part.first + part.begin) / 2] = done;
+  }
+}
+
+// The part of this depth that begins at the place or, if it must not, behind it. Its block is given.
+static inline block_part part_behind(const halved_blocks* blocks, int block, int height, int place) {
+  block_part part = {-1, 0, 0, 0, 0, 0};
+  if (block < 0) return part;
+  part.first = blocks->offsets[block];
+  part.count = blocks->distinct[block];
+  part.depth = halving_depth(part.count) - height;
+  if (part.depth < 0 || part.count == 0) return part;
+  part.number = part_from(part.count, part.depth, max(0, place - part.first));
+  if (part.number >> part.depth) return part;
+  part.begin = part_begin(part.count, part.depth, part.number);
+  part.block = block;
+  return part;
+}
+
+static inline int begins_before(block_part part, int end) { return part.block >= 0 && part.first + part.begin < end; }
+
+// Makes the leaves that begin at two places, and frees the edges of places without vertices. Returns how far it is.
+static inline int make_leaves_of_cell(rings* g, const halved_blocks* blocks, int cell) {
+  int state = MERGE_IS_DONE;
+  const int end = min(blocks->places, 2 * cell + 2);
+  for (int place = 2 * cell; place < end; ++place) {
+    const int block = blocks->block_of_place[place];
+    if (block >= 0 && place >= blocks->offsets[block] + blocks->distinct[block]) {
+      free_place(g, place, blocks->offsets[block + 1]);
+    }
+    const block_part part = part_behind(blocks, block, 0, place);
+    if (!begins_before(part, place + 1)) continue;
+    const int behind = part_begin(part.count, part.depth, part.number + 1);
+    g->free_first = g->free_last = NO_EDGE;
+    g->unused = edge_at(place);
+    const hull_ends ends = make_leaf(g, place, behind - part.begin);
+    if (HAS_STOPPED(g)) {
+      state = MERGE_IS_NEW;
+    } else {
+      free_unused(g, edge_at(part.first + behind));
+      finish_part(g, blocks, part, ends);
+    }
+  }
+  return state;
+}
+
+// Merges two sides, or continues to merge them. Returns how far it is.
+static inline int merge_sides(rings* g, int state, solved_block low, solved_block high, int axis) {
+  if (state == MERGE_IS_NEW) {
+    join_free_lists(g, low.unused, high.unused);
+  } else {
+    g->free_first = low.unused.first;
+    g->free_last = low.unused.last;
+  }
+  if (low.ends.first_x == NO_VERTEX || high.ends.first_x == NO_VERTEX) return MERGE_IS_DONE;
+  return continue_merge(g, state, last_along(low.ends, axis), first_along(high.ends, axis));
+}
+
+// The halves of a part, by the number of its first vertex: their places in `parts`, the first vertex of the high one,
+// and one vertex behind it. part.block is -1 if there is no part.
+typedef struct {
+  block_part part;
+  int axis, low_at, high_at, begin, middle, end;
+} part_halves;
+
+// The halves of the part of this height that begins in a cell.
+static inline part_halves halves_of_cell(const halved_blocks* blocks, int height, int cell) {
+  const int begin = cell << (height + 1), end = min(blocks->places - begin, 2 << height) + begin;
+  part_halves halves;
+  block_part part = part_behind(blocks, blocks->block_of_place[begin], height, begin);
+  if (!begins_before(part, end)) part = part_behind(blocks, blocks->block_of_place[end - 1], height, begin);
+  if (!begins_before(part, end)) part.block = -1;
+  halves.part = part;
+  if (part.block < 0) return halves;
+  halves.begin = part.first + part.begin;
+  halves.middle = part.first + part_begin(part.count, part.depth + 1, 2 * part.number + 1);
+  halves.end = part.first + part_begin(part.count, part.depth, part.number + 1);
+  halves.low_at = halves.begin / 2;
+  halves.high_at = halves.middle / 2;
+  halves.axis = blocks->axes[part.first + (1 << part.depth) + part.number];
+  return halves;
+}
+
+// Merges the halves of the part of this height that begins in a cell, if there is one. Returns how far it is.
+static inline int merge_halves_of_cell(rings* g, const halved_blocks* blocks, int height, int cell, int state) {
+  const part_halves halves = halves_of_cell(blocks, height, cell);
+  if (halves.part.block < 0) return MERGE_IS_DONE;
+  const solved_block low = blocks->parts[halves.low_at], high = blocks->parts[halves.high_at];
+  state = merge_sides(g, state, low, high, halves.axis);
+  if (state == MERGE_IS_DONE) {
+    finish_part(g, blocks, halves.part, joined_ends(g, low.ends, high.ends, halves.axis));
+  } else {
+    blocks->parts[halves.low_at].unused = free_list(g);
+  }
+  return state;
+}
+
+// Does all that begins in a cell: leaves, if the height is 0, or merges. Returns how far it is.
+static inline int do_cell(rings* g, const halved_blocks* blocks, int height, int cell, int state) {
+  return height == 0 ? make_leaves_of_cell(g, blocks, cell) : merge_halves_of_cell(g, blocks, height, cell, state);
+}
+
+// Merges two blocks, or what has been merged to them. Returns how far it is.
+static inline int merge_two_blocks(rings* g, GLOBAL solved_block* solved, block_merge merge, int axis, int state) {
+  const solved_block low = solved[merge.low], high = solved[merge.high];
+  state = merge_sides(g, state, low, high, axis);
+  if (state == MERGE_IS_DONE) solved[merge.low].ends = joined_ends(g, low.ends, high.ends, axis);
+  solved[merge.low].unused = free_list(g);
+  return state;
+}
+
+END_SHARED
+
+#endif

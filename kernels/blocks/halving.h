@@ -1,0 +1,37 @@
+// How a block's vertices are cut in halves, down to leaves of one to four vertices: into 2^depth parts of equal size,
+// but for one vertex. Parts are counted from 0 in each depth, and their numbers behind 2^depth are those of a heap.
+#ifndef FLAUNAY_HALVING_H
+#define FLAUNAY_HALVING_H
+
+#include "arithmetic/language.h"
+#include "arithmetic/numbers.h"
+#include "shared/limits.h"
+
+BEGIN_SHARED
+
+// Where a point stands in either order.
+typedef int2 ranks;
+
+// The least depth of which all parts are leaves.
+static inline int halving_depth(int count) {
+  return count <= LEAF_VERTICES ? 0 : 32 - (int)clz((count - 1) / LEAF_VERTICES);
+}
+
+// Where part j begins, of the 2^depth parts into which count vertices are cut.
+static inline int part_begin(int count, int depth, int j) { return (int)(((long)j * count) >> depth); }
+
+// The first part that begins at vertex k or behind it.
+static inline int part_from(int count, int depth, int k) { return (int)((((long)k << depth) + count - 1) / count); }
+
+// 1 if the part is longer in y, by its interquartile ranges.
+static inline int axis_of(int begin, int end, GLOBAL const coordinate2* points, GLOBAL const ranks* by_x,
+                          GLOBAL const ranks* by_y) {
+  const int low = begin + (end - begin) / 4, high = end - 1 - (end - begin) / 4;
+  const coordinate width = rounded_difference(points[by_x[high].x].x, points[by_x[low].x].x);
+  const coordinate height = rounded_difference(points[by_y[high].x].y, points[by_y[low].x].y);
+  return height > width;
+}
+
+END_SHARED
+
+#endif

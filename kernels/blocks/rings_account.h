@@ -1,0 +1,17 @@
+// The account of all merges: how many predicates were undecided.
+#ifndef FLAUNAY_RINGS_ACCOUNT_H
+#define FLAUNAY_RINGS_ACCOUNT_H
+
+#include "mesh/rings.h"
+#include "shared/codes.h"
+
+BEGIN_SHARED
+
+static inline void add_to_account(const rings* g, GLOBAL volatile uint* account) {
+  if (g->undecided > 0) atomic_add(&account[RINGS_UNDECIDED], g->undecided);
+  if (g->ties > 0) atomic_add(&account[RINGS_TIES], g->ties);
+}
+
+END_SHARED
+
+#endif

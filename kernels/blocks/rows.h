@@ -1,0 +1,27 @@
+// Rows of the array of triangles: each starts with its smallest index and runs counter-clockwise.
+#ifndef FLAUNAY_ROWS_H
+#define FLAUNAY_ROWS_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+// Where the corners v, a and b stand in the row of a triangle, counter-clockwise.
+typedef struct {
+  int v, a, b;
+} row_places;
+
+// Of the indices of the corners.
+static inline row_places places_in_row(int at_v, int at_a, int at_b) {
+  const int least = min(at_v, min(at_a, at_b));
+  const int from = (at_a == least) + 2 * (at_b == least);
+  row_places to;
+  to.v = (3 - from) % 3;
+  to.b = 2 - from;
+  to.a = 3 - to.v - to.b;
+  return to;
+}
+
+END_SHARED
+
+#endif

@@ -1,0 +1,18 @@
+// The methods of natural-neighbour interpolation, and how exact their weights are.
+#ifndef FLAUNAY_NATURAL_H
+#define FLAUNAY_NATURAL_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+INTEGER_CONSTANT(NO_WEIGHTS, 0);
+INTEGER_CONSTANT(SIBSON, 1);
+INTEGER_CONSTANT(LAPLACE, 2);
+
+// The errors of a query's weights together, if it has fewer than a thousand neighbours; see docs/exactness.md.
+#define NATURAL_ERROR 0x1p-36
+
+END_SHARED
+
+#endif

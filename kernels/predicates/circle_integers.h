@@ -1,0 +1,57 @@
+// The in-circle determinant of integers: differences of three points from the fourth.
+#ifndef FLAUNAY_CIRCLE_INTEGERS_H
+#define FLAUNAY_CIRCLE_INTEGERS_H
+
+#include "arithmetic/integer_arithmetic.h"
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+static inline integer128 cross_product(long ax, long ay, long bx, long by) {
+  return difference_128(product_128(ax, by), product_128(ay, bx));
+}
+
+static inline integer128 dot_product(long ax, long ay, long bx, long by) {
+  return sum_128(product_128(ax, bx), product_128(ay, by));
+}
+
+// What in-circle tests compare: the angles over the edge from a to b, under which it is seen from the fourth point and
+// from c, as in predicates/planar.h.
+typedef struct {
+  integer128 dot, cross, other_dot, other_cross;
+} integer_angles;
+
+static inline integer_angles angles_of(long ax, long ay, long bx, long by, long cx, long cy) {
+  integer_angles angles;
+  angles.dot = dot_product(ax, ay, bx, by);
+  angles.cross = cross_product(ax, ay, bx, by);
+  ax -= cx;
+  ay -= cy;
+  bx -= cx;
+  by -= cy;
+  angles.other_dot = dot_product(ax, ay, bx, by);
+  angles.other_cross = cross_product(ax, ay, bx, by);
+  return angles;
+}
+
+// Of differences below 2^SHORT_BITS, whose dot and cross products are below 2^63.
+#define SHORT_BITS 30
+static inline int circle_short(long ax, long ay, long bx, long by, long cx, long cy) {
+  const long dot = ax * bx + ay * by, cross = ax * by - ay * bx;
+  ax -= cx;
+  ay -= cy;
+  bx -= cx;
+  by -= cy;
+  const long other_dot = ax * bx + ay * by, other_cross = ax * by - ay * bx;
+  return sign_of_128(difference_128(product_128(other_dot, cross), product_128(dot, other_cross)));
+}
+
+// Modulo 2^128, of a determinant that is known to be below 2^127.
+static inline int circle_middle(long ax, long ay, long bx, long by, long cx, long cy) {
+  const integer_angles of = angles_of(ax, ay, bx, by, cx, cy);
+  return sign_of_128(difference_128(low_product(of.other_dot, of.cross), low_product(of.dot, of.other_cross)));
+}
+
+END_SHARED
+
+#endif

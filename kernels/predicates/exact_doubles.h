@@ -1,0 +1,196 @@
+// Exact orientation and in-circle tests of points whose coordinates are doubles: by integers where they suffice, as for
+// most ties, else by expansions.
+#ifndef FLAUNAY_EXACT_DOUBLES_H
+#define FLAUNAY_EXACT_DOUBLES_H
+
+#include "arithmetic/exact_arithmetic.h"
+#include "arithmetic/integer_arithmetic.h"
+#include "arithmetic/language.h"
+#include "arithmetic/numbers.h"
+#include "predicates/bounds.h"
+#include "predicates/circle_integers.h"
+
+#ifndef FIXED_POINT
+
+BEGIN_SHARED
+
+// The largest differences of circle_middle where a filter could not decide: then the determinant is below 2^125, see
+// docs/exactness.md.
+#define MIDDLE_BITS 42
+// A unit for differences: with `largest` the greatest magnitude of all (rounded; not 0), it makes them integers below
+// 2^bits. As a factor, a power of two.
+#define NARROW_BITS 31
+#define WIDE_BITS 62
+static inline double unit_factor(double largest, int bits) {
+  const int exponent = (int)(as_ulong(largest) >> 52);  // 1023 for [1, 2)
+  return as_double((ulong)(1023 + 1023 + bits - 1 - exponent) << 52);
+}
+
+// Whether a difference as two_sum gives it, below 2^bits units, is an integer; it is then put into *integer.
+static inline int is_integer(double2 difference, double factor, long* integer) {
+  const double high = difference.x * factor;
+  const double low = difference.y * factor;
+  const long whole_high = convert_long(high);
+  const long whole_low = convert_long(low);
+  *integer = whole_high + whole_low;
+  return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
+}
+
+// The same for at most 53 bits, which a double has: an integer has no rounding error.
+static inline int is_short_integer(double2 difference, double factor, long* integer) {
+  const double high = difference.x * factor;
+  *integer = convert_long(high);
+  return (convert_double(*integer) == high) & (difference.y == 0.0);
+}
+
+static inline double larger_magnitude(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }
+
+// Of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
+OUT_OF_LINE static inline int cross_by_expansions(double2 bx, double2 by, double2 cx, double2 cy) {
+  expansion sum;
+  sum.size = 0;
+  for (int term = 0; term < 2; ++term) {
+    const double2 f = term == 0 ? bx : -by;
+    const double2 g = term == 0 ? cy : cx;
+    for (int k = 0; k < 4; ++k) {
+      const double2 p = two_product(k & 1 ? f.x : f.y, k & 2 ? g.x : g.y);
+      if (p.y != 0.0) expansion_add(&sum, p.y);
+      if (p.x != 0.0) expansion_add(&sum, p.x);
+    }
+  }
+  return expansion_sign(&sum);
+}
+
+OUT_OF_LINE static inline int cross_exact(double2 a, double2 b, double2 c, double2 d) {
+  const double2 px = two_sum(b.x, -a.x), py = two_sum(b.y, -a.y), qx = two_sum(d.x, -c.x), qy = two_sum(d.y, -c.y);
+  if ((px.y != 0.0) | (py.y != 0.0) | (qx.y != 0.0) | (qy.y != 0.0)) return cross_by_expansions(px, py, qx, qy);
+  const double2 first = two_product(px.x, qy.x), second = two_product(py.x, qx.x);
+  return first.x != second.x ? sign_of(first.x - second.x) : sign_of(first.y - second.y);
+}
+
+OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
+  const double2 bx = two_sum(b.x, -a.x);
+  const double2 by = two_sum(b.y, -a.y);
+  const double2 cx = two_sum(c.x, -a.x);
+  const double2 cy = two_sum(c.y, -a.y);
+  const double largest = larger_magnitude(larger_magnitude(bx.x, by.x), larger_magnitude(cx.x, cy.x));
+  if (largest == 0.0) return 0;
+  const double factor = unit_factor(largest, WIDE_BITS);
+  long bxi, byi, cxi, cyi;
+  if (is_integer(bx, factor, &bxi) & is_integer(by, factor, &byi) & is_integer(cx, factor, &cxi) &
+      is_integer(cy, factor, &cyi))
+    return sign_of_128(difference_128(product_128(bxi, cyi), product_128(byi, cxi)));
+  return cross_by_expansions(bx, by, cx, cy);
+}
+
+static inline integer128 sum_of_squares(long x, long y) { return sum_128(product_128(x, x), product_128(y, y)); }
+// The in-circle determinant of differences below 2^WIDE_BITS, of which both factors of a term are below 2^125.
+static inline integer256 circle_term(long ax, long ay, long bx, long by, long cx, long cy) {
+  return product_256(sum_of_squares(ax, ay), cross_product(bx, by, cx, cy));
+}
+
+static inline integer256 circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
+  return sum_256(sum_256(circle_term(ax, ay, bx, by, cx, cy), circle_term(bx, by, cx, cy, ax, ay)),
+                 circle_term(cx, cy, ax, ay, bx, by));
+}
+
+// The determinant, compressed.
+static inline void circle_by_expansions(const double2* dx, const double2* dy, expansion* sum) {
+  sum->size = 0;
+  // lift(k) times the cross product of the other two: six products of four differences for each coordinate's
+  // square, twelve in all.
+  for (int term = 0; term < 12; ++term) {
+    const int k = term / 4;
+    const int i = (k + 1) % 3;
+    const int j = (k + 2) % 3;
+    const int crossed = term & 1;
+    const double2 lift = term & 2 ? dy[k] : dx[k];
+    const double2 f = crossed ? -dx[j] : dx[i];
+    const double2 g = crossed ? dy[i] : dy[j];
+    expansion product;
+    product.size = 0;
+    expansion_add(&product, f.y);
+    expansion_add(&product, f.x);
+    for (int s = 0; s < 3; ++s) {
+      const double2 by = s == 0 ? g : lift;
+      const double factor[2] = {by.x, by.y};
+      expansion_multiply(&product, factor, 2);
+    }
+    for (int s = 0; s < product.size; ++s) expansion_add(sum, product.part[s]);
+    expansion_compress(sum);
+  }
+}
+
+OUT_OF_LINE static inline int circle_sign_by_expansions(const double2* dx, const double2* dy) {
+  expansion sum;
+  circle_by_expansions(dx, dy, &sum);
+  return expansion_sign(&sum);
+}
+
+// What in-circle tests are made of: differences of three points from the fourth, and the largest magnitude among them.
+typedef struct {
+  double2 x[3], y[3];
+  double largest;
+} circle_differences;
+
+static inline circle_differences differences_from(double2 d, double2 a, double2 b, double2 c) {
+  circle_differences from;
+  from.x[0] = two_sum(a.x, -d.x);
+  from.y[0] = two_sum(a.y, -d.y);
+  from.x[1] = two_sum(b.x, -d.x);
+  from.y[1] = two_sum(b.y, -d.y);
+  from.x[2] = two_sum(c.x, -d.x);
+  from.y[2] = two_sum(c.y, -d.y);
+  from.largest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    from.largest = larger_magnitude(from.largest, larger_magnitude(from.x[k].x, from.y[k].x));
+  }
+  return from;
+}
+
+// Whether all differences are integers below 2^WIDE_BITS units, which are put into x and y.
+static inline int are_integers(const circle_differences* from, double factor, long* x, long* y) {
+  int integers = 1;
+  for (int k = 0; k < 3; ++k) {
+    integers &= is_integer(from->x[k], factor, &x[k]) & is_integer(from->y[k], factor, &y[k]);
+  }
+  return integers;
+}
+
+// Of coarse points (COARSE_CIRCLE_BITS), of which the filter has found this.
+#define circle_coarse(a, b, c, d) 0
+
+// Of any four points.
+OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
+  const circle_differences from = differences_from(d, a, b, c);
+  if (from.largest == 0.0) return 0;
+  long x[3], y[3];
+  return are_integers(&from, unit_factor(from.largest, WIDE_BITS), x, y)
+             ? sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]))
+             : circle_sign_by_expansions(from.x, from.y);
+}
+
+// The same, sooner, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
+// that is larger than theirs says nothing about the determinant.
+OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, double2 d, filter_bound bound) {
+  if (bound > ANGLE_BOUND) return circle_exact(a, b, c, d);
+  const circle_differences from = differences_from(d, a, b, c);
+  if (from.largest == 0.0) return 0;
+  const double factor = unit_factor(from.largest, MIDDLE_BITS);
+  long x[3], y[3], all = 0;
+  int integers = 1;
+  for (int k = 0; k < 3; ++k) {
+    integers &= is_short_integer(from.x[k], factor, &x[k]) & is_short_integer(from.y[k], factor, &y[k]);
+    all |= x[k] | y[k];
+  }
+  if (!integers) return circle_exact(a, b, c, d);
+  const int spare = MIDDLE_BITS - SHORT_BITS;
+  if ((all & ((1L << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
+  return circle_short(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
+}
+
+END_SHARED
+
+#endif
+
+#endif
