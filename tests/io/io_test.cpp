@@ -25,7 +25,6 @@
 #include "app/files/mesh.hpp"
 #include "app/files/points.hpp"
 #include "app/files/region.hpp"
-#include "app/files/svg.hpp"
 #include "files/output.hpp"
 #include "files/printable.hpp"
 #include "flaunay/flaunay.hpp"

@@ -9,7 +9,7 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/files/points.hpp"
-#include "app/files/svg.hpp"
+#include "app/files/region.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/research.hpp"
 

@@ -8,7 +8,6 @@
 #include "app/files/mesh_formats.hpp"
 #include "app/files/npy.hpp"
 #include "app/files/poly.hpp"
-#include "app/files/svg.hpp"
 
 namespace flaunay::io {
 namespace {

@@ -23,6 +23,8 @@ void write_ply(Outputs& outputs, const std::string& path, const MeshContents& co
 void write_vtu(Outputs& outputs, const std::string& path, const MeshContents& contents);
 /// A feature per triangle, with its corners as a ring.
 void write_geojson(Outputs& outputs, const std::string& path, const MeshContents& contents);
+/// A picture. Constraint edges are drawn strongly, and what is outside or a hole is in pale colours.
+void write_svg(Outputs& outputs, const std::string& path, const MeshContents& contents);
 void write_npy_triangles(Outputs& outputs, const std::string& path, const MeshContents& contents);
 
 }  // namespace flaunay::io

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/files/drawing.hpp"
-#include "app/files/svg.hpp"
+#include "app/files/region.hpp"
 #include "files/output.hpp"
 
 namespace flaunay::io {

@@ -1,4 +1,4 @@
-// A region of a partition as files that other programs read.
+// The regions of a partition: files that other programs read, and a picture.
 #pragma once
 
 #include <string>
@@ -14,6 +14,10 @@ namespace flaunay::io {
 /// input's. Throws Error(input) naming the file and the system's reason.
 void write_region(Outputs& outputs, const std::string& stem, const Points& points,
                   const research::Region& region);
+
+/// Writes a picture (SVG) of the regions, one colour each, with their points and borders.
+void write_partition_svg(Outputs& outputs, const std::string& path, const Points& points,
+                         const research::Partition& partition);
 
 struct StoredRegion {
   Points points;

@@ -1,5 +1,4 @@
-#include "app/files/svg.hpp"
-
+// A picture of a triangulation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "app/files/drawing.hpp"
+#include "app/files/mesh_formats.hpp"
 #include "files/output.hpp"
 
 namespace flaunay::io {
