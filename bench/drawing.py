@@ -105,8 +105,8 @@ def guide(panel, place, horizontal=True):
 
 
 def save(figure, path, panels=()):
-    """Writes a figure, half as long as Matplotlib would: without metadata, comments and needless digits, and with a class
-    for each style."""
+    """Writes a figure, half as long as Matplotlib would: without metadata, comments and needless digits, and with a
+    class for each style."""
     legend_of(figure, panels)
     text = io.StringIO()
     figure.savefig(text, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})

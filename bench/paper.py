@@ -282,7 +282,8 @@ FIGURES = {
     "figure-7-work": ("Work against Dwyer's algorithm", (4.2, 3.2), [
         (by_size, OURS, "operations_per_point", "operations per point"),
         (by_size, DWYER, "operations_per_point", "operations per point"), (over_dwyer, OURS), (over_dwyer, PUBLISHED)]),
-    "figure-8-components": ("Work by component", (11, 3.65), [(components, "interquartile"), (components, "alternate")]),
+    "figure-8-components": ("Work by component", (11, 3.65),
+                            [(components, "interquartile"), (components, "alternate")]),
     "figure-9-depth": ("Depth, and work / depth", (4.2, 3.2), [
         (on_log, method, quantity, label) for quantity, label in (("depth", "depth (operations)"),
                                                                  ("parallelism", "work / depth"))

@@ -37,7 +37,7 @@ QUICK = {"peer_size": 20000, "mode_sizes": "1024,4096", "verify_size": 5000, "ru
          "tests": ["test_host", "test_embedding", "test_triangulation"], "flags": ["--quick"]}
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-sys.path.insert(0, os.path.join(SOURCE, "bench"))
+sys.path.insert(0, os.path.join(SOURCE, "bench", "predictions"))
 import predict  # pylint: disable=wrong-import-position
 
 # Every machine has its own version of these libraries, so they are not packed.

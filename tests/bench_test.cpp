@@ -521,7 +521,7 @@ TEST_F(BenchTest, DevicesAreProbed) {
 class PredictionTest : public BenchTest {
  protected:
   std::string script(const std::string& name) const {
-    return (fs::path(flaunay::plot_program()).parent_path() / name).string();
+    return (fs::path(flaunay::plot_program()).parent_path() / "predictions" / name).string();
   }
   /// Predictions for one machine, of a record in `path`.
   nlohmann::json predicted(const std::string& record, const std::string& options) const {

@@ -112,7 +112,8 @@ const Subcommand kSubcommand(
     "device", "what launches, waits, loads and arithmetic take on a device",
     "One work-item follows a chain of loads, each of which needs the one before, through working sets of "
     "several "
-    "sizes; another computes with the result just computed. bench/predict.py takes the record in place of "
+    "sizes; another computes with the result just computed. bench/predictions/predict.py takes the record in "
+    "place of "
     "what "
     "its machine files assume.",
     measure_device, [](Options& options, DeviceRequest& request) {

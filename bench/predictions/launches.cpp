@@ -187,7 +187,8 @@ const Subcommand kSubcommand(
     fmt::format(
         "Counts do not depend on the machine, but on the sizes that a device's kind has: --tuning gpu counts "
         "on "
-        "any OpenCL device what a GPU would do, and bench/predict.py predicts times from the record. "
+        "any OpenCL device what a GPU would do, and bench/predictions/predict.py predicts times from the "
+        "record. "
         "longest_chain is the most steps of a block, of a merge, or of a walk along a hull, counted in a "
         "build "
         "of the kernels of its own (docs/counting.md); elements is the most that a work-item of another "

@@ -21,7 +21,7 @@ constexpr std::size_t kSmallRegion = kernel::DEFAULT_SMALL_REGION;
 constexpr std::size_t kLargestGroup = kernel::LARGEST_GROUP;
 constexpr std::size_t kLargestValue = std::size_t{1} << 30;
 // From this rate of fp32 over that of fp64 on, fixed point takes less time on a GPU, by the model
-// (bench/predict.py).
+// (bench/predictions/predict.py).
 constexpr std::size_t kSlowFp64 = 24;
 
 // A value of the table: a number, or a number per compute unit of the device.

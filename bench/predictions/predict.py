@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Predicts times of a call on a machine from the launches that `flaunay-bench launches --json` has recorded.
 
-    bench/predict.py LAUNCHES.json --machine h200
-    bench/predict.py LAUNCHES.json --machine pocl-2-cores --device-record DEVICE.json --measured
+    bench/predictions/predict.py LAUNCHES.json --machine h200
+    bench/predictions/predict.py LAUNCHES.json --machine pocl-2-cores --device-record DEVICE.json --measured
 
 It is a model, not a measurement. A launch takes the longest of
 
@@ -17,18 +17,16 @@ It is a model, not a measurement. A launch takes the longest of
 and the cost of a launch. A step on one lane takes its instructions, of which those of double precision may take longer,
 its mispredicted branches, and its loads that wait for each other; where work-items of a warp go different ways, their
 paths come one after the other. Waits of the host and transfers are added, but not what the host computes itself.
-bench/machines/ has the machines, with a source for each value, and bench/kernels.json what a step of each kernel is
-made of, in double precision and in fixed point: a record with the tuning fixed_point=1 takes the latter.
+machines/ has the machines, with a source for each value, and kernels.json what a step of each kernel is made of, in
+double precision and in fixed point: a record with the tuning fixed_point=1 takes the latter.
 docs/performance.md shows predictions beside measurements.
 """
 import argparse
-import glob
 import json
-import os
+import pathlib
 import sys
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
-MACHINES = os.path.join(FOLDER, "machines")
+FOLDER = pathlib.Path(__file__).resolve().parent
 # Of a kernel that the static table lacks.
 REGISTERS = 64
 # The share of the instructions of which "work_items_of_most_instructions" is said.
@@ -44,22 +42,21 @@ def fail(message):
 
 def load(path):
     try:
-        with open(path, encoding="utf-8") as file:
-            return json.load(file)
+        return json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         fail(f"{path} cannot be read: {error}")
 
 
 def machine_names():
-    return sorted(os.path.splitext(os.path.basename(path))[0] for path in glob.glob(os.path.join(MACHINES, "*.json")))
+    return sorted(path.stem for path in (FOLDER / "machines").glob("*.json"))
 
 
 def read_machine(name):
     """The machine's values without their sources."""
-    path = os.path.join(MACHINES, f"{name}.json")
-    if not os.path.exists(path):
+    if name not in machine_names():
         fail(f"there is no machine {name}; there are {', '.join(machine_names())}")
-    return {key: value["value"] if isinstance(value, dict) else value for key, value in load(path).items()}
+    values = load(FOLDER / "machines" / f"{name}.json")
+    return {key: value["value"] if isinstance(value, dict) else value for key, value in values.items()}
 
 
 def machine_of(record):
@@ -118,7 +115,7 @@ class Model:
 
     def __init__(self, machine, registers=None, fixed_point=False):
         self.machine, self.registers, self.fixed_point = machine, registers or {}, fixed_point
-        self.kernels = load(os.path.join(FOLDER, "kernels.json"))["kernels"]
+        self.kernels = load(FOLDER / "kernels.json")["kernels"]
         if fixed_point:
             self.kernels = {kernel: in_fixed_point(cost) for kernel, cost in self.kernels.items()}
 
@@ -182,12 +179,9 @@ class Model:
                      "convert": steps * cost.get("conversions", 0) / (m["conversions_per_second"] * active_share),
                      "cache": steps * cost.get("near_bytes", 0) / m.get("near_bytes_per_second", m["bytes_per_second"]),
                      "memory": steps * cost["scattered_bytes" if scattered else "bytes"] / m["bytes_per_second"]}
+        times["launch"] = m["launch_seconds"]
         bound = max(times, key=times.get)
-        if times[bound] < m["launch_seconds"]:
-            bound, seconds = "launch", m["launch_seconds"]
-        else:
-            seconds = times[bound]
-        return seconds, bound
+        return times[bound], bound
 
 
 def predict_call(model, summary, launches):
@@ -220,26 +214,26 @@ def launches_of(record, summary):
 
 
 def registers_of(path, architecture, fixed_point=False):
-    if not os.path.exists(path) or not architecture:
+    if not architecture or not pathlib.Path(path).exists():
         return {}
     return {row["kernel"]: row["registers"] for row in load(path)["results"]
             if row["architecture"] == architecture and row.get("fixed_point", False) == fixed_point}
 
 
 def print_call(machine, summary, rows, totals, measured):
+    def milliseconds(seconds):
+        return f"{1e3 * seconds:.3g}"
+
     print(f"\nPREDICTED, not measured: {machine['name']}, mode {summary['mode']}, {summary['n']} points of "
           f"{summary['distribution']}{', in fixed point' * totals['fixed_point']}")
-    heads = ["kernel", "launches", "predicted ms", "bound by"] + ["measured ms"] * measured
-    lines = [[row["kernel"], str(row["launches"]), f"{1e3 * row['predicted_seconds']:.3g}", row["bound"]]
-             + [f"{1e3 * row['measured_seconds']:.3g}"] * measured for row in rows]
-    of_call = [f"{1e3 * summary['seconds_median']:.3g}"] * measured
-    lines.append(["device to device", str(summary["kernel_launches"]), f"{1e3 * totals['device_seconds']:.3g}", ""]
-                 + [""] * measured)
-    lines.append(["host to host", "", f"{1e3 * totals['call_seconds']:.3g}", ""] + of_call)
-    print("| " + " | ".join(heads) + " |")
-    print("|---|--:|--:|---|" + "--:|" * measured)
-    for line in lines:
-        print("| " + " | ".join(line) + " |")
+    lines = [["kernel", "launches", "predicted ms", "bound by", "measured ms"]]
+    lines += [[row["kernel"], str(row["launches"]), milliseconds(row["predicted_seconds"]), row["bound"],
+               milliseconds(row["measured_seconds"])] for row in rows]
+    lines.append(["device to device", str(summary["kernel_launches"]), milliseconds(totals["device_seconds"]), "", ""])
+    of_call = milliseconds(summary["seconds_median"])
+    lines.append(["host to host", "", milliseconds(totals["call_seconds"]), "", of_call])
+    texts = ["| " + " | ".join(line if measured else line[:-1]) + " |" for line in lines]
+    print("\n".join([texts[0], "|---|--:|--:|---|" + "--:|" * measured, *texts[1:]]))
     print(f"\nLaunches of at least {totals['work_items_of_most_instructions']} work-items do {MOST:.0%} of the "
           "instructions.")
 
@@ -252,17 +246,17 @@ def arguments_of(command_line):
     parser.add_argument("--for-device", action="store_true", help="the machine file that fits the record's device")
     parser.add_argument("--cores", type=int, help="so many of the machine's cores")
     parser.add_argument("--device-record", metavar="FILE", help="a record of flaunay-bench device on that machine")
-    parser.add_argument("--static", metavar="FILE", default=os.path.join(FOLDER, "results", "static.json"),
+    parser.add_argument("--static", metavar="FILE", default=FOLDER.parent / "results" / "static.json",
                         help="the static table, for the kernels' registers")
     parser.add_argument("--measured", action="store_true", help="the record's times beside the predictions")
     parser.add_argument("--json", metavar="FILE", help="write the predictions here")
     return parser.parse_args(command_line)
 
 
-def predictions(arguments, names):
-    record = load(arguments.launches)
-    if record.get("subcommand") != "launches":
-        fail(f"{arguments.launches} is no record of flaunay-bench launches")
+def predictions(record, arguments):
+    names = arguments.machine + [machine_of(record)] * arguments.for_device
+    if not names:
+        fail("--machine names a machine, or --for-device takes the record's")
     for name in names:
         machine = read_machine(name)
         if arguments.device_record:
@@ -280,19 +274,14 @@ def predictions(arguments, names):
 
 def main(command_line):
     arguments = arguments_of(command_line)
-    names = arguments.machine
-    if arguments.for_device:
-        names = [*names, machine_of(load(arguments.launches))]
-    if not names:
-        fail("--machine names a machine, or --for-device takes the record's")
-    results = list(predictions(arguments, names))
+    record = load(arguments.launches)
+    if record.get("subcommand") != "launches":
+        fail(f"{arguments.launches} is no record of flaunay-bench launches")
+    results = list(predictions(record, arguments))
     if arguments.json:
-        with open(arguments.json, "w", encoding="utf-8") as file:
-            json.dump({"predicted": True, "launches": os.path.basename(arguments.launches), "results": results}, file,
-                      indent=1)
-            file.write("\n")
-    return 0
+        text = {"predicted": True, "launches": pathlib.Path(arguments.launches).name, "results": results}
+        pathlib.Path(arguments.json).write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(sys.argv[1:])

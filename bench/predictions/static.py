@@ -2,9 +2,9 @@
 """Compiles kernels for GPUs that this machine need not have, and prints what each kernel uses of them: registers,
 stack, spills and local memory, by architecture.
 
-    bench/static.py                                    all kernel files, all architectures; in fixed point, too
-    bench/static.py blocks/divide.cl --arch sm_90      some
-    bench/static.py --json bench/results/static.json   and a record, which bench/predict.py reads
+    bench/predictions/static.py                                   all files and architectures; in fixed point, too
+    bench/predictions/static.py blocks/divide.cl --arch sm_90      some
+    bench/predictions/static.py --json bench/results/static.json   and a record, which predict.py reads
 
 Clang compiles OpenCL C with the functions of libclc, in place of a vendor's driver, which is LLVM too but another
 version, so figures may differ a little. NVIDIA's machine code comes from ptxas, AMD's from Clang itself. What is not
@@ -25,8 +25,7 @@ import sysconfig
 import tempfile
 import time
 
-SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-KERNELS = os.path.join(SOURCE, "kernels")
+KERNELS = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "kernels"))
 ARCHITECTURES = ["sm_90", "sm_89", "gfx942"]
 # As Runtime compiles for a GPU; src/tuning/tuning.cpp has the values.
 OPTIONS = ["-cl-std=CL1.2", "-DSORT_BITS=4", "-DSORT_GROUP=128", "-DSMALL_REGION=48", "-DFETCH_AHEAD=0"]
@@ -48,54 +47,33 @@ def note(message):
     print(f"static.py: {message}", file=sys.stderr)
 
 
-def find_clang():
-    """Clang and its version, of those that have a libclc if there are several."""
-    names = [f"clang-{version}" for version in range(NEWEST, OLDEST, -1)] + ["clang"]
-    found = [path for path in map(shutil.which, names) if path]
-    if not found:
-        raise Missing("no clang; apt-get install clang-19 libclc-19")
-    return found
-
-
-def version_of(clang):
-    text = subprocess.run([clang, "--version"], capture_output=True, text=True, check=True).stdout
-    return re.search(r"version (\d+)", text)[1]
-
-
 def builtins_for(clang, name):
     """libclc's functions, of clang's own version."""
-    version = version_of(clang)
+    text = subprocess.run([clang, "--version"], capture_output=True, text=True, check=True).stdout
+    version = re.search(r"version (\d+)", text)[1]
+    folders = [f"/usr/lib/llvm-{version}/share/clc", "/usr/local/share/clc"]
+    paths = [os.path.join(folder, f"{name}.bc") for folder in folders]
     if shutil.which("dpkg"):
         listed = subprocess.run(["dpkg", "-L", f"libclc-{version}"], capture_output=True, text=True, check=False).stdout
-        for path in listed.splitlines():
-            if path.endswith(f"/{name}.bc") and os.path.exists(path):
-                return path
-    for folder in glob.glob(f"/usr/lib/llvm-{version}/share/clc") + glob.glob("/usr/local/share/clc"):
-        path = os.path.join(folder, f"{name}.bc")
-        if os.path.exists(path):
-            return path
-    return None
-
-
-def knows(clang, target, architecture):
-    command = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
-               "-S", "-o", os.devnull, os.devnull]
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+        paths = [path for path in listed.splitlines() if path.endswith(f"/{name}.bc")] + paths
+    return next(filter(os.path.exists, paths), None)
 
 
 def clang_with(name, target, architecture):
-    """The newest clang that has libclc, and the functions for this target."""
-    for clang in find_clang():
+    """The newest clang that knows the architecture and has libclc, and the functions for this target."""
+    names = [*(f"clang-{version}" for version in range(NEWEST, OLDEST, -1)), "clang"]
+    for clang in filter(None, map(shutil.which, names)):
         builtins = builtins_for(clang, name)
-        if builtins and knows(clang, target, architecture):
+        check = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
+                 "-S", "-o", os.devnull, os.devnull]
+        if builtins and subprocess.run(check, capture_output=True, check=False).returncode == 0:
             return clang, builtins
     raise Missing(f"no clang that knows it and has libclc with {name}.bc; apt-get install clang-19 libclc-19")
 
 
 def find_ptxas():
-    packages = {sysconfig.get_paths()["purelib"], *filter(os.path.isdir, sys.path)}
     candidates = [os.environ.get("PTXAS"), shutil.which("ptxas"), "/usr/local/cuda/bin/ptxas"]
-    for folder in packages:
+    for folder in {sysconfig.get_paths()["purelib"], *filter(os.path.isdir, sys.path)}:
         candidates += glob.glob(os.path.join(folder, "nvidia", "*", "bin", "ptxas"))
     for path in candidates:
         if path and os.access(path, os.X_OK):
@@ -137,43 +115,27 @@ def rows_of_metadata(assembly):
     return rows
 
 
-class Nvidia:
-    """By way of PTX."""
+class Compiler:
+    """NVIDIA's by way of PTX, or AMD's by Clang alone."""
 
     def __init__(self, architecture):
         self.architecture = architecture
-        self.clang, self.builtins = clang_with("nvptx64--nvidiacl", "nvptx64-nvidia-nvcl", architecture)
-        self.ptxas = find_ptxas()
-
-    def compile(self, file, folder, options):
-        ptx = os.path.join(folder, "kernel.ptx")
-        run([self.clang, *COMMON, *options, "-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang",
-             self.architecture, "-Xclang", "-mlink-builtin-bitcode", "-Xclang", self.builtins, "-S", "-o", ptx, file],
-            "clang")
-        return rows_of_ptxas(run([self.ptxas, "-v", f"-arch={self.architecture}", "-o", os.devnull, ptx], "ptxas"))
-
-
-class Amd:
-    """By Clang alone."""
-
-    def __init__(self, architecture):
-        self.architecture = architecture
-        self.clang, self.builtins = clang_with("amdgcn--amdhsa", "amdgcn--amdhsa", architecture)
+        self.is_nvidia = architecture.startswith("sm_")
+        name, target = (("nvptx64--nvidiacl", "nvptx64-nvidia-nvcl") if self.is_nvidia else ("amdgcn--amdhsa",) * 2)
+        clang, builtins = clang_with(name, target, architecture)
+        cpu = ["-Xclang", "-target-cpu", "-Xclang", architecture]
+        self.command = [clang, *COMMON, "-target", target, *(cpu if self.is_nvidia else [f"-mcpu={architecture}"]),
+                        "-nogpulib", "-Xclang", "-mlink-builtin-bitcode", "-Xclang", builtins]
+        self.ptxas = find_ptxas() if self.is_nvidia else None
 
     def compile(self, file, folder, options):
         assembly = os.path.join(folder, "kernel.s")
-        run([self.clang, *COMMON, *options, "-target", "amdgcn--amdhsa", f"-mcpu={self.architecture}", "-nogpulib",
-             "-Xclang", "-mlink-builtin-bitcode", "-Xclang", self.builtins, "-S", "-o", assembly, file], "clang")
+        run([*self.command, *options, "-S", "-o", assembly, file], "clang")
+        if self.is_nvidia:
+            arch = f"-arch={self.architecture}"
+            return rows_of_ptxas(run([self.ptxas, "-v", arch, "-o", os.devnull, assembly], "ptxas"))
         with open(assembly, encoding="utf-8") as text:
             return rows_of_metadata(text.read())
-
-
-def compilers_for(architectures):
-    for architecture in architectures:
-        try:
-            yield (Nvidia if architecture.startswith("sm_") else Amd)(architecture)
-        except Missing as missing:
-            note(f"{architecture} is skipped: {missing}")
 
 
 def texts_of(file):
@@ -195,30 +157,32 @@ def rows_of_file(compiler, file, fixed_point):
 
 def table_of(files, architectures):
     rows, failures = [], 0
-    for compiler in compilers_for(architectures):
-        for file in files:
-            for fixed_point in texts_of(file):
-                try:
-                    rows += rows_of_file(compiler, file, fixed_point)
-                except RuntimeError as error:
-                    note(f"{file} for {compiler.architecture}: {error}")
-                    failures += 1
+    for architecture in architectures:
+        try:
+            compiler = Compiler(architecture)
+        except Missing as missing:
+            note(f"{architecture} is skipped: {missing}")
+            continue
+        for file, fixed_point in [(file, text) for file in files for text in texts_of(file)]:
+            try:
+                rows += rows_of_file(compiler, file, fixed_point)
+            except RuntimeError as error:
+                note(f"{file} for {architecture}: {error}")
+                failures += 1
     return rows, failures
 
 
 def print_table(rows):
-    """A row a kernel; of each architecture: registers, stack + spills, local memory."""
+    """A row a kernel; of each architecture: registers, stack, spills, local memory."""
     architectures = list(dict.fromkeys(row["architecture"] for row in rows))
-    kernels = list(dict.fromkeys((row["file"], row["kernel"], row["fixed_point"]) for row in rows))
-    by_key = {(row["file"], row["kernel"], row["fixed_point"], row["architecture"]): row for row in rows}
+    kernels = {}
+    for row in rows:
+        cells = kernels.setdefault((row["file"], row["kernel"], row["fixed_point"]), dict.fromkeys(architectures, "-"))
+        cells[row["architecture"]] = " / ".join(str(row[column]) for column in COLUMNS)
     print("| kernel | " + " | ".join(architectures) + " |")
     print("|---|" + "--:|" * len(architectures))
-    for key in kernels:
-        cells = []
-        for architecture in architectures:
-            row = by_key.get((*key, architecture))
-            cells.append("-" if row is None else " / ".join(str(row[column]) for column in COLUMNS))
-        print(f"| `{key[1]}`{', in fixed point' * key[2]} | " + " | ".join(cells) + " |")
+    for (_, kernel, fixed_point), cells in kernels.items():
+        print(f"| `{kernel}`{', in fixed point' * fixed_point} | {' | '.join(cells.values())} |")
 
 
 def main(command_line):
