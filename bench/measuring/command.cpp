@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "app/command/errors.hpp"
-#include "bench/measuring/calls.hpp"
 #include "bench/measuring/timing.hpp"
 #include "files/output.hpp"
 
@@ -72,15 +71,12 @@ void print_table(const std::string& title, const Json& rows) {
 /// What the host's processor calls itself, and how many threads it runs at once.
 std::string host_description() {
   std::ifstream information("/proc/cpuinfo");
-  std::string model = "unknown processor";
-  for (std::string line; std::getline(information, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.compare(0, 10, "model name") == 0 && colon != std::string::npos) {
-      model = line.substr(colon + 2);
-      break;
-    }
-  }
-  return fmt::format("{}, {} hardware threads", model, std::thread::hardware_concurrency());
+  std::string line;
+  while (std::getline(information, line) && line.rfind("model name", 0) != 0) continue;
+  const std::size_t colon = line.find(": ");
+  return fmt::format("{}, {} hardware threads",
+                     information && colon != line.npos ? line.substr(colon + 2) : "unknown processor",
+                     std::thread::hardware_concurrency());
 }
 
 /// Times are not repeatable to more digits than these.
@@ -116,50 +112,6 @@ Options::Options(CLI::App& app, Request& request) : app_(app), request_(request)
   app.add_option("--json", request.json_path,
                  "write the record here; bench/plot.py RECORD.json -o FILE.svg draws it");
   app.add_option("--device", request.device, "device, as for flaunay triangulate");
-}
-
-Options& Options::flag(const std::string& name, bool& value, const std::string& description) {
-  app_.add_flag(name, value, description);
-  return *this;
-}
-
-Options& Options::help(const std::string& text) {
-  app_.footer(text);
-  return *this;
-}
-
-Options& Options::runs(int count) {
-  request_.runs = count;
-  return add("--runs", request_.runs, "counted runs of each");
-}
-
-Options& Options::sizes(std::vector<std::size_t> values, const std::string& description) {
-  request_.sizes = std::move(values);
-  return add("--sizes", request_.sizes, description);
-}
-
-Options& Options::distributions(std::vector<std::string> names) {
-  request_.distributions = std::move(names);
-  return add("--distributions", request_.distributions, "which (see flaunay generate --help)");
-}
-
-Options& Options::modes(std::vector<std::string> names) {
-  request_.modes = std::move(names);
-  return add("--modes", request_.modes, "flaunay's modes", CLI::IsMember(mode_names()));
-}
-
-Options& Options::limit(double seconds, const std::string& description) {
-  request_.limit = seconds;
-  return add("--limit", request_.limit, description);
-}
-
-Options& Options::quick(const std::string& points) {
-  return flag("--quick", request_.quick, points + ": shows that it works, and no more");
-}
-
-Options& Options::program(const std::string& name) {
-  app_.add_option("--program", request_.program, "default: " + name + " beside this program");
-  return *this;
 }
 
 Subcommands& all_subcommands() {

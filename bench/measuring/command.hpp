@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "bench/measuring/calls.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::bench {
@@ -47,6 +48,8 @@ struct Result {
 
 /// Adds options to a subcommand. All show their default values.
 class Options {
+  using Texts = std::vector<std::string>;
+
  public:
   Options(CLI::App& app, Request& request);
 
@@ -61,21 +64,38 @@ class Options {
     if (check || !has_text) option->check(check.value_or(CLI::PositiveNumber));
     return *this;
   }
-  Options& flag(const std::string& name, bool& value, const std::string& description);
-  Options& help(const std::string& text);
+  Options& flag(const std::string& name, bool& value, const std::string& description) {
+    app_.add_flag(name, value, description);
+    return *this;
+  }
+  Options& help(const std::string& text) {
+    app_.footer(text);
+    return *this;
+  }
 
   // What many subcommands have, with its default.
-  Options& runs(int count = 5);
-  Options& sizes(std::vector<std::size_t> values, const std::string& description = "numbers of points");
-  Options& distributions(std::vector<std::string> names);
-  Options& modes(std::vector<std::string> names = {"blocks"});
-  Options& limit(double seconds, const std::string& description);
-  Options& quick(const std::string& points = "3,000 points");
-  Options& program(const std::string& name);
+  Options& runs(int count = 5) { return add("--runs", request_.runs = count, "counted runs of each"); }
+  Options& sizes(const std::vector<std::size_t>& values,
+                 const std::string& description = "numbers of points") {
+    return add("--sizes", request_.sizes = values, description);
+  }
+  Options& distributions(const Texts& names) {
+    return add("--distributions", request_.distributions = names, "which (see flaunay generate --help)");
+  }
+  Options& modes(const Texts& names = {"blocks"}) {
+    return add("--modes", request_.modes = names, "flaunay's modes", CLI::IsMember(mode_names()));
+  }
+  Options& limit(double seconds, const std::string& description) {
+    return add("--limit", request_.limit = seconds, description);
+  }
+  Options& quick(const std::string& points = "3,000 points") {
+    return flag("--quick", request_.quick, points + ": shows that it works, and no more");
+  }
+  Options& program(const std::string& name) {
+    return add("--program", request_.program, "default: " + name + " beside this program");
+  }
 
  private:
-  using Texts = std::vector<std::string>;
-
   CLI::App& app_;
   Request& request_;
 };

@@ -53,48 +53,48 @@ ConstrainedInput empty_input(const std::string& name) { return {{name, 0, {}, {0
 
 // ---- Short segments
 
-/// Segments that do not cross, each in the cell of a grid in which its middle lies. Cells are as long as the
-/// longest segment, so that only segments of neighbouring cells can meet.
-class Uncrossed {
+/// Things by the cells of a grid over the unit square.
+template <typename Thing>
+class Grid {
  public:
-  Uncrossed(const Input& points, double longest)
-      : points_(points), side_(std::max<std::size_t>(1, static_cast<std::size_t>(1 / longest))) {
+  explicit Grid(double cell) : side_(std::max<std::size_t>(1, static_cast<std::size_t>(1 / cell))) {
     cells_.resize(side_ * side_);
   }
-
-  /// Whether it meets no other one; then it is one of them.
-  bool add(std::size_t a, std::size_t b) {
-    const Place middle = 0.5 * (place_of(points_, a) + place_of(points_, b));
-    const std::size_t row = cell_of(middle.y), column = cell_of(middle.x);
+  std::vector<Thing>& at(Place p) { return cells_[index(p.y) * side_ + index(p.x)]; }
+  /// Whether all things in the cell of a place and in those around it have a property.
+  template <typename Property>
+  bool all_near(Place p, const Property& property) const {
+    const std::size_t row = index(p.y), column = index(p.x);
     for (std::size_t r = row - (row > 0); r <= std::min(row + 1, side_ - 1); ++r) {
       for (std::size_t c = column - (column > 0); c <= std::min(column + 1, side_ - 1); ++c) {
-        for (const auto& [p, q] : cells_[r * side_ + c]) {
-          if (meet(a, b, p, q)) return false;
-        }
+        const std::vector<Thing>& cell = cells_[r * side_ + c];
+        if (!std::all_of(cell.begin(), cell.end(), property)) return false;
       }
     }
-    cells_[row * side_ + column].emplace_back(a, b);
     return true;
   }
 
  private:
-  std::size_t cell_of(double x) const {
+  std::size_t index(double x) const {
     return std::min(side_ - 1, static_cast<std::size_t>(std::max(0.0, x * static_cast<double>(side_))));
   }
-  double side_of(std::size_t a, std::size_t b, std::size_t c) const {
-    const Place p = place_of(points_, a), q = place_of(points_, b), r = place_of(points_, c);
-    return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-  }
-  /// Random points are nowhere near a line through two others, so that rounding does not matter.
-  bool meet(std::size_t a, std::size_t b, std::size_t p, std::size_t q) const {
-    if (a == p || a == q || b == p || b == q) return a + b == p + q;
-    return side_of(a, b, p) * side_of(a, b, q) <= 0 && side_of(p, q, a) * side_of(p, q, b) <= 0;
-  }
-
-  const Input& points_;
   std::size_t side_;
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> cells_;
+  std::vector<std::vector<Thing>> cells_;
 };
+
+using Segment = std::pair<std::size_t, std::size_t>;
+
+/// Random points are nowhere near a line through two others, so that rounding does not matter.
+bool meet(const Input& points, Segment s, Segment t) {
+  const auto [a, b] = s;
+  const auto [p, q] = t;
+  if (a == p || a == q || b == p || b == q) return a + b == p + q;
+  const auto side_of = [&](std::size_t i, std::size_t j, std::size_t k) {
+    const Place u = place_of(points, i), v = place_of(points, j), w = place_of(points, k);
+    return (v.x - u.x) * (w.y - u.y) - (v.y - u.y) * (w.x - u.x);
+  };
+  return side_of(a, b, p) * side_of(a, b, q) <= 0 && side_of(p, q, a) * side_of(p, q, b) <= 0;
+}
 
 // ---- Rough curves
 
@@ -172,27 +172,25 @@ void add_border(ConstrainedInput& input, std::size_t from, std::size_t to, Rando
 
 ConstrainedInput short_segments(std::size_t n) {
   constexpr std::size_t kOneIn = 5, kTriesEach = 100;
-  constexpr double kLongest = 3;
   ConstrainedInput input{make_input("uniform", n), {}, {}};
-  const double longest = kLongest / std::sqrt(static_cast<double>(n));
-  // Points by cells of a grid, to find those that are near.
-  const std::size_t side = std::max<std::size_t>(1, static_cast<std::size_t>(1 / longest));
-  std::vector<std::vector<std::size_t>> cells(side * side);
-  const auto cell_of = [&](std::size_t i) {
-    const auto index = [&](double x) {
-      return std::min(side - 1, static_cast<std::size_t>(x * static_cast<double>(side)));
-    };
-    return index(input.points.coordinates[2 * i + 1]) * side + index(input.points.coordinates[2 * i]);
-  };
-  for (std::size_t i = 0; i < n; ++i) cells[cell_of(i)].push_back(i);
-  Uncrossed uncrossed(input.points, longest);
+  const double longest = 3 / std::sqrt(static_cast<double>(n));
+  // Cells are as long as the longest segment, so that only segments of neighbouring cells can meet. Segments
+  // are where their middles are.
+  Grid<std::size_t> points(longest);
+  Grid<Segment> segments(longest);
+  for (std::size_t i = 0; i < n; ++i) points.at(place_of(input.points, i)).push_back(i);
   Random random(1);
   for (std::size_t tries = 0; tries < kTriesEach * n && input.segment_count() < n / kOneIn; ++tries) {
     const std::size_t a = random.below(n);
-    const std::vector<std::size_t>& near = cells[cell_of(a)];
+    const Place p = place_of(input.points, a);
+    const std::vector<std::size_t>& near = points.at(p);
     const std::size_t b = near[random.below(near.size())];
-    const Place p = place_of(input.points, a), q = place_of(input.points, b);
-    if (a != b && std::hypot(p.x - q.x, p.y - q.y) < longest && uncrossed.add(a, b)) add_segment(input, a, b);
+    const Place q = place_of(input.points, b), middle = 0.5 * (p + q);
+    const auto is_free = [&](const Segment& other) { return !meet(input.points, {a, b}, other); };
+    if (a == b || std::hypot(p.x - q.x, p.y - q.y) >= longest || !segments.all_near(middle, is_free))
+      continue;
+    segments.at(middle).emplace_back(a, b);
+    add_segment(input, a, b);
   }
   input.segment_offsets = {0, input.segment_count()};
   input.points.distribution = "short segments";

@@ -15,7 +15,7 @@ namespace {
 std::string on(const Entry& entry) { return fmt::format("{} on {}", entry.name(), input_name(*entry.input)); }
 
 Json result_of(const Entry& entry) {
-  Json row = identity(entry);
+  Json row = entry.row;
   add_seconds(row, entry.seconds);
   const auto n = static_cast<double>(entry.input->n);
   row["nanoseconds_per_point"] = 1e9 * entry.median() / n;
@@ -103,10 +103,17 @@ Implementations modes_and_cgal(Triangulator& triangulator, const std::vector<std
   return all;
 }
 
+Entry::Entry(std::shared_ptr<const Implementation> one, const Input& on)
+    : Job{{{"implementation", one->name}, {"distribution", on.distribution}, {"n", on.n}},
+          {},
+          one->name + " on " + on.distribution},
+      implementation(std::move(one)),
+      input(&on) {}
+
 Entries make_entries(const Implementations& implementations, const std::vector<Input>& inputs) {
   Entries entries;
   for (const Input& input : inputs) {
-    for (const auto& implementation : implementations) entries.push_back({implementation, &input});
+    for (const auto& implementation : implementations) entries.emplace_back(implementation, input);
   }
   return entries;
 }
@@ -138,22 +145,15 @@ Entries beside(Entries peers, const Implementations& own, const std::vector<Inpu
 }
 
 void measure(Entries& entries, int runs, double limit) {
-  std::vector<Job> jobs;
-  std::vector<Entry*> measured;
+  std::vector<Job*> jobs;
   for (Entry& entry : entries) {
-    if (!entry.skipped.empty()) continue;
-    const auto run = [&entry] {
+    entry.run = [&entry] {
       entry.outcome = entry.implementation->run(*entry.input);
       return entry.outcome.seconds;
     };
-    jobs.push_back({identity(entry), run, entry.name() + " on " + entry.input->distribution});
-    measured.push_back(&entry);
+    if (entry.skipped.empty()) jobs.push_back(&entry);
   }
   run_interleaved(jobs, runs, limit);
-  for (std::size_t j = 0; j < jobs.size(); ++j) {
-    measured[j]->seconds = jobs[j].seconds;
-    measured[j]->skipped = jobs[j].skipped;
-  }
 }
 
 void measure_device_memory(Entries& entries, const std::string& device) {
@@ -198,16 +198,11 @@ std::optional<double> median_of(const Entries& entries, const std::string& imple
   return {};
 }
 
-Json identity(const Entry& entry) {
-  return {
-      {"implementation", entry.name()}, {"distribution", entry.input->distribution}, {"n", entry.input->n}};
-}
-
 void add_entries(Result& result, Entries& entries, const Json& keys) {
   if (!entries.empty()) result.agree &= check_counts(entries);
   for (const char* table : {"results", "skipped"}) result.tables.emplace(table, Json::array());
   for (const Entry& entry : entries) {
-    Json row = entry.skipped.empty() ? result_of(entry) : identity(entry);
+    Json row = entry.skipped.empty() ? result_of(entry) : entry.row;
     row.update(keys);
     if (!entry.skipped.empty()) row["reason"] = entry.skipped;
     result.tables[entry.skipped.empty() ? "results" : "skipped"].push_back(row);

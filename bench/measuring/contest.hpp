@@ -55,20 +55,19 @@ Implementations peer_implementations(const std::vector<std::string>& names);
 /// Both, CGAL last.
 Implementations modes_and_cgal(Triangulator& triangulator, const std::vector<std::string>& modes);
 
-/// One implementation on one input.
-struct Entry {
+/// One implementation on one input. Its row says which.
+struct Entry : Job {
+  Entry(std::shared_ptr<const Implementation> one, const Input& on);
+
   std::shared_ptr<const Implementation> implementation;
   const Input* input;
-  Outcome outcome = {};              ///< of the last run
-  std::size_t bytes_peak = 0;        ///< 0 if it was not measured
-  std::string skipped = {};          ///< why there are no times; else empty
-  std::vector<double> seconds = {};  ///< of the counted runs
-  bool agrees = true;                ///< as many triangles as there should be; see check_counts
+  Outcome outcome = {};        ///< of the last run
+  std::size_t bytes_peak = 0;  ///< 0 if it was not measured
+  bool agrees = true;          ///< as many triangles as there should be; see check_counts
 
   const std::string& name() const { return implementation->name; }
   /// Measured with a right result: time for a wrong one says nothing.
   bool valid() const { return skipped.empty() && agrees; }
-  double median() const { return summary(seconds).median; }
 };
 using Entries = std::vector<Entry>;
 
@@ -97,9 +96,6 @@ bool check_counts(Entries& entries);
 /// Median seconds, if the entry is there and valid.
 std::optional<double> median_of(const Entries& entries, const std::string& implementation,
                                 const std::string& distribution, std::size_t n);
-
-/// Implementation, distribution and n.
-Json identity(const Entry& entry);
 
 /// Checks the entries' counts, and adds rows to the tables "results" and "skipped"; each ends with these
 /// keys.

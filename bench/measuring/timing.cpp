@@ -31,22 +31,22 @@ Spent repeat(const Job& job) {
 }
 
 /// The uncounted run of each job. Afterwards the jobs that will not be counted are marked as skipped.
-void warm_up(std::vector<Job>& jobs, std::size_t runs, double limit, Progress& progress) {
+void warm_up(const std::vector<Job*>& jobs, std::size_t runs, double limit, Progress& progress) {
   std::map<std::string, std::string> ended;  // why, by series
-  for (Job& job : jobs) {
-    if (const auto found = ended.find(job.series); found != ended.end()) {
-      job.skipped = found->second;
+  for (Job* const job : jobs) {
+    if (const auto found = ended.find(job->series); found != ended.end()) {
+      job->skipped = found->second;
       progress.drop(1 + runs);
       continue;
     }
-    progress.step(fmt::format("first run, not counted: {}", job.name()));
+    progress.step(fmt::format("first run, not counted: {}", job->title()));
     try {
-      const double seconds = repeat(job).seconds;
+      const double seconds = repeat(*job).seconds;
       if (limit > 0 && seconds > limit) {
-        ended[job.series] = fmt::format("{} took {:.3g} s, more than {:g} s", job.name(), seconds, limit);
+        ended[job->series] = fmt::format("{} took {:.3g} s, more than {:g} s", job->title(), seconds, limit);
       }
     } catch (const Error& error) {
-      job.skipped = error.what();
+      job->skipped = error.what();
       progress.drop(runs);
     }
   }
@@ -79,34 +79,34 @@ void Progress::say(const std::string& message) {
   fmt::print(stderr, "{}\n", message);
 }
 
-void run_interleaved(std::vector<Job>& jobs, int runs, double limit) {
+void run_interleaved(const std::vector<Job*>& jobs, int runs, double limit) {
   const auto rounds = static_cast<std::size_t>(runs);
   Progress progress(jobs.size() * (1 + rounds));
   warm_up(jobs, rounds, limit, progress);
-  for (const Job& job : jobs) {
-    if (!job.skipped.empty()) progress.say(fmt::format("not measured: {}: {}", job.name(), job.skipped));
+  for (const Job* const job : jobs) {
+    if (!job->skipped.empty()) progress.say(fmt::format("not measured: {}: {}", job->title(), job->skipped));
   }
   for (int run = 1; run <= runs; ++run) {
-    for (Job& job : jobs) {
-      if (!job.skipped.empty()) continue;
-      progress.step(fmt::format("run {} of {}: {}", run, runs, job.name()));
-      const Spent spent = repeat(job);
-      job.seconds.push_back(spent.seconds);
-      job.processor_seconds.push_back(spent.processor_seconds);
+    for (Job* const job : jobs) {
+      if (!job->skipped.empty()) continue;
+      progress.step(fmt::format("run {} of {}: {}", run, runs, job->title()));
+      const Spent spent = repeat(*job);
+      job->seconds.push_back(spent.seconds);
+      job->processor_seconds.push_back(spent.processor_seconds);
     }
   }
 }
 
-std::string Job::name() const {
+std::string Job::title() const {
   std::vector<std::string> values;
   for (const Json& value : row) values.push_back(value.is_string() ? value.get<std::string>() : value.dump());
   return fmt::format("{}", fmt::join(values, ", "));
 }
 
 void measure_rows(std::vector<Job>& jobs, int runs, bool of_processor) {
-  run_interleaved(jobs, runs);
+  run_interleaved(pointers_to(jobs), runs);
   for (Job& job : jobs) {
-    if (!job.skipped.empty()) throw Error(ErrorKind::internal, job.name() + ": " + job.skipped);
+    if (!job.skipped.empty()) throw Error(ErrorKind::internal, job.title() + ": " + job.skipped);
     add_seconds(job.row, job.seconds);
     if (of_processor) job.row["processor_seconds_median"] = job.processor_median();
   }

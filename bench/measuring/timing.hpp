@@ -60,7 +60,7 @@ Summary summary(std::vector<double> values);
 
 /// Something to run again and again.
 struct Job {
-  Json row;                     ///< of the record; its values are the job's name
+  Json row;                     ///< of the record; its values are the job's title
   std::function<double()> run;  ///< runs once and returns the seconds that count
   /// Jobs of a series differ in size only and stand in ascending order.
   std::string series = {};
@@ -68,7 +68,7 @@ struct Job {
   std::vector<double> processor_seconds = {};  ///< the same runs, of all threads of the process
   std::string skipped = {};                    ///< why it has none; else empty
 
-  std::string name() const;
+  std::string title() const;
   double median() const { return summary(seconds).median; }
   double processor_median() const { return summary(processor_seconds).median; }
 };
@@ -77,7 +77,14 @@ struct Job {
 /// affects all alike. Whatever takes less than 0.05 s is repeated within a run, which then gives the mean. A
 /// job that throws Error is skipped, with its message; so are the jobs of a series after one whose uncounted
 /// run took longer than the limit in seconds (0: no limit).
-void run_interleaved(std::vector<Job>& jobs, int runs, double limit = 0);
+void run_interleaved(const std::vector<Job*>& jobs, int runs, double limit = 0);
+
+template <typename Jobs>
+std::vector<Job*> pointers_to(Jobs& jobs) {
+  std::vector<Job*> pointers;
+  for (auto& job : jobs) pointers.push_back(&job);
+  return pointers;
+}
 
 /// Runs all jobs in turn, and gives their rows the times. Throws Error if a job is skipped, because nothing
 /// can be set beside it.

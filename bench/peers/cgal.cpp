@@ -1,4 +1,6 @@
-// CGAL's triangulations with the indices of points and triangles, made in the fastest way that we know.
+// CGAL's triangulations, plain and constrained, with the indices of points and triangles, made in the fastest
+// ways that we know.
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Spatial_sort_traits_adapter_2.h>
@@ -24,7 +26,11 @@ struct VertexIndex {
 
 /// Infinite faces keep -1: what lies beyond the hull.
 struct FaceIndex {
-  std::int32_t value = -1;
+  std::int32_t index = -1;
+};
+
+struct FaceInfo : FaceIndex {
+  std::int32_t depth = -1;  ///< number of constraints crossed from the outside; -1: not yet known
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -78,14 +84,14 @@ void append_faces(const Triangulation& triangulation, Mesh& mesh) {
   using FaceHandle = typename Triangulation::Face_handle;
   const std::size_t first = mesh.triangles.size() / 3;
   auto index = static_cast<std::int32_t>(first);
-  for (const FaceHandle face : triangulation.finite_face_handles()) face->info().value = index++;
+  for (const FaceHandle face : triangulation.finite_face_handles()) face->info().index = index++;
   mesh.triangles.resize(3 * static_cast<std::size_t>(index));
   mesh.neighbors.resize(3 * static_cast<std::size_t>(index));
   std::size_t at = 3 * first;
   for (const FaceHandle face : triangulation.finite_face_handles()) {
     for (int corner = 0; corner < 3; ++corner, ++at) {
       mesh.triangles[at] = face->vertex(corner)->info().value;
-      mesh.neighbors[at] = face->neighbor(corner)->info().value;
+      mesh.neighbors[at] = face->neighbor(corner)->info().index;
     }
   }
 }
@@ -130,7 +136,7 @@ struct Indexed {
       int corner;
       hint = triangulation.locate(query, place, corner, hint);
       const bool several = place == Triangulation::EDGE || place == Triangulation::VERTEX;
-      return several ? kIndexOnEdge : hint->info().value;
+      return several ? kIndexOnEdge : hint->info().index;
     });
     corners.clear();
     for (const std::int32_t face : faces) {
@@ -230,7 +236,7 @@ double Queries::voronoi(std::vector<std::int32_t>& cell_sizes) const {
     const auto first = triangulation.incident_faces(vertex);
     auto face = first;
     do {
-      if (face->info().value >= 0) cells.push_back(face->info().value);
+      if (face->info().index >= 0) cells.push_back(face->info().index);
     } while (++face != first);
     points.push_back(vertex->info().value);
     cell_offsets.push_back(static_cast<std::int32_t>(cells.size()));
@@ -257,13 +263,130 @@ Outcome run_cgal(const Input& input) {
   return {watch.seconds(), mesh.triangles.size() / 3};
 }
 
+// ---- Constrained triangulations
+
+using ConstrainedFace =
+    CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel,
+                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Constrained =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<Vertex, ConstrainedFace>,
+                                               CGAL::No_constraint_intersection_tag>;
+using FaceHandle = Constrained::Face_handle;
+using VertexHandle = Constrained::Vertex_handle;
+
+/// A set of an input.
+struct Part {
+  const ConstrainedInput& input;
+  std::size_t first, last;                  ///< points
+  std::size_t first_segment, last_segment;  ///< segments
+
+  std::size_t end(std::size_t k) const { return static_cast<std::size_t>(input.segments[k]) - first; }
+};
+
+/// CGAL does not say which vertex a point became; vertices are numbered as they come, which costs less than
+/// to find out.
+void insert_range(Constrained& triangulation, const Part& part) {
+  std::vector<Point> points;
+  points.reserve(part.last - part.first);
+  const std::vector<double>& xy = part.input.points.coordinates;
+  for (std::size_t i = part.first; i < part.last; ++i) points.emplace_back(xy[2 * i], xy[2 * i + 1]);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  pairs.reserve(part.last_segment - part.first_segment);
+  for (std::size_t s = part.first_segment; s < part.last_segment; ++s) {
+    pairs.emplace_back(part.end(2 * s), part.end(2 * s + 1));
+  }
+  triangulation.insert_constraints(points.begin(), points.end(), pairs.begin(), pairs.end());
+  auto index = static_cast<std::int32_t>(part.first);
+  for (const VertexHandle vertex : triangulation.finite_vertex_handles()) vertex->info().value = index++;
+}
+
+void insert_sorted(Constrained& triangulation, const Part& part) {
+  std::vector<IndexedPoint> points;
+  copy_points(part.input.points.coordinates, part.first, part.last, points);
+  sort_spatially(points);
+  std::vector<VertexHandle> vertices;  // in spatial order
+  vertices.reserve(points.size());
+  std::vector<std::uint32_t> rank(points.size());
+  FaceHandle hint;
+  for (const auto& [point, index] : points) {
+    rank[static_cast<std::size_t>(index) - part.first] = static_cast<std::uint32_t>(vertices.size());
+    const VertexHandle vertex = vertices.emplace_back(triangulation.insert(point, hint));
+    hint = vertex->face();
+    vertex->info().value = std::min(vertex->info().value, index);
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sorted;
+  sorted.reserve(part.last_segment - part.first_segment);
+  for (std::size_t s = part.first_segment; s < part.last_segment; ++s) {
+    sorted.emplace_back(std::minmax(rank[part.end(2 * s)], rank[part.end(2 * s + 1)]));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (const auto& [a, b] : sorted) {
+    if (vertices[a] != vertices[b]) triangulation.insert_constraint(vertices[a], vertices[b]);
+  }
+}
+
+/// The depth of every face; an odd one is inside.
+void find_depths(const Constrained& triangulation) {
+  std::vector<FaceHandle> now{triangulation.infinite_face()}, next;
+  for (std::int32_t depth = 0; !now.empty(); ++depth) {
+    while (!now.empty()) {
+      const FaceHandle face = now.back();
+      now.pop_back();
+      if (face->info().depth >= 0) continue;
+      face->info().depth = depth;
+      for (int k = 0; k < 3; ++k) {
+        const FaceHandle other = face->neighbor(k);
+        if (other->info().depth < 0) (face->is_constrained(k) ? next : now).push_back(other);
+      }
+    }
+    std::swap(now, next);
+  }
+}
+
+struct MeshWithMarks : Mesh {
+  std::vector<std::uint8_t> constrained;
+};
+
+/// Appends triangles, neighbours, and which edges are constraints; inside: only of faces inside.
+void append_faces(const Constrained& triangulation, bool inside, MeshWithMarks& arrays) {
+  auto index = static_cast<std::int32_t>(arrays.triangles.size() / 3);
+  const auto is_kept = [inside](FaceHandle face) { return !inside || face->info().depth % 2 == 1; };
+  for (const FaceHandle face : triangulation.finite_face_handles()) {
+    if (is_kept(face)) face->info().index = index++;
+  }
+  for (const FaceHandle face : triangulation.finite_face_handles()) {
+    if (!is_kept(face)) continue;
+    for (int corner = 0; corner < 3; ++corner) {
+      arrays.triangles.push_back(face->vertex(corner)->info().value);
+      arrays.neighbors.push_back(face->neighbor(corner)->info().index);
+      arrays.constrained.push_back(face->is_constrained(corner));
+    }
+  }
+}
+
+Outcome run_constrained(const ConstrainedInput& input, CgalInsertion insertion, bool inside) {
+  const Stopwatch watch;
+  MeshWithMarks arrays;
+  Constrained triangulation;
+  for (std::size_t s = 0; s < input.points.sets(); ++s) {
+    const Part part{input, input.points.offsets[s], input.points.offsets[s + 1], input.segment_offsets[s],
+                    input.segment_offsets[s + 1]};
+    triangulation.clear();
+    (insertion == CgalInsertion::range ? insert_range : insert_sorted)(triangulation, part);
+    if (inside) find_depths(triangulation);
+    append_faces(triangulation, inside, arrays);
+  }
+  return {watch.seconds(), arrays.triangles.size() / 3};
+}
+
 const BuiltPeer kBuilt(kCgal, run_cgal);
 
-const bool kHasQueries = (
-    make_cgal_queries = [](const std::vector<double>& coordinates) -> std::unique_ptr<CgalQueries> {
-      return std::make_unique<Queries>(coordinates);
-    },
-    true);
+std::unique_ptr<CgalQueries> make_queries(const std::vector<double>& coordinates) {
+  return std::make_unique<Queries>(coordinates);
+}
+
+const bool kBuiltOthers = (make_cgal_queries = make_queries, run_cgal_constrained = run_constrained, true);
 
 }  // namespace
 }  // namespace flaunay::bench

@@ -27,38 +27,28 @@ Box bounding_box(const Input& points) {
 using Order = std::vector<std::size_t>::iterator;
 
 /// Sorts indices of points along a Hilbert curve that halves their number instead of the plane, so that dense
-/// places have as many steps of their own as others.
-class HilbertSort {
- public:
-  explicit HilbertSort(const Input& points) : points_(points) {}
-
-  /// axis: the one that is halved first; up, other_up: whether the curve begins at small coordinates of it
-  /// and of the other one.
-  void sort(Order first, Order last, int axis = 0, bool up = true, bool other_up = true) const {
-    constexpr std::ptrdiff_t kFew = 4;
-    if (last - first <= kFew) return;
-    const Order middle = halve(first, last, axis, up);
-    const Order quarter = halve(first, middle, 1 - axis, other_up);
-    const Order three_quarters = halve(middle, last, 1 - axis, !other_up);
-    sort(first, quarter, 1 - axis, other_up, up);
-    sort(quarter, middle, axis, up, other_up);
-    sort(middle, three_quarters, axis, up, other_up);
-    sort(three_quarters, last, 1 - axis, !other_up, !up);
-  }
-
- private:
-  Order halve(Order first, Order last, int axis, bool up) const {
-    const Order middle = first + (last - first) / 2;
-    std::nth_element(first, middle, last, [&](std::size_t a, std::size_t b) {
-      const double at_a = points_.coordinates[2 * a + static_cast<std::size_t>(axis)];
-      const double at_b = points_.coordinates[2 * b + static_cast<std::size_t>(axis)];
-      return up ? at_a < at_b : at_b < at_a;
+/// places have as many steps of their own as others. axis: the one that is halved first; up, other_up:
+/// whether the curve begins at small coordinates of it and of the other one.
+void sort_by_hilbert(const Input& points, Order first, Order last, std::size_t axis = 0, bool up = true,
+                     bool other_up = true) {
+  constexpr std::ptrdiff_t kFew = 4;
+  if (last - first <= kFew) return;
+  const auto halve = [&](Order begin, Order end, std::size_t of, bool ascending) {
+    const Order middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end, [&](std::size_t a, std::size_t b) {
+      if (!ascending) std::swap(a, b);
+      return points.coordinates[2 * a + of] < points.coordinates[2 * b + of];
     });
     return middle;
-  }
-
-  const Input& points_;
-};
+  };
+  const Order middle = halve(first, last, axis, up);
+  const Order quarter = halve(first, middle, 1 - axis, other_up);
+  const Order three_quarters = halve(middle, last, 1 - axis, !other_up);
+  sort_by_hilbert(points, first, quarter, 1 - axis, other_up, up);
+  sort_by_hilbert(points, quarter, middle, axis, up, other_up);
+  sort_by_hilbert(points, middle, three_quarters, axis, up, other_up);
+  sort_by_hilbert(points, three_quarters, last, 1 - axis, !other_up, !up);
+}
 
 /// Random rounds, each twice as large as the one before and sorted along the curve. Random, so that the
 /// expected number of flips is linear; along the curve, so that each point is near the one before.
@@ -67,11 +57,10 @@ std::vector<std::size_t> insertion_order(const Input& points) {
   std::vector<std::size_t> order(points.n);
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937_64(1));
-  const HilbertSort curve(points);
   for (std::size_t first = 0, last; first < order.size(); first = last) {
     last = std::min(order.size(), std::max(kFirstRound, 2 * first));
-    curve.sort(order.begin() + static_cast<std::ptrdiff_t>(first),
-               order.begin() + static_cast<std::ptrdiff_t>(last));
+    sort_by_hilbert(points, order.begin() + static_cast<std::ptrdiff_t>(first),
+                    order.begin() + static_cast<std::ptrdiff_t>(last));
   }
   return order;
 }

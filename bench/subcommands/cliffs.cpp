@@ -18,7 +18,7 @@ Json cliffs_of(const Entries& entries) {
     const auto uniform = median_of(entries, entry.name(), kUniform, entry.input->n);
     if (entry.input->distribution == kUniform || !entry.valid() || !uniform) continue;
     const double times_uniform = entry.median() / *uniform;
-    cliffs.push_back(identity(entry));
+    cliffs.push_back(entry.row);
     cliffs.back()["times_uniform"] = times_uniform;
     cliffs.back()["limit"] = kMostTimesUniform;
     cliffs.back()["within"] = times_uniform <= kMostTimesUniform;

@@ -64,8 +64,8 @@ void count_work(Triangulator& triangulator, Entries& entries, std::size_t up_to)
 
 // ---- Crossovers
 
-/// Median seconds by size.
-using Curve = std::map<std::size_t, double>;
+/// Logarithms of median seconds by those of sizes.
+using Curve = std::map<double, double>;
 using NamedCurve = std::pair<std::string, Curve>;
 
 /// By implementation, in the order of the entries.
@@ -76,23 +76,19 @@ std::vector<NamedCurve> curves_of(const Entries& entries, const std::string& dis
     auto curve = std::find_if(curves.begin(), curves.end(),
                               [&](const NamedCurve& candidate) { return candidate.first == entry.name(); });
     if (curve == curves.end()) curve = curves.insert(curves.end(), {entry.name(), {}});
-    curve->second[entry.input->n] = entry.median();
+    curve->second[std::log(static_cast<double>(entry.input->n))] = std::log(entry.median());
   }
   return curves;
 }
 
-/// Seconds at n between measured sizes, by a power law between neighbours; NaN outside of them.
+/// Between measured sizes, by a power law between neighbours; NaN outside of them.
 double interpolated(const Curve& curve, double n) {
-  for (auto next = curve.begin(); next != curve.end(); ++next) {
-    const auto size = static_cast<double>(next->first);
-    if (size < n) continue;
-    if (size == n || next == curve.begin()) return size == n ? next->second : std::nan("");
-    const auto before = std::prev(next);
-    const double share = std::log(n / static_cast<double>(before->first)) /
-                         std::log(size / static_cast<double>(before->first));
-    return std::exp((1 - share) * std::log(before->second) + share * std::log(next->second));
-  }
-  return std::nan("");
+  const auto next = curve.lower_bound(n);
+  if (next == curve.end() || (next == curve.begin() && next->first != n)) return std::nan("");
+  if (next->first == n) return next->second;
+  const auto before = std::prev(next);
+  const double share = (n - before->first) / (next->first - before->first);
+  return (1 - share) * before->second + share * next->second;
 }
 
 /// Where the order of two curves changes, between sizes that both have. Differences within noise are no
@@ -101,15 +97,13 @@ void add_crossovers_of(const NamedCurve& a, const NamedCurve& b, const std::stri
                        const std::vector<NamedCurve>& all, Json& crossovers) {
   constexpr double kNoise = 0.03, kRounding = 1e-9;
   double previous_n = 0, previous_ratio = 0;
-  for (const auto& [size, seconds] : a.second) {
-    const auto other = b.second.find(size);
-    if (other == b.second.end()) continue;
-    const double n = std::log(static_cast<double>(size)), ratio = std::log(seconds / other->second);
+  for (const auto& [n, seconds] : a.second) {
+    const auto other = b.second.find(n);
+    const double ratio = other == b.second.end() ? 0 : seconds - other->second;
     if (std::abs(ratio) < kNoise) continue;
     if (previous_ratio * ratio < 0) {
-      const double share = previous_ratio / (previous_ratio - ratio);
-      const double crossing = std::exp(previous_n + share * (n - previous_n));
-      const double there = interpolated(a.second, crossing) * (1 - kRounding);
+      const double crossing = previous_n + previous_ratio / (previous_ratio - ratio) * (n - previous_n);
+      const double there = interpolated(a.second, crossing) - kRounding;
       const bool anything_faster = std::any_of(all.begin(), all.end(), [&](const NamedCurve& curve) {
         return interpolated(curve.second, crossing) < there;
       });
@@ -117,7 +111,7 @@ void add_crossovers_of(const NamedCurve& a, const NamedCurve& b, const std::stri
       crossovers.push_back({{"distribution", distribution},
                             {"faster_below", a_below ? a.first : b.first},
                             {"faster_above", a_below ? b.first : a.first},
-                            {"n", std::lround(crossing)},
+                            {"n", std::lround(std::exp(crossing))},
                             {"of_fastest", !anything_faster}});
     }
     previous_n = n;

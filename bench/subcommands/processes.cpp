@@ -91,7 +91,7 @@ Result measure_processes(const ProcessesRequest& request) {
                       [words, is_cold] { return run_timed(words, is_cold); }});
     }
   }
-  run_interleaved(jobs, request.runs);
+  run_interleaved(pointers_to(jobs), request.runs);
   Result result;
   for (Job& job : jobs) {
     if (job.skipped.empty()) {

@@ -119,16 +119,6 @@ std::unique_ptr<Triangulator> on_one_thread(const Triangulator& like) {
   return std::make_unique<Triangulator>("host");
 }
 
-Implementations renamed(const Implementations& all, const char* addition) {
-  Implementations made;
-  for (const auto& one : all) {
-    auto other = std::make_shared<Implementation>(*one);
-    other->name += addition;
-    made.push_back(other);
-  }
-  return made;
-}
-
 Result measure_targets(const TargetsRequest& request) {
   const Sizes sizes = request.quick ? Sizes{2000, 4000, 8000, 100, 200} : Sizes{};
   const Inputs inputs(sizes, request.without_largest);
@@ -143,7 +133,10 @@ Result measure_targets(const TargetsRequest& request) {
     const bool has_host_mode = std::count(request.modes.begin(), request.modes.end(), "blocks") > 0;
     const std::unique_ptr<Triangulator> single = has_host_mode ? on_one_thread(triangulator) : nullptr;
     Implementations with_single = all;
-    if (single) append(with_single, renamed(mode_implementations(*single, {"blocks"}, 1), kOneThread));
+    if (single) {
+      const std::string name = implementation_name("blocks") + kOneThread;
+      with_single.push_back(mode_implementation(*single, name, options_of("blocks")));
+    }
     most = make_entries(with_single, inputs.base);
     append(most, make_entries(all, inputs.large));
     append(most, make_entries(own, inputs.alone));

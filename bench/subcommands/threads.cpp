@@ -69,7 +69,7 @@ Json speedups_of(const std::vector<Team>& teams) {
     for (std::size_t t = 1; t < teams.size(); ++t) {
       const Entry &slow = first.entries[e], &fast = teams[t].entries[e];
       if (!slow.valid() || !fast.valid()) continue;
-      speedups.push_back(identity(slow));
+      speedups.push_back(slow.row);
       speedups.back()["from_threads"] = first.threads;
       speedups.back()["to_threads"] = teams[t].threads;
       speedups.back()["speedup"] = slow.median() / fast.median();
