@@ -19,7 +19,7 @@ its mispredicted branches, and its loads that wait for each other; where work-it
 paths come one after the other. Waits of the host and transfers are added, but not what the host computes itself.
 machines/ has the machines, with a source for each value, and kernels.json what a step of each kernel is made of, in
 double precision and in fixed point: a record with the tuning fixed_point=1 takes the latter.
-docs/performance.md shows predictions beside measurements.
+docs/performance-history.md shows predictions beside measurements.
 """
 import argparse
 import json
