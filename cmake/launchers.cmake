@@ -133,7 +133,7 @@ endforeach()
 string(CONCAT HEADER
   "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n"
   "#pragma once\n\n"
-  "#include \"host/kernel_arguments.hpp\"\n"
+  "#include \"host/launch/kernel_arguments.hpp\"\n"
   "#include \"kernels/shared/records.h\"\n\n"
   "namespace flaunay::kernels {\n${CODE}\n}  // namespace flaunay::kernels\n")
 # Written only if it has changed, so that files that include it are compiled again only if a signature changed.

@@ -1,14 +1,11 @@
-// A device that is ready for work: its context, queue, kernels and memory, and counts of what was done.
-// Instead of a device, it can be the host itself, which runs the kernels that are compiled as C++
-// (host/native).
+// A device that is ready for work: its kernels, memory and accounts, and typed launches and copies. What runs
+// them is a back end: an OpenCL device, or the host itself with the kernels that are compiled as C++
+// (host/backend.hpp).
 #pragma once
 
 #include <algorithm>
-#include <boost/compute/command_queue.hpp>
 #include <boost/compute/context.hpp>
 #include <boost/compute/device.hpp>
-#include <boost/compute/kernel.hpp>
-#include <boost/compute/program.hpp>
 #include <cstddef>
 #include <cstring>
 #include <exception>
@@ -19,20 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "host/arena.hpp"
-#include "host/error.hpp"
-#include "host/kernel_arguments.hpp"
-#include "host/launch_log.hpp"
-#include "host/native/threads.hpp"
-#include "host/sizes.hpp"
+#include "host/backend.hpp"
+#include "host/launch/accounts.hpp"
+#include "host/launch/kernel_arguments.hpp"
+#include "host/launch/sizes.hpp"
+#include "host/memory/arena.hpp"
 
 namespace flaunay::host {
-
-/// The launches of one kernel and their time, if profiling is on.
-struct KernelTime {
-  std::size_t launches = 0;
-  double seconds = 0;
-};
 
 /// Owns everything that belongs to one device. Must be used by one thread at a time, because OpenCL's kernel
 /// objects hold their arguments.
@@ -48,39 +38,40 @@ class Runtime {
   explicit Runtime(std::shared_ptr<const Sizes> sizes);
   ~Runtime();
 
-  bool is_native() const { return threads_ != nullptr; }
+  /// Whether kernels run on threads of the host; each command is complete when its call returns.
+  bool is_native() const { return threads() > 0; }
   /// Null if kernels run natively.
-  const boost::compute::device& device() const { return device_; }
+  boost::compute::device device() const { return backend_->device(); }
   /// Null if kernels run natively.
-  const boost::compute::context& context() const { return context_; }
+  boost::compute::context context() const { return backend_->context(); }
   /// The device's name; "host" if kernels run natively.
-  std::string name() const;
+  std::string name() const { return backend_->name(); }
   /// What compiled programs and measurements of a device depend on besides their text: platform, device and
   /// driver, with their versions. Only of devices.
-  std::string identity() const;
+  std::string identity() const { return backend_->identity(); }
   /// The number of threads that run native kernels; 0 on a device.
-  std::size_t threads() const { return is_native() ? threads_->count() : 0; }
+  std::size_t threads() const { return backend_->threads(); }
   /// Where arenas and buffers get their memory from.
-  MemorySource memory() const;
+  MemorySource memory() const { return backend_->memory(); }
   const Sizes& sizes() const { return *sizes_; }
   /// Changes the sizes. Kernels are compiled again if they are compiled for sizes that differ.
   void set_sizes(std::shared_ptr<const Sizes> sizes);
   Arena& arena() { return arena_; }
   const Arena& arena() const { return arena_; }
-  cl_command_queue queue() const { return queue_.get(); }
-  cl_command_queue own_queue() const { return own_queues_[0].get(); }
+  cl_command_queue queue() const { return backend_->queue(); }
+  cl_command_queue own_queue() const { return backend_->own_queue(); }
   /// Makes later work use the caller's queue, which is retained, or the runtime's own queue if it is null.
   /// Each command begins when the previous one has ended, even on an out-of-order queue and when the queue
   /// changes. profiling: whether to time kernels; the caller's queue must support that.
-  void use_queue(cl_command_queue wanted, bool profiling);
+  void use_queue(cl_command_queue wanted, bool profiling) { backend_->use_queue(wanted, profiling); }
   /// Uses the runtime's own queue, and times kernels or not.
   void set_profiling(bool on) { use_queue(nullptr, on); }
   /// Makes later commands wait for the events.
-  void wait_for(const std::vector<cl_event>& events);
+  void wait_for(const std::vector<cl_event>& events) { backend_->wait_for(events); }
   /// Returns an event that completes when everything enqueued so far is complete. The caller releases it.
-  cl_event mark();
+  cl_event mark() { return backend_->mark(); }
   /// Waits for an event that mark() returned.
-  void await(cl_event event);
+  void await(cl_event event) { backend_->await(event); }
 
   /// Launches a kernel with one work-item per element. The kernel must ignore the surplus work-items of the
   /// last group.
@@ -117,11 +108,11 @@ class Runtime {
   void launch(std::size_t work_items, std::size_t group, std::size_t n, const Kernel& kernel) {
     static_assert(Kernel::form == Form::PerElement);
     if (n > work_items) note_elements((n + work_items - 1) / work_items);
-    if (n < work_items) busy_items_ = n;
+    if (n < work_items) accounts_.next.busy = n;
     launch_with(work_items, group, kernel, Value<cl_int>(n));
   }
 
-  /// Launches one pass of segmented_arg_reduce (host/vector_operations.hpp).
+  /// Launches one pass of segmented_arg_reduce (host/launch/vector_operations.hpp).
   template <typename Kernel>
   void arg_reduce(std::size_t n, std::size_t chunk, bool is_first_pass, const In<cl_int>& segment,
                   const In<cl_int>& candidate, const Out<cl_int>& partial_segment,
@@ -150,7 +141,7 @@ class Runtime {
   template <typename T>
   void read(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
-    enqueue_read(from.memory(), first * sizeof(T), count * sizeof(T), to, CL_TRUE);
+    read_bytes(from.memory(), first * sizeof(T), count * sizeof(T), to);
   }
   template <typename T>
   T read_one(const Buffer<T>& from, std::size_t index) {
@@ -162,20 +153,20 @@ class Runtime {
   template <typename T>
   void write(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
-    enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_TRUE);
+    backend_->write(to.memory(), first * sizeof(T), count * sizeof(T), from, true);
   }
   /// Enqueues a copy to the host without waiting, so that several copies share a wait. `to` has the values
   /// after the next wait.
   template <typename T>
   void read_later(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
-    enqueue_read(from.memory(), first * sizeof(T), count * sizeof(T), to, CL_FALSE);
+    backend_->read(from.memory(), first * sizeof(T), count * sizeof(T), to, false);
   }
   /// Enqueues a copy to the device without waiting. `from` must not be changed until the next wait.
   template <typename T>
   void write_later(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;
-    enqueue_write(to.memory(), first * sizeof(T), count * sizeof(T), from, CL_FALSE);
+    backend_->write(to.memory(), first * sizeof(T), count * sizeof(T), from, false);
   }
   /// Enqueues a copy to the device without waiting, and keeps the values until it is done.
   template <typename T>
@@ -219,7 +210,7 @@ class Runtime {
   template <typename T>
   Buffer<T> output(std::vector<T>& values) {
     if (sizes_->in_host_memory && !values.empty()) {
-      return {wrap(values.data(), values.size() * sizeof(T), CL_MEM_READ_WRITE), values.size()};
+      return {backend_->wrap(values.data(), values.size() * sizeof(T), CL_MEM_READ_WRITE), values.size()};
     }
     return arena_.allocate<T>(values.size());
   }
@@ -229,26 +220,30 @@ class Runtime {
   void fetch_later(const Buffer<T>& from, std::vector<T>& values) {
     if (values.empty()) return;
     if (sizes_->in_host_memory) {
-      hand_over(from.memory(), values.size() * sizeof(T));
+      backend_->hand_over(from.memory(), values.size() * sizeof(T));
     } else {
       read_later(from, 0, values.size(), values.data());
     }
   }
   template <typename T>
   void fill(const Buffer<T>& to, std::size_t count, T value) {
-    if (count > 0) enqueue_fill(to.memory(), &value, sizeof(T), count * sizeof(T));
+    if (count > 0) backend_->fill(to.memory(), 0, count * sizeof(T), &value, sizeof(T));
   }
   template <typename T>
   void copy(const Buffer<T>& from, std::size_t from_first, const Buffer<T>& to, std::size_t to_first,
             std::size_t count) {
     if (count == 0) return;
-    enqueue_copy(from.memory(), from_first * sizeof(T), to.memory(), to_first * sizeof(T), count * sizeof(T));
+    backend_->copy(from.memory(), from_first * sizeof(T), to.memory(), to_first * sizeof(T),
+                   count * sizeof(T));
   }
-  void finish();
+  void finish() {
+    backend_->finish();
+    kept_.clear();
+  }
   /// Waits like finish, but ignores errors and does not count.
-  void settle() const;
+  void settle() const { backend_->settle(); }
   /// Submits the enqueued commands to the device, which may then begin.
-  void flush();
+  void flush() { backend_->flush(); }
 
   /// If an exception ends its scope, waits for the copies of read_later, write_later, view_later and
   /// fetch_later, so that none uses host memory that is gone. Must be declared after the vectors that they
@@ -271,9 +266,9 @@ class Runtime {
   class BeforeCompiling {
    public:
     BeforeCompiling(Runtime& runtime, std::function<void()> call) : runtime_(runtime) {
-      runtime.before_compiling_ = std::move(call);
+      runtime.backend_->before_compiling = std::move(call);
     }
-    ~BeforeCompiling() { runtime_.before_compiling_ = nullptr; }
+    ~BeforeCompiling() { runtime_.backend_->before_compiling = nullptr; }
     BeforeCompiling(const BeforeCompiling&) = delete;
     BeforeCompiling& operator=(const BeforeCompiling&) = delete;
 
@@ -288,49 +283,34 @@ class Runtime {
   /// The launches since the last reset, empty if they are not recorded. Waits, which is not counted.
   std::vector<Launch> recorded_launches();
   /// For the record: how many elements each work-item of the next launch goes through, at most.
-  void note_elements(std::size_t elements) { elements_ = elements; }
+  void note_elements(std::size_t elements) { accounts_.next.elements = elements; }
   /// For the record: only each so many-th work-item of the next launch has work.
-  void note_spread(std::size_t spread) { spread_ = spread; }
+  void note_spread(std::size_t spread) { accounts_.next.spread = spread; }
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
   /// counters as their last argument; see kernels/operations/counting.h. An empty buffer ends this.
   void set_counters(const Buffer<cl_uint>& counters);
   /// The times per kernel since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();
-  std::size_t launches() const { return launches_; }
-  std::size_t waits() const { return waits_; }
-  std::size_t bytes_to_device() const { return bytes_to_device_; }
-  std::size_t bytes_to_host() const { return bytes_to_host_; }
-  double build_seconds() const { return build_seconds_; }
+  const Accounts& accounts() const { return accounts_; }
   /// Seconds on a clock that stands still while kernels are compiled.
   double working_clock() const;
   void reset_accounts();
 
  private:
+  using MakeBackend = std::function<std::unique_ptr<Backend>(Accounts&)>;
+  Runtime(std::shared_ptr<const Sizes> sizes, const MakeBackend& make);
+
   template <typename T>
   Buffer<T> view_by(const T* values, std::size_t count,
                     void (Runtime::*write_to)(const Buffer<T>&, std::size_t, std::size_t, const T*)) {
     if (sizes_->in_host_memory && count > 0) {
-      return {wrap(const_cast<T*>(values), count * sizeof(T), CL_MEM_READ_ONLY), count};
+      return {backend_->wrap(const_cast<T*>(values), count * sizeof(T), CL_MEM_READ_ONLY), count};
     }
     const auto copy = arena_.allocate<T>(count);
     (this->*write_to)(copy, 0, count, values);
     return copy;
   }
-  /// The value of an argument of a native kernel.
-  struct Argument {
-    alignas(8) unsigned char bytes[32];
-  };
-  struct Kernel {
-    boost::compute::kernel kernel;
-    std::string name;
-    cl_uint arguments;
-    std::size_t largest_group;  ///< largest work-group size
-    bool requires_group;        ///< whether it has the attribute reqd_work_group_size
-    NativeFunction native = nullptr;
-    std::vector<Argument> native_arguments = {};
-  };
-  /// Makes the system provide memory that was not accessed before.
   void touch_new(void* begin, std::size_t bytes);
   template <typename Launcher, typename... Leading>
   void launch_with(std::size_t work_items, std::size_t group, const Launcher& launcher,
@@ -346,18 +326,13 @@ class Runtime {
   void finish_launch(Kernel& kernel, cl_uint arguments, std::size_t work_items, std::size_t group) {
     const bool counts = counting_ && arguments < kernel.arguments;
     if (counts) set_argument(kernel, arguments, counters_);
-    enqueue(kernel, work_items, group);
-    if (counts && log_ != nullptr) record_steps();
+    backend_->launch(kernel, work_items, group);
+    if (counts && accounts_.log != nullptr) record_steps();
   }
   template <typename T>
   void set_bytes(Kernel& kernel, cl_uint index, const T& value) {
-    if (kernel.native != nullptr) {
-      static_assert(sizeof value <= sizeof(Argument) && std::is_trivially_copyable_v<T>);
-      if (kernel.native_arguments.size() <= index) kernel.native_arguments.resize(index + 1);
-      std::memcpy(kernel.native_arguments[index].bytes, &value, sizeof value);
-      return;
-    }
-    FLAUNAY_CL_KERNEL(clSetKernelArg(kernel.kernel.get(), index, sizeof value, &value), kernel.name);
+    static_assert(sizeof value <= kLargestArgument && std::is_trivially_copyable_v<T>);
+    kernel.set_argument(index, &value, sizeof value);
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
@@ -380,70 +355,27 @@ class Runtime {
     set_argument(kernel, index, Value<T>(value));
   }
 
-  boost::compute::command_queue make_queue(bool profiling) const;
-  /// Makes later commands wait for what was enqueued on the other queue.
-  void follow(cl_command_queue other);
   Kernel& find_kernel(const KernelName& name);
-  const boost::compute::program& find_program(const std::string& file);
-  boost::compute::program program_of(const std::string& binary, const std::string& options) const;
-  boost::compute::program compiled(const std::string& file, const std::string& source,
-                                   const std::string& options) const;
-  std::string binary_of(const boost::compute::program& program) const;
-  Kernel make_kernel(const KernelName& name);
-  void enqueue(Kernel& kernel, std::size_t work_items, std::size_t group);
+  void read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to);
   void record_steps();
-  void run_natively(Kernel& kernel, std::size_t work_items, std::size_t group);
-  void enqueue_read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, cl_bool wait);
-  std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access);
-  void hand_over(cl_mem shared, std::size_t bytes);
-  void enqueue_write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, cl_bool wait);
-  void enqueue_fill(cl_mem to, const void* value, std::size_t value_bytes, std::size_t bytes);
-  void enqueue_copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
-                    std::size_t bytes);
-  /// To be called after each command: on an out-of-order queue, makes the next command wait for it.
-  void keep_order();
-  void collect_times();
+  /// Does what is no command of the call: it is neither counted nor recorded.
+  template <typename Commands>
+  void uncounted(const Commands& commands) {
+    Accounts kept = std::move(accounts_);
+    accounts_ = {};
+    commands();
+    accounts_ = std::move(kept);
+  }
 
-  std::unique_ptr<Threads> threads_;  // null unless kernels run natively
-  boost::compute::device device_;
-  bool on_pocl_ = false;
+  Accounts accounts_;
   std::shared_ptr<const Sizes> sizes_;
-  boost::compute::context context_;
-  boost::compute::command_queue own_queues_[2];  // the second one times kernels, and is made on first use
-  boost::compute::command_queue queue_;
-  bool profiling_ = false;
-  bool is_unordered_ = false;
+  std::unique_ptr<Backend> backend_;
   std::vector<std::shared_ptr<void>> kept_;  // values of write_kept
   Arena arena_;
   // Two of each: without counting, and with it.
-  std::map<std::string, boost::compute::program> programs_[2];
-  std::map<const KernelName*, Kernel> kernels_[2];
+  std::map<const KernelName*, std::unique_ptr<Kernel>> kernels_[2];
   Buffer<cl_uint> counters_{};
   bool counting_ = false;
-  std::function<void()> before_compiling_;
-  struct TimedLaunch {
-    cl_event event;
-    const std::string* kernel;
-    std::size_t launch;  // in the log, if there is one
-  };
-  std::vector<TimedLaunch> events_;
-  std::map<std::string, KernelTime> times_;
-  std::size_t launches_ = 0;
-  std::size_t waits_ = 0;
-  std::size_t bytes_to_device_ = 0;
-  std::size_t bytes_to_host_ = 0;
-  double build_seconds_ = 0;      // since the last reset
-  double all_build_seconds_ = 0;  // never reset
-  std::unique_ptr<LaunchLog> log_;
-  std::size_t elements_ = 1;  // of the next launch
-  std::size_t spread_ = 1;    // of the next launch
-  // How many of the next launch's work-items have work, if the launch spreads these over more.
-  std::size_t busy_items_ = std::numeric_limits<std::size_t>::max();
 };
-
-/// The text of kernels/<file>.cl with all included files inserted. It is read from the folder
-/// FLAUNAY_KERNEL_PATH if that is set; otherwise it is the text that was embedded when the library was built.
-/// Throws DeviceError if there is no such file.
-std::string kernel_source(const std::string& file);
 
 }  // namespace flaunay::host

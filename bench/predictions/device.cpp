@@ -1,6 +1,6 @@
 // flaunay-bench device: what a device takes for launches, waits, loads and arithmetic, for predictions of
 // times.
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 
 #include <fmt/format.h>
 

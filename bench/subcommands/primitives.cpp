@@ -10,8 +10,9 @@
 #include <random>
 
 #include "bench/measuring/timing.hpp"
-#include "host/device.hpp"
-#include "host/vector_operations.hpp"
+#include "host/error.hpp"
+#include "host/launch/vector_operations.hpp"
+#include "host/opencl/device.hpp"
 #include "launchers/flattened/quickhull.cl.hpp"
 #include "tuning/tuning.hpp"
 

@@ -51,18 +51,21 @@ struct Threads::Pool {
     const Work& work;
     std::size_t n, part;
     std::atomic<std::size_t> next{0};
-    std::atomic<bool> has_failed{false};
+    std::mutex failing{};
+    std::size_t failed = n;  // where the first part begins that has failed
     std::exception_ptr failure{};
 
     // An exception may end neither a thread, nor the job as long as others work on it.
     void run() noexcept {
-      try {
-        for (std::size_t begin = next.fetch_add(part); begin < n; begin = next.fetch_add(part)) {
+      for (std::size_t begin = next.fetch_add(part); begin < n; begin = next.fetch_add(part)) {
+        try {
           work(begin, std::min(n, begin + part));
+        } catch (...) {
+          const std::lock_guard lock(failing);
+          if (begin < failed) failure = std::current_exception();
+          failed = std::min(failed, begin);
+          next = n;
         }
-      } catch (...) {
-        if (!has_failed.exchange(true)) failure = std::current_exception();
-        next = n;
       }
     }
   };

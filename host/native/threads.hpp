@@ -25,9 +25,15 @@ class Threads {
 
   std::size_t count() const { return count_; }
   /// Calls work(begin, end) on all threads, for parts of [0, n) with `part` elements each, or fewer at the
-  /// end. Returns when all is done. If a call throws, no more calls begin, and the exception is
-  /// thrown here; of several exceptions, one is. If the system refuses threads, the others do their work.
+  /// end; calls begin in ascending order. Returns when all is done. If a call throws, no more calls begin,
+  /// and the exception is thrown here; of several exceptions, that of the first part is. If the system
+  /// refuses threads, the others do their work.
   void share(std::size_t n, std::size_t part, const Work& work);
+  /// Calls work(k) for each k below n.
+  template <typename WorkOnOne>
+  void share_each(std::size_t n, const WorkOnOne& work) {
+    share(n, 1, [&](std::size_t begin, std::size_t) { work(begin); });
+  }
 
  private:
   struct Pool;

@@ -23,8 +23,8 @@ INTEGER_CONSTANT(KINDS, 4);
 
 // Counters are pairs of low and high halves, one pair for each component and kind. Behind them stand the largest number
 // of weighted operations that one region of the end game took, and how many of its regions had each number of corners:
-// more than MOST_COUNTED_SIZE count as that many. Last are the steps of one launch (host/launch_log.hpp): the most that
-// COUNT_STEPS got at once, and the low and high half of the sum.
+// more than MOST_COUNTED_SIZE count as that many. Last are the steps of one launch (host/launch/launch_log.hpp): the
+// most that COUNT_STEPS got at once, and the low and high half of the sum.
 INTEGER_CONSTANT(COUNTER_DEAREST, 2 * COMPONENTS * KINDS);
 INTEGER_CONSTANT(COUNTER_SIZES, COUNTER_DEAREST + 1);
 INTEGER_CONSTANT(MOST_COUNTED_SIZE, 1023);

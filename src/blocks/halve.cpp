@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "blocks/stages.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/halve.cl.hpp"
 #include "shared/limits.h"
 #include "tuning/tuning.hpp"

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "blocks/stages.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/mesh.cl.hpp"
 
 namespace flaunay::blocks {

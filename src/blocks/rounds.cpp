@@ -8,7 +8,7 @@
 
 #include "blocks/open_sectors.h"
 #include "geometry/euler.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/rounds.cl.hpp"
 #include "points/device_mesh.hpp"
 #include "tuning/tuning.hpp"

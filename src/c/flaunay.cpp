@@ -6,7 +6,7 @@
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
-#include "host/opencl_loader.hpp"
+#include "host/opencl/loader.hpp"
 
 using namespace flaunay;
 

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "host/clock.hpp"
+#include "host/opencl/programs.hpp"
 #include "launchers/call/rates.cl.hpp"
 #include "tuning/tuning.hpp"
 

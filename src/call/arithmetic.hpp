@@ -7,7 +7,7 @@
 #include <string>
 
 #include "flaunay/device_memory.hpp"
-#include "host/program_cache.hpp"
+#include "host/opencl/program_cache.hpp"
 #include "host/runtime.hpp"
 
 namespace flaunay::call {

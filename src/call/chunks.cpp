@@ -12,7 +12,7 @@
 #include "call/errors.hpp"
 #include "call/implementation.hpp"
 #include "geometry/magnitudes.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
 #include "large/chunks/array_sink.hpp"
 #include "large/chunks/run.hpp"
 #include "tuning/tuning.hpp"

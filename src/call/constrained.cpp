@@ -15,7 +15,7 @@
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
 
 namespace flaunay {
 namespace {

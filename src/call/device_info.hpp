@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "flaunay/flaunay.hpp"
+#include "host/memory/system_memory.hpp"
 #include "host/runtime.hpp"
-#include "host/system_memory.hpp"
 
 namespace flaunay::call {
 

@@ -9,9 +9,10 @@
 #include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/self_test.hpp"
-#include "host/device.hpp"
+#include "host/error.hpp"
 #include "host/note.hpp"
-#include "host/program_cache.hpp"
+#include "host/opencl/device.hpp"
+#include "host/opencl/program_cache.hpp"
 #include "shared/limits.h"
 #include "shared/records.h"
 #include "tuning/tuning.hpp"
@@ -161,12 +162,12 @@ void Engine::reset_accounts() {
 
 void Engine::write_accounts(Statistics& statistics) {
   statistics.device_bytes_peak = held_bytes();
-  statistics.kernel_launches = runtime.launches();
-  statistics.host_waits = runtime.waits();
-  statistics.bytes_to_device = runtime.bytes_to_device();
-  statistics.bytes_to_host = runtime.bytes_to_host();
+  statistics.kernel_launches = runtime.accounts().launches;
+  statistics.host_waits = runtime.accounts().waits;
+  statistics.bytes_to_device = runtime.accounts().bytes_to_device;
+  statistics.bytes_to_host = runtime.accounts().bytes_to_host;
   statistics.device_allocations = allocations() - allocations_before_;
-  statistics.build_seconds = runtime.build_seconds();
+  statistics.build_seconds = runtime.accounts().build_seconds;
   host::append_note(statistics.note, host::take_cache_note());
   for (const auto& [name, time] : runtime.kernel_times()) {
     statistics.kernels.push_back({name, time.launches, time.seconds});

@@ -9,7 +9,7 @@
 #include "call/on_host.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "points/inspect.hpp"
 #include "tuning/tuning.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 
 namespace flaunay {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/points/cut_tree.cl.hpp"
 #include "shared/limits.h"
 #include "tuning/tuning.hpp"

@@ -1,7 +1,7 @@
 // Points to blocks by chunks, each by a work-item.
 #include <algorithm>
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/points/distribute.cl.hpp"
 #include "points/move.hpp"
 #include "tuning/tuning.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/points/distribute_tiles.cl.hpp"
 #include "points/device_mesh.hpp"
 #include "points/move.hpp"

@@ -7,8 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "host/device.hpp"
 #include "host/error.hpp"
+#include "host/native/threads.hpp"
+#include "host/opencl/device.hpp"
 #include "operations/prefetch.h"
 #include "shared/limits.h"
 

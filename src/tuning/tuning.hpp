@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "host/error.hpp"
 #include "host/runtime.hpp"
 
 namespace flaunay {

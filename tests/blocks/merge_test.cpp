@@ -418,11 +418,11 @@ TEST(Merge, LaunchesAreFew) {
     Call call(runtime);
     call.work.bounds = kUsualBounds;
     const DeviceBlocks on_device(call, points);
-    const std::size_t launches = runtime.launches(), waits = runtime.waits();
+    const std::size_t launches = runtime.accounts().launches, waits = runtime.accounts().waits;
     solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
     // From height 4 on there are at most 500 merges, and they begin with a fill.
-    EXPECT_EQ(runtime.launches() - launches, 2u + 2 * 4 + 1 + 3 * 6);
-    EXPECT_EQ(runtime.waits(), waits);
+    EXPECT_EQ(runtime.accounts().launches - launches, 2u + 2 * 4 + 1 + 3 * 6);
+    EXPECT_EQ(runtime.accounts().waits, waits);
   });
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/opencl/programs.hpp"
 #include "tests/blocks/support.hpp"
 #include "tests/support/paths.hpp"
 #include "tuning/tuning.hpp"

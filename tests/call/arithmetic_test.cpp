@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "launchers/call/rates.cl.hpp"
 #include "tests/support/runtimes.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -222,7 +222,7 @@ TEST(SmallArithmetic, CPUsAreNotMeasured) {
   const auto runtime = testing::make_tuned_runtime("gpu");
   if (!runtime->is_native() && (runtime->device().type() & CL_DEVICE_TYPE_CPU) == 0) GTEST_SKIP() << "a GPU";
   choose_arithmetic(*runtime);
-  EXPECT_EQ(runtime->launches(), 0u);
+  EXPECT_EQ(runtime->accounts().launches, 0u);
   EXPECT_EQ(tuning_of(*runtime).fixed_point, 0u);
 }
 

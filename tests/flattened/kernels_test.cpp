@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/opencl/programs.hpp"
 #include "tests/flattened/support.hpp"
 
 namespace flaunay::flattened {

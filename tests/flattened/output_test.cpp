@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/flattened/output.cl.hpp"
 #include "tests/flattened/support.hpp"
 #include "tests/support/neighbors_twin.hpp"

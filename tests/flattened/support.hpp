@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "modes/flattened/stages.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/exact_points.hpp"

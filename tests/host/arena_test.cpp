@@ -1,5 +1,5 @@
 // The arena: device memory by scopes.
-#include "host/arena.hpp"
+#include "host/memory/arena.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/error.hpp"
 #include "tests/host/support.hpp"
 
 namespace flaunay::host {

@@ -1,6 +1,7 @@
 // The choice of the device.
 #include <gtest/gtest.h>
 
+#include <boost/compute/platform.hpp>
 #include <cctype>
 #include <cstddef>
 #include <fstream>

@@ -1,5 +1,5 @@
 // The folder in which PoCL keeps compiled kernels.
-#include "host/pocl.hpp"
+#include "host/opencl/pocl.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

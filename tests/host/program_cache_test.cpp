@@ -1,5 +1,5 @@
 // The cache of compiled programs: what comes back is what was stored, or nothing.
-#include "host/program_cache.hpp"
+#include "host/opencl/program_cache.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/launch/vector_operations.hpp"
+#include "host/opencl/device.hpp"
 #include "host/runtime.hpp"
-#include "host/vector_operations.hpp"
 #include "tests/support/device.hpp"
 #include "tuning/tuning.hpp"
 

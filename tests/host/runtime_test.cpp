@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "host/clock.hpp"
-#include "host/vector_operations.hpp"
+#include "host/error.hpp"
+#include "host/launch/vector_operations.hpp"
+#include "host/opencl/programs.hpp"
 #include "launchers/operations/pack.cl.hpp"
 #include "tests/host/support.hpp"
 #include "tests/support/test_kernels.hpp"
@@ -196,25 +198,25 @@ TEST(SmallAccounts, CountLaunchesAndWaits) {
   const auto a = upload(runtime, std::vector<cl_uchar>(10));
   const auto b = upload(runtime, std::vector<cl_uint>(10));
   runtime.reset_accounts();
-  EXPECT_EQ(runtime.launches(), 0u);
-  EXPECT_EQ(runtime.waits(), 0u);
-  EXPECT_EQ(runtime.build_seconds(), 0.0);
+  EXPECT_EQ(runtime.accounts().launches, 0u);
+  EXPECT_EQ(runtime.accounts().waits, 0u);
+  EXPECT_EQ(runtime.accounts().build_seconds, 0.0);
   const double begin = now(), working_begin = runtime.working_clock();
   for (int k = 0; k < 3; ++k) runtime.map(10, kernels::flag_counts{.wanted = 1, .flags = a, .counts = b});
   const double working = runtime.working_clock() - working_begin;
-  EXPECT_LE(working + runtime.build_seconds(), now() - begin + 1e-6) << "but for rounding";
+  EXPECT_LE(working + runtime.accounts().build_seconds, now() - begin + 1e-6) << "but for rounding";
   runtime.map(0, kernels::flag_counts{.wanted = 1, .flags = a, .counts = b});  // nothing to launch
-  EXPECT_EQ(runtime.launches(), 3u);
-  EXPECT_EQ(runtime.waits(), 0u);
-  EXPECT_GT(runtime.build_seconds(), 0.0);
+  EXPECT_EQ(runtime.accounts().launches, 3u);
+  EXPECT_EQ(runtime.accounts().waits, 0u);
+  EXPECT_GT(runtime.accounts().build_seconds, 0.0);
   runtime.finish();
   runtime.read_one(b, 1);
-  EXPECT_EQ(runtime.waits(), 2u);
+  EXPECT_EQ(runtime.accounts().waits, 2u);
   EXPECT_TRUE(runtime.kernel_times().empty());  // profiling is off
   runtime.reset_accounts();
   runtime.map(10, kernels::flag_counts{.wanted = 1, .flags = a, .counts = b});
-  EXPECT_EQ(runtime.launches(), 1u);
-  EXPECT_EQ(runtime.build_seconds(), 0.0);  // built already
+  EXPECT_EQ(runtime.accounts().launches, 1u);
+  EXPECT_EQ(runtime.accounts().build_seconds, 0.0);  // built already
 }
 
 TEST(Accounts, ProfilingCountsEachKernel) {

@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/error.hpp"
+#include "host/opencl/device.hpp"
 #include "host/runtime.hpp"
 #include "tests/support/device.hpp"
 #include "tuning/tuning.hpp"

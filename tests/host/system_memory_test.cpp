@@ -1,5 +1,5 @@
 // What the system says of memory, from files as Linux has them.
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

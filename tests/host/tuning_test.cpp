@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "shared/limits.h"
 #include "tests/host/support.hpp"
 

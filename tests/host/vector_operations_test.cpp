@@ -2,7 +2,7 @@
 //
 // Suites named Small... have tiny inputs and make no OpenCL call fail: tests/oclgrind.sh runs them in a
 // simulator.
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/error.hpp"
 #include "launchers/operations/pack.cl.hpp"
 #include "launchers/operations/pack_tiles.cl.hpp"
 #include "launchers/operations/scan_tiles.cl.hpp"
@@ -274,9 +275,9 @@ TEST(ScanLaunches, BySpansTakesTwo) {
     const Arena::Scope scope(runtime.arena());
     const auto values = runtime.arena().allocate<cl_uint>(n + 1);
     runtime.fill(values, n, cl_uint{1});
-    const std::size_t before = runtime.launches();
+    const std::size_t before = runtime.accounts().launches;
     exclusive_scan(runtime, values, n, values);
-    EXPECT_EQ(runtime.launches() - before, n <= alone ? 1u : 2u) << n;
+    EXPECT_EQ(runtime.accounts().launches - before, n <= alone ? 1u : 2u) << n;
     EXPECT_EQ(runtime.read_one(values, n), n);
   }
 }
@@ -462,7 +463,7 @@ TEST(SmallSort, SkipsDigitsInWhichNoKeysDiffer) {
       const auto payloads = upload(runtime, std::vector<cl_int>{0, 1, 2});
       runtime.reset_accounts();
       sort_by_key(runtime, keys, payloads, 3);
-      EXPECT_EQ(runtime.waits(), 1u);  // documented: once, to find the digits
+      EXPECT_EQ(runtime.accounts().waits, 1u);  // documented: once, to find the digits
       return runtime.kernel_times()["sort_scatter"].launches;
     };
     EXPECT_EQ(passes(7, 7), 0u);

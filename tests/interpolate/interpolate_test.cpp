@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+#include "host/opencl/programs.hpp"
 #include "tests/locate/support.hpp"
 
 namespace flaunay::locate {

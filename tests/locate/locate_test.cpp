@@ -22,6 +22,7 @@
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/locate/levels.hpp"
 #include "derived/locate/locator.hpp"
+#include "host/opencl/programs.hpp"
 #include "locate/nearest_search.h"
 #include "locate/off_grid.h"
 #include "tests/locate/support.hpp"

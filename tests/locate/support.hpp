@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "points/device_mesh.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"

@@ -165,10 +165,10 @@ std::size_t check_device_trees(Runtime& runtime, const std::vector<std::pair<Coo
   const auto input = testing::upload(runtime, all);
   const CutTrees trees(runtime, to_cut, samples_per_leaf);
   const auto nodes = testing::guarded<kernel::cut_node>(runtime, trees.nodes());
-  const std::size_t before = runtime.launches();
+  const std::size_t before = runtime.accounts().launches;
   const auto samples = trees.draw(input);
   const auto orders = trees.cut(samples.points, nodes);
-  const std::size_t launches = runtime.launches() - before;
+  const std::size_t launches = runtime.accounts().launches - before;
   HostTrees found{testing::download(runtime, nodes, trees.nodes()), std::vector<cl_double2>(trees.samples()),
                   std::vector<cl_int>(2 * trees.samples())};
   runtime.read(samples.points, 0, found.samples.size(), found.samples.data());

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "host/runtime.hpp"
 #include "points/distribute.hpp"
 #include "tests/support/cut_tree_twin.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "host/runtime.hpp"
 #include "tests/support/environment.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 #include "host/runtime.hpp"
 #include "tests/support/device.hpp"
 #include "tuning/tuning.hpp"

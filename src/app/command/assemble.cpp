@@ -16,7 +16,7 @@
 #include "app/files/mesh.hpp"
 #include "app/files/points.hpp"
 #include "flaunay/research.hpp"
-#include "host/each_index.hpp"
+#include "host/native/threads.hpp"
 
 namespace flaunay::cli {
 
@@ -74,7 +74,7 @@ void solve_missing(const io::Points& points, const research::Partition& partitio
   for (std::size_t r = 0; r < paths.size(); ++r) {
     if (paths[r].empty()) unsolved.push_back(r);
   }
-  host::for_each_index(unsolved.size(), threads, [&](std::size_t k) {
+  host::Threads(static_cast<std::size_t>(threads)).share_each(unsolved.size(), [&](std::size_t k) {
     solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
   });
 }

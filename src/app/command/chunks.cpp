@@ -12,7 +12,7 @@
 #include "files/file.hpp"
 #include "files/mesh_stream.hpp"
 #include "flaunay/chunks.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
 
 namespace flaunay::cli {
 

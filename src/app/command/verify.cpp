@@ -25,7 +25,7 @@
 #include "app/verify/chunks.hpp"
 #include "app/verify/constrained.hpp"
 #include "files/file.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
 
 namespace flaunay::cli {
 

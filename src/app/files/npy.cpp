@@ -11,7 +11,7 @@
 #include "app/files/mesh.hpp"
 #include "app/files/rows.hpp"
 #include "files/file.hpp"
-#include "host/huge_pages.hpp"
+#include "host/memory/huge_pages.hpp"
 
 namespace flaunay::io {
 namespace {

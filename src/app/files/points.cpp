@@ -8,7 +8,7 @@
 #include "app/files/formats.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
-#include "host/huge_pages.hpp"
+#include "host/memory/huge_pages.hpp"
 
 namespace flaunay::io {
 namespace {

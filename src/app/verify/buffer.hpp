@@ -6,7 +6,7 @@
 #include <memory>
 #include <new>
 
-#include "host/huge_pages.hpp"
+#include "host/memory/huge_pages.hpp"
 
 namespace flaunay::verification {
 

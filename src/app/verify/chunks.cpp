@@ -15,13 +15,11 @@
 #include "app/verify/vertex_index.hpp"
 #include "app/verify/window.hpp"
 #include "files/scratch.hpp"
-#include "host/each_index.hpp"
+#include "host/native/threads.hpp"
 
 namespace flaunay {
 namespace verification {
 namespace {
-
-using host::for_each_index;
 
 /// A point, and whether a row uses it.
 struct Candidate {
@@ -248,7 +246,7 @@ class ChunkChecker {
     vertex_file_.emplace(options_.scratch);
     Pool<VertexIndex> indices([this] { return std::make_unique<VertexIndex>(index_ids()); });
     std::atomic<std::size_t> done{0};
-    for_each_index(windows_.size(), sizes_.threads, [&](std::size_t window) {
+    threads_.share_each(windows_.size(), [&](std::size_t window) {
       const auto index = indices.take();
       for (std::uint64_t first = 0; first == 0 || first < n_; first += index_ids()) {
         const std::uint64_t count = std::min(index_ids(), n_ - first);
@@ -317,7 +315,7 @@ class ChunkChecker {
       tell("placing vertices", static_cast<double>(first) / static_cast<double>(n_));
       read_points(first, count, coordinates.data());
       std::fill_n(used.data(), count, 0);
-      for_each_index(windows_.size(), sizes_.threads, [&](std::size_t window) {
+      threads_.share_each(windows_.size(), [&](std::size_t window) {
         place_window(windows_[window], range, coordinates.data(), used.data());
       });
       for (std::uint64_t i = 0; i < count; ++i) {
@@ -394,7 +392,7 @@ class ChunkChecker {
       Pool<Window> pool([this] { return std::make_unique<Window>(window_rows_, sizes_.piece_rows); });
       Pool<VertexIndex> indices([this] { return std::make_unique<VertexIndex>(index_ids()); });
       std::atomic<std::size_t> done{0};
-      for_each_index(windows_.size(), sizes_.threads, [&](std::size_t i) {
+      threads_.share_each(windows_.size(), [&](std::size_t i) {
         if (rows_of(i) == 0) return;
         const auto window = pool.take();
         fill_window(i, *indices.take(), *window);
@@ -473,6 +471,7 @@ class ChunkChecker {
   io::RowSource& triangles_;
   io::RowSource* neighbors_;
   const VerifySizes sizes_;
+  host::Threads threads_{static_cast<std::size_t>(sizes_.threads)};
   const VerifyChunksOptions& options_;
   const std::uint64_t n_, rows_;
   std::uint64_t window_rows_ = 0;
@@ -502,8 +501,9 @@ VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::
   const std::uint64_t memory = memory_bytes - kFixed;
   const std::uint64_t for_windows = memory / 8 * 5;
   VerifySizes sizes;
-  sizes.threads = static_cast<int>(std::clamp<std::uint64_t>(for_windows / (kLeastWindow * Window::kRowBytes),
-                                                             1, host::host_threads(threads)));
+  sizes.threads =
+      static_cast<int>(std::clamp<std::uint64_t>(for_windows / (kLeastWindow * Window::kRowBytes), 1,
+                                                 host::Threads(static_cast<std::size_t>(threads)).count()));
   const auto share = static_cast<std::uint64_t>(sizes.threads);
   // As many windows as keep all threads busy to the end.
   const std::uint64_t most_rows = std::min(for_windows / share / Window::kRowBytes, kMostWindow);

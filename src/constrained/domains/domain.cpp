@@ -9,7 +9,7 @@
 
 #include "constrained/domains.h"
 #include "constrained/domains/borders.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
 #include "launchers/constrained/holes.cl.hpp"
 #include "points/device_mesh.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/chain_rounds.cl.hpp"
 #include "launchers/constrained/chains.cl.hpp"
 #include "tuning/tuning.hpp"

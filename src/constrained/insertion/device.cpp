@@ -6,7 +6,7 @@
 #include "constrained/insertion/chains.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "arithmetic/coordinates.h"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/interpolate/gradients.cl.hpp"
 
 namespace flaunay::interpolate {

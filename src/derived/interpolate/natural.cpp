@@ -1,6 +1,6 @@
 #include "derived/interpolate/natural.hpp"
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/interpolate/natural.cl.hpp"
 
 namespace flaunay::interpolate {

@@ -5,7 +5,7 @@
 #include "blocks/run.hpp"
 #include "derived/locate/locator.hpp"
 #include "flaunay/flaunay.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
 #include "launchers/locate/levels.cl.hpp"
 #include "locate/nearest_search.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "flaunay/flaunay.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
 #include "launchers/locate/locate.cl.hpp"
 #include "points/inspect.hpp"

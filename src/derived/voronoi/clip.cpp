@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "derived/voronoi/voronoi.hpp"
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/voronoi/clip.cl.hpp"
 #include "points/inspect.hpp"
 #include "predicates/bounds.h"

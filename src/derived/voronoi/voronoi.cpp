@@ -1,6 +1,6 @@
 #include "derived/voronoi/voronoi.hpp"
 
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "launchers/voronoi/voronoi.cl.hpp"
 
 namespace flaunay::voronoi {

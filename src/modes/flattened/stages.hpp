@@ -9,8 +9,8 @@
 
 #include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "host/runtime.hpp"
-#include "host/vector_operations.hpp"
 #include "modes/flattened/counting.hpp"
 #include "tuning/tuning.hpp"
 

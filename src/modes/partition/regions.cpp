@@ -10,7 +10,7 @@
 #include "flaunay/flaunay.hpp"
 #include "geometry/cells.hpp"
 #include "geometry/halfedges.hpp"
-#include "host/each_index.hpp"
+#include "host/native/threads.hpp"
 #include "statistics/counter.hpp"
 
 namespace flaunay::partition {
@@ -237,7 +237,7 @@ Ids solve_regions(const Predicates& predicates, const Point* points, const Regio
   const Ids order = largest_first(regions);
   std::vector<Ids> solutions(regions.size());
   Failure failure;
-  host::for_each_index(order.size(), threads, [&](std::size_t k) {
+  host::Threads(static_cast<std::size_t>(threads)).share_each(order.size(), [&](std::size_t k) {
     const auto r = static_cast<std::size_t>(order[k]);
     try {
       solutions[r] =
@@ -260,7 +260,8 @@ Ids solve_regions(const Predicates& predicates, const Point* points, const Regio
 int levels_for(std::size_t n, int wanted, int threads) {
   if (wanted > 0) return wanted;
   const std::size_t regions =
-      std::min(kRegionsPerThread * host::host_threads(threads), n / kLeastPointsPerRegion);
+      std::min(kRegionsPerThread * host::Threads(static_cast<std::size_t>(threads)).count(),
+               n / kLeastPointsPerRegion);
   return static_cast<int>(log2_ceiling(std::max<std::size_t>(1, regions)));
 }
 

@@ -1,4 +1,4 @@
-#include "host/program_cache.hpp"
+#include "host/opencl/program_cache.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/private_folder.hpp"
+#include "host/opencl/private_folder.hpp"
 
 namespace flaunay::host {
 namespace {

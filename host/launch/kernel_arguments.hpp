@@ -6,13 +6,17 @@
 #include <CL/cl.h>
 
 #include <cassert>
+#include <cstddef>
 #include <memory>
 #include <type_traits>
 
-#include "host/arena.hpp"
+#include "host/memory/arena.hpp"
 #include "host/native/function.hpp"
 
 namespace flaunay::host {
+
+/// The largest number of bytes of one argument: every device takes 256 in all.
+constexpr std::size_t kLargestArgument = 256;
 
 /// A kernel's program and name. The program is the kernel's file in kernels/, or the file that includes it.
 /// Runtime finds kernels by the address of this struct.

@@ -1,4 +1,4 @@
-#include "host/private_folder.hpp"
+#include "host/opencl/private_folder.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "host/launch_log.hpp"
+#include "host/launch/launch_log.hpp"
 
 #include <utility>
 

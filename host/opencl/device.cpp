@@ -1,4 +1,4 @@
-#include "host/device.hpp"
+#include "host/opencl/device.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <cstdlib>
 
 #include "host/error.hpp"
-#include "host/pocl.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
+#include "host/opencl/pocl.hpp"
 
 namespace flaunay::host {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/pocl.hpp"
+#include "host/opencl/pocl.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "host/error.hpp"
-#include "host/private_folder.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
+#include "host/opencl/private_folder.hpp"
 
 namespace flaunay::host {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/system_memory.hpp"
+#include "host/memory/system_memory.hpp"
 
 #include <CL/cl.h>
 #include <fmt/format.h>

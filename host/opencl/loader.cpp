@@ -1,7 +1,7 @@
 // The OpenCL functions that flaunay calls. They load the ICD loader, libOpenCL, when they are first called
 // and pass the call on. So programs start without it and can run on machines that have no OpenCL, where no
 // platform is found. If drivers are installed without the loader, calls go where it would pass them on.
-#include "host/opencl_loader.hpp"
+#include "host/opencl/loader.hpp"
 
 #include <CL/cl.h>
 #include <CL/cl_icd.h>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "host/arena.hpp"
+#include "host/memory/arena.hpp"
 
 namespace flaunay::host {
 

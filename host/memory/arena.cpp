@@ -1,4 +1,4 @@
-#include "host/arena.hpp"
+#include "host/memory/arena.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/huge_pages.hpp"
-#include "host/system_memory.hpp"
+#include "host/memory/huge_pages.hpp"
+#include "host/memory/system_memory.hpp"
 
 namespace flaunay::host {
 namespace {

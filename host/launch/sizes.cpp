@@ -1,4 +1,4 @@
-#include "host/sizes.hpp"
+#include "host/launch/sizes.hpp"
 
 #include <CL/cl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "host/vector_operations.hpp"
+#include "host/launch/vector_operations.hpp"
 
 #include <fmt/format.h>
 

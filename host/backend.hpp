@@ -1,0 +1,107 @@
+// What runs the commands of a Runtime: an OpenCL device (host/opencl) or threads of the host (host/native).
+// It is chosen when the runtime is made.
+#pragma once
+
+#include <CL/cl.h>
+
+#include <boost/compute/context.hpp>
+#include <boost/compute/device.hpp>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/launch/accounts.hpp"
+#include "host/launch/kernel_arguments.hpp"
+#include "host/memory/arena.hpp"
+
+namespace flaunay::host {
+
+/// A kernel of a back end, with the arguments of its next launch.
+class Kernel {
+ public:
+  explicit Kernel(std::string name) : name_(std::move(name)) {}
+  virtual ~Kernel() = default;
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
+
+  const std::string& name() const { return name_; }
+  /// Sets an argument to these bytes. The value of an array is its cl_mem.
+  virtual void set_argument(cl_uint index, const void* value, std::size_t bytes) = 0;
+  /// The number of its arguments, and the largest size of a work-group: 0 if it needs more local memory than
+  /// the device has.
+  cl_uint arguments = 0;
+  std::size_t largest_group = 1;
+
+ private:
+  std::string name_;
+};
+
+/// Commands begin in the order of the calls, each when the previous one has ended.
+class Backend {
+ public:
+  /// accounts: outlive the back end.
+  explicit Backend(Accounts& accounts) : accounts_(accounts) {}
+  virtual ~Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+
+  virtual std::string name() const = 0;
+  /// Where arenas and buffers get their memory from.
+  virtual MemorySource memory() const = 0;
+  /// The number of the host's threads that run kernels; 0 on a device. If there are some, a command is
+  /// complete when its call returns, and there are no queues and events.
+  virtual std::size_t threads() const { return 0; }
+
+  /// options: those of the compiler.
+  virtual std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options) = 0;
+  /// Forgets compiled programs. No kernel that was made of them must be used later.
+  virtual void forget_programs() {}
+  /// Launches a kernel that make_kernel returned; global sizes are rounded up to whole groups.
+  virtual void launch(Kernel& kernel, std::size_t work_items, std::size_t group) = 0;
+
+  virtual void read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) = 0;
+  virtual void write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool wait) = 0;
+  virtual void fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
+                    std::size_t value_bytes) = 0;
+  virtual void copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
+                    std::size_t bytes) = 0;
+  /// A buffer that is this host memory itself.
+  virtual std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access) = 0;
+  /// Makes the system provide memory that was not accessed before, if this is the time for it.
+  virtual void touch_new(void* begin, std::size_t bytes) = 0;
+  /// See Runtime::use_queue.
+  virtual void use_queue(cl_command_queue wanted, bool profiling) = 0;
+
+  // What follows is for a device with queues. Without them, there is nothing to wait for.
+
+  /// After the next wait, host memory that was wrapped has what kernels have written.
+  virtual void hand_over(cl_mem, std::size_t) {}
+  /// See the functions of these names in Runtime.
+  virtual void wait_for(const std::vector<cl_event>&) {}
+  virtual cl_event mark() { return nullptr; }
+  virtual void await(cl_event) {}
+  virtual void flush() {}
+  virtual void finish() {}
+  virtual void settle() const {}
+  /// Adds the times of launches that were profiled to the accounts. Waits for them, which is not counted.
+  virtual void collect_times() {}
+  virtual boost::compute::device device() const { return {}; }
+  virtual boost::compute::context context() const { return {}; }
+  virtual cl_command_queue queue() const { return nullptr; }
+  virtual cl_command_queue own_queue() const { return nullptr; }
+  virtual std::string identity() const { return {}; }
+
+  /// Called before a program is compiled from its source, which takes time.
+  std::function<void()> before_compiling;
+
+ protected:
+  Accounts& accounts() const { return accounts_; }
+
+ private:
+  Accounts& accounts_;
+};
+
+}  // namespace flaunay::host

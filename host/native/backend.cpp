@@ -1,0 +1,97 @@
+#include "host/native/backend.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+
+namespace flaunay::host {
+namespace {
+
+class NativeKernel : public Kernel {
+ public:
+  NativeKernel(const char* name, NativeFunction made) : Kernel(name), function(made) {}
+
+  void set_argument(cl_uint index, const void* value, std::size_t bytes) override {
+    if (values_.size() <= index) values_.resize(index + 1);
+    if (bytes > sizeof(Value))
+      throw DeviceError(fmt::format("an argument of kernel {} is too large", name()));
+    std::memcpy(values_[index].bytes, value, bytes);
+  }
+  std::vector<void*> values() {
+    std::vector<void*> all;
+    all.reserve(values_.size());
+    for (Value& value : values_) all.push_back(value.bytes);
+    return all;
+  }
+
+  const NativeFunction function;
+
+ private:
+  struct Value {
+    alignas(8) unsigned char bytes[kLargestArgument];
+  };
+  std::vector<Value> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<Kernel> NativeBackend::make_kernel(const KernelName& wanted, const std::string&) {
+  if (wanted.native == nullptr) {
+    throw DeviceError(fmt::format("kernel {} needs an OpenCL device", wanted.name));
+  }
+  return std::make_unique<NativeKernel>(wanted.name, wanted.native);
+}
+
+// Parts of a launch are several groups, but not so many that threads would wait for the last one for long.
+constexpr std::size_t kPartsPerThread = 8;
+
+void NativeBackend::launch(Kernel& kernel, std::size_t work_items, std::size_t group) {
+  auto& native = static_cast<NativeKernel&>(kernel);
+  accounts().add_launch(kernel.name(), work_items, group);
+  const std::vector<void*> values = native.values();
+  const double begin = profiling_ ? now() : 0;
+  threads_.share(work_items, std::max(group, work_items / (kPartsPerThread * threads_.count())),
+                 [&](std::size_t first, std::size_t last) {
+                   native.function({first, last, work_items}, values.data());
+                 });
+  if (profiling_) accounts().add_time(kernel.name(), accounts().last_launch(), now() - begin);
+}
+
+void NativeBackend::read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool) {
+  std::memcpy(to, address_of(from) + offset, bytes);
+}
+
+void NativeBackend::write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool) {
+  std::memcpy(address_of(to) + offset, from, bytes);
+}
+
+void NativeBackend::fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
+                         std::size_t value_bytes) {
+  for (std::size_t at = 0; at < bytes; at += value_bytes) {
+    std::memcpy(address_of(to) + offset + at, value, value_bytes);
+  }
+}
+
+void NativeBackend::copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
+                         std::size_t bytes) {
+  std::memmove(address_of(to) + to_offset, address_of(from) + from_offset, bytes);
+}
+
+std::shared_ptr<_cl_mem> NativeBackend::wrap(void* memory, std::size_t, cl_mem_flags) {
+  return {std::shared_ptr<void>(), handle_of(memory)};
+}
+
+// The threads share the work that the system has with it.
+void NativeBackend::touch_new(void* begin, std::size_t bytes) {
+  constexpr std::size_t kPage = 4096, kPagesPerPart = 512;
+  auto* const pages = static_cast<volatile unsigned char*>(begin);
+  threads_.share((bytes + kPage - 1) / kPage, kPagesPerPart, [&](std::size_t first, std::size_t last) {
+    for (std::size_t page = first; page < last; ++page) pages[page * kPage] = 0;
+  });
+}
+
+}  // namespace flaunay::host

@@ -1,0 +1,35 @@
+// Runs kernels that are compiled as C++, on threads of the host, without OpenCL.
+#pragma once
+
+#include "host/backend.hpp"
+#include "host/native/threads.hpp"
+
+namespace flaunay::host {
+
+class NativeBackend : public Backend {
+ public:
+  using Backend::Backend;
+
+  std::string name() const override { return "host"; }
+  MemorySource memory() const override { return native_memory(); }
+  std::size_t threads() const override { return threads_.count(); }
+
+  /// Throws DeviceError if the kernel is not compiled for the host.
+  std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options) override;
+  void launch(Kernel& kernel, std::size_t work_items, std::size_t group) override;
+  void read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) override;
+  void write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool wait) override;
+  void fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
+            std::size_t value_bytes) override;
+  void copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
+            std::size_t bytes) override;
+  std::shared_ptr<_cl_mem> wrap(void* memory, std::size_t bytes, cl_mem_flags access) override;
+  void touch_new(void* begin, std::size_t bytes) override;
+  void use_queue(cl_command_queue, bool profiling) override { profiling_ = profiling; }
+
+ private:
+  Threads threads_;
+  bool profiling_ = false;
+};
+
+}  // namespace flaunay::host
