@@ -57,13 +57,9 @@ Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& array
     const char* path;
     const void* array;
   };
-  // In the order of MeshArray.
-  const std::array<Part, io::kMeshArrays> parts = {{
-      {"triangles", files.triangles, arrays.triangles},
-      {"neighbors", files.neighbors, arrays.neighbors},
-      {"hull", files.hull, arrays.hull},
-      {"representatives", files.representatives, arrays.representatives},
-  }};
+#define PART(name) Part{#name, files.name, arrays.name},
+  const std::array parts = {FLAUNAY_MESH_ARRAYS(PART)};
+#undef PART
   Paths paths;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (parts[k].path == nullptr) continue;

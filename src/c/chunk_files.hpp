@@ -3,13 +3,15 @@
 
 #include "flaunay/chunks.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/result_arrays.hpp"
 
 namespace flaunay::c {
 
 template <typename Index>
 MeshArrays<Index> to_arrays(const flaunay_mesh_arrays& given) {
-  return {static_cast<Index*>(given.triangles), static_cast<Index*>(given.neighbors),
-          static_cast<Index*>(given.hull), static_cast<Index*>(given.representatives)};
+#define ARRAY(name) static_cast<Index*>(given.name),
+  return {FLAUNAY_MESH_ARRAYS(ARRAY)};
+#undef ARRAY
 }
 
 /// Does flaunay_triangulate_chunks_to_files.

@@ -114,19 +114,8 @@ class CallersPoints : public PointSource {
   const flaunay_point_source& given_;
 };
 
-unsigned part_of(MeshArray array) {
-  switch (array) {
-    case MeshArray::triangles:
-      return FLAUNAY_PART_TRIANGLES;
-    case MeshArray::neighbors:
-      return FLAUNAY_PART_NEIGHBORS;
-    case MeshArray::hull:
-      return FLAUNAY_PART_HULL;
-    case MeshArray::representatives:
-      return FLAUNAY_PART_REPRESENTATIVES;
-  }
-  throw Error(ErrorKind::internal, "an array that is no part");
-}
+// Bit k of flaunay_part stands for the k-th array.
+unsigned part_of(MeshArray array) { return 1u << kMeshArrayIndices[static_cast<std::size_t>(array)]; }
 
 class CallersSink : public MeshSink {
  public:

@@ -16,7 +16,11 @@ std::size_t bytes_of(IndexType type) { return type == IndexType::int32 ? 4 : 8; 
 }  // namespace
 
 std::size_t columns_of(MeshArray array) {
-  return array == MeshArray::triangles || array == MeshArray::neighbors ? 3 : 0;
+  std::size_t columns = 0;
+  for_each_array([&](const auto& row, std::size_t k) {
+    if (k == kMeshArrayIndices[static_cast<std::size_t>(array)] && row.columns > 1) columns = row.columns;
+  });
+  return columns;
 }
 
 void check_stream_output(const std::string& path) {

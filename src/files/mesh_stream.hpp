@@ -9,10 +9,11 @@
 
 #include "files/output.hpp"
 #include "flaunay/chunks.hpp"
+#include "flaunay/result_arrays.hpp"
 
 namespace flaunay::io {
 
-constexpr std::size_t kMeshArrays = 4;  ///< of MeshArray
+constexpr std::size_t kMeshArrays = kMeshArrayIndices.size();  ///< of MeshArray
 
 /// Writes each array to a file of `outputs`, which must be regular files: entries are written in any order.
 /// Nothing has a name before the outputs are committed. Throws Error(input) that names the file.

@@ -51,7 +51,7 @@ void write_mesh(const std::string& path, const Points& points, const Triangulati
 }
 void write_npy_indices(const std::string& path, const Indices& values, std::size_t columns) {
   Outputs outputs;
-  write_npy_indices(outputs, path, values, columns);
+  io::write_npy(outputs, path, values, columns);
   outputs.commit();
 }
 void write_region(const std::string& stem, const Points& points, const research::Region& region) {

@@ -410,7 +410,7 @@ TEST_F(MeshStreamTest, EntriesInAnyOrder) {
         SCOPED_TRACE(name);
         std::vector<std::int32_t> expected = narrow;
         if (std::string(name) == "h.npy") expected[4] = 5;
-        write_npy_indices(outputs, path("expected.npy"), expected, static_cast<std::size_t>(columns), type);
+        write_npy(outputs, path("expected.npy"), expected, static_cast<std::size_t>(columns), type);
         outputs.commit();
         EXPECT_EQ(read(path(name)), read(path("expected.npy")));
         std::filesystem::remove(path(name));

@@ -16,8 +16,6 @@
 
 namespace flaunay::cli {
 
-static_assert(kArrayFiles.size() == io::kMeshArrays);
-
 namespace {
 
 // The largest numbers of points and triangles that int32 can count.
@@ -118,7 +116,7 @@ std::string what_would_fit(const Triangulator& triangulator) {
 
 io::IndexType index_type(const std::string& choice, std::uint64_t points, const ResultPaths& results) {
   if (choice == "64") return io::IndexType::int64;
-  const bool has_rows = !results.arrays[static_cast<std::size_t>(MeshArray::neighbors)].empty();
+  const bool has_rows = !results.arrays[array_index("neighbors")].empty();
   if (choice == "auto") return points > kMostPointsWithRows32 ? io::IndexType::int64 : io::IndexType::int32;
   if (points > (has_rows ? kMostPointsWithRows32 : kMostPoints32)) {
     throw Error(ErrorKind::usage,
@@ -131,7 +129,8 @@ io::IndexType index_type(const std::string& choice, std::uint64_t points, const 
 int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) {
   OutputFiles outputs(request.input);
   announce(outputs, request.results);
-  for (const std::string& path : request.results.arrays) io::check_stream_output(path);
+  const auto paths = mesh_paths(request.results);
+  for (const std::string& path : paths) io::check_stream_output(path);
 
   RunFacts facts;
   facts.input = request.input;
@@ -143,8 +142,8 @@ int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) 
   facts.reading_seconds = stopwatch.restart();
 
   const io::IndexType type = index_type(request.index, points->size(), request.results);
-  io::check_room(request.results.arrays, points->size(), type, request.scratch);
-  io::MeshFiles files(outputs.files(), request.results.arrays, type);
+  io::check_room(paths, points->size(), type, request.scratch);
+  io::MeshFiles files(outputs.files(), paths, type);
   const ChunkStatistics statistics = triangulate_file(request, *points, files, progress);
 
   stopwatch.restart();

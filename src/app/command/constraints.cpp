@@ -261,12 +261,11 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
   for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
     const ConstraintArrayFile& file = kConstraintArrayFiles[k];
     if (request.arrays[k].empty()) continue;
-    io::write_npy_indices(files, request.arrays[k], mesh.*file.values, file.columns, index);
+    io::write_npy(files, request.arrays[k], mesh.*file.values, file.columns, index);
   }
   if (!request.points.empty()) io::write_points(files, request.points, map.points);
   if (!request.polygons.empty()) {
-    io::write_npy_indices(files, request.polygons, request.separate ? sets_of(mesh) : mesh.polygons, 0,
-                          index);
+    io::write_npy(files, request.polygons, request.separate ? sets_of(mesh) : mesh.polygons, 0, index);
   }
   files.write_out();
   facts.writing_seconds = stopwatch.seconds();

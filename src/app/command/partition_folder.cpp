@@ -152,7 +152,7 @@ void write_partition(io::Outputs& outputs, const std::string& folder, const io::
     outputs.close();
     for (const char* ending : {".node", ".poly"}) old.erase(stem + ending);
   }
-  io::write_npy_indices(outputs, inside(folder, kFinished), partition.triangles, 3);
+  io::write_npy(outputs, inside(folder, kFinished), partition.triangles, 3);
   outputs.open(inside(folder, kDescription)).print("{}", description(partition, facts));
   for (const char* name : {kFinished, kDescription}) old.erase(inside(folder, name));
   for (const std::string& path : old) outputs.remove(path);

@@ -1,10 +1,27 @@
 #include "app/command/results.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
 #include "app/command/options.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/mesh.hpp"
 
 namespace flaunay::cli {
+namespace {
+
+// Of representatives, users know what they tell.
+std::string option_of(std::string_view name) {
+  return fmt::format("--{}", name == "representatives" ? "duplicates" : name);
+}
+
+bool is_in_chunks(std::size_t k) {
+  return std::find(kMeshArrayIndices.begin(), kMeshArrayIndices.end(), k) != kMeshArrayIndices.end();
+}
+
+}  // namespace
 
 std::vector<std::string> ResultPaths::all() const {
   std::vector<std::string> paths = {mesh};
@@ -18,18 +35,30 @@ void add_results(CLI::App* command, ResultPaths& paths) {
   add_result_arrays(command, paths);
 }
 
-void add_result_arrays(CLI::App* command, ResultPaths& paths) {
-  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
-    add_path(command, kArrayFiles[k].option, paths.arrays[k], kArrayFiles[k].description);
-  }
+void add_result_arrays(CLI::App* command, ResultPaths& paths, bool in_chunks) {
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (in_chunks && !is_in_chunks(k)) return;
+    add_path(command, option_of(array.name), paths.arrays[k], fmt::format("{}: .npy", array.text));
+  });
   add_path(command, "--stats", paths.stats, "Statistics: .json");
 }
 
 void ask_for(const ResultPaths& paths, Options& options) {
-  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
-    const auto computed_if = kArrayFiles[k].computed_if;
-    if (computed_if != nullptr) options.*computed_if = !paths.arrays[k].empty();
-  }
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (array.option != nullptr) options.*array.option = !paths.arrays[k].empty();
+  });
+}
+
+std::array<std::string, io::kMeshArrays> mesh_paths(const ResultPaths& paths) {
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (paths.arrays[k].empty() || is_in_chunks(k)) return;
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: triangulations in chunks do not have it; it needs all points at once",
+                            option_of(array.name)));
+  });
+  std::array<std::string, io::kMeshArrays> found;
+  for (std::size_t k = 0; k < found.size(); ++k) found[k] = paths.arrays[kMeshArrayIndices[k]];
+  return found;
 }
 
 void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constraints) {
@@ -40,11 +69,10 @@ void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constrai
 
 void write_arrays(const ResultPaths& paths, const Triangulation& mesh, OutputFiles& outputs,
                   io::IndexType index) {
-  for (std::size_t k = 0; k < kArrayFiles.size(); ++k) {
-    const ArrayFile& file = kArrayFiles[k];
-    if (paths.arrays[k].empty()) continue;
-    io::write_npy_indices(outputs.files(), paths.arrays[k], mesh.*file.values, file.columns, index);
-  }
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (paths.arrays[k].empty()) return;
+    io::write_npy(outputs.files(), paths.arrays[k], mesh.*array.values, array.columns, index);
+  });
 }
 
 void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,

@@ -439,7 +439,7 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
 }
 
 void write_npy_triangles(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  write_npy_indices(outputs, path, contents.mesh.triangles, 3);
+  write_npy(outputs, path, contents.mesh.triangles, 3);
 }
 
 void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& contents) {

@@ -43,15 +43,18 @@ std::vector<std::string> mesh_files(const std::string& path, bool with_constrain
 /// Whether the format of path has regions and depths.
 bool shows_labels(const std::string& path);
 
-/// Writes an .npy array of rows x columns (columns 0: one-dimensional, `rows` long).
-void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
-                       std::size_t columns, IndexType type = IndexType::int32);
+/// Writes an .npy array of rows x columns; columns 0 or 1: of one dimension. type: of indices in the file.
+void write_npy(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+               std::size_t columns, IndexType type = IndexType::int32);
+/// Writes an .npy array of doubles, whatever the type of indices.
+void write_npy(Outputs& outputs, const std::string& path, const std::vector<double>& values,
+               std::size_t columns, IndexType type = IndexType::int32);
 
 /// Reads triangles, 0-based, from .npy (int32 or int64, m x 3), .ele (either index base), .off, .obj (faces),
 /// .ply as write_mesh writes it. Throws Error(input) that names the place.
 std::vector<std::int32_t> read_triangles(const std::string& path);
 
-/// Reads neighbours, as write_npy_indices writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
+/// Reads neighbours, as write_npy writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
 /// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
 std::vector<std::int32_t> read_neighbors(const std::string& path);
 

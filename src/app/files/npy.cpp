@@ -358,21 +358,38 @@ std::vector<std::int32_t> read_neighbors(const std::string& path) {
   return read_npy_indices(path, -1, "neighbour");
 }
 
-void write_npy_indices(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
-                       std::size_t columns, IndexType type) {
+namespace {
+
+template <typename T>
+OutputFile& begin_npy(Outputs& outputs, const std::string& path, const char* descr,
+                      const std::vector<T>& values, std::size_t columns) {
   if (columns > 0 && values.size() % columns != 0) {
     throw Error(ErrorKind::internal,
                 fmt::format("{}: {} values make no rows of {}", path, values.size(), columns));
   }
-  const std::size_t rows = columns == 0 ? values.size() : values.size() / columns;
-  const std::string header = npy_header(descr_of(type), rows, columns);
+  const bool has_rows = columns > 1;
+  const std::string header =
+      npy_header(descr, has_rows ? values.size() / columns : values.size(), has_rows ? columns : 0);
   OutputFile& file = outputs.open(path);
   file.write(header.data(), header.size());
+  return file;
+}
+
+}  // namespace
+
+void write_npy(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
+               std::size_t columns, IndexType type) {
+  OutputFile& file = begin_npy(outputs, path, descr_of(type), values, columns);
   if (type == IndexType::int32) {
     file.write(values.data(), values.size() * sizeof(std::int32_t));
   } else {
     for (const std::int64_t value : values) file.write_value(value);
   }
+}
+
+void write_npy(Outputs& outputs, const std::string& path, const std::vector<double>& values,
+               std::size_t columns, IndexType) {
+  begin_npy(outputs, path, "<f8", values, columns).write(values.data(), values.size() * sizeof(double));
 }
 
 }  // namespace flaunay::io

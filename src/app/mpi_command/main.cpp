@@ -140,8 +140,8 @@ struct Share {
   std::uint64_t first_row, rows;
 };
 
-// In the order of the array files.
-std::array<Share, cli::kArrayFiles.size()> shares_of(const Triangulation& mesh) {
+// In the order of MeshArray.
+std::array<Share, io::kMeshArrays> shares_of(const Triangulation& mesh) {
   const auto first_row = static_cast<std::uint64_t>(mesh.first_row);
   return {{{mesh.triangles, first_row, mesh.statistics.triangles},
            {mesh.neighbors, first_row, mesh.statistics.triangles},
@@ -153,7 +153,7 @@ std::array<Share, cli::kArrayFiles.size()> shares_of(const Triangulation& mesh) 
 io::IndexType check_outputs(const Request& request, std::uint64_t points) {
   const io::IndexType type = cli::index_type(request.index, points, request.results);
   const std::uint64_t bytes = (type == io::IndexType::int32 ? 4 : 8) * points;
-  const auto& paths = request.results.arrays;
+  const auto paths = cli::mesh_paths(request.results);
   // There are at most twice as many triangles as points; the hull is long for few inputs.
   io::check_disk_space({{paths[0], 6 * bytes}, {paths[1], 6 * bytes}, {paths[3], bytes}});
   return type;
@@ -184,7 +184,7 @@ int triangulate(Ranks& ranks, const Request& request) {
   progress.update("triangulating");
   const double cpu_before = cpu_seconds();
   Options options = request.options;
-  options.neighbors = !request.results.arrays[1].empty();
+  options.neighbors = !request.results.arrays[array_index("neighbors")].empty();
   const Triangulation mesh =
       mpi::triangulate(ranks.communicator(), points.data(), points.size() / 2, options);
   points = {};
@@ -194,13 +194,13 @@ int triangulate(Ranks& ranks, const Request& request) {
   progress.update("writing");
   stopwatch.restart();
   const auto shares = shares_of(mesh);
+  const auto paths = cli::mesh_paths(request.results);
   io::Outputs outputs;
   std::vector<std::unique_ptr<IndexFile>> files;
   for (std::size_t k = 0; k < shares.size(); ++k) {
-    const std::string& path = request.results.arrays[k];
-    if (path.empty()) continue;
-    files.push_back(
-        std::make_unique<IndexFile>(ranks, outputs, path, cli::kArrayFiles[k].columns, shares[k].rows, type));
+    if (paths[k].empty()) continue;
+    const std::size_t columns = io::columns_of(static_cast<MeshArray>(k));
+    files.push_back(std::make_unique<IndexFile>(ranks, outputs, paths[k], columns, shares[k].rows, type));
     files.back()->write(ranks, shares[k].values, shares[k].first_row);
   }
   ranks.together([&] {
@@ -220,7 +220,7 @@ void add_triangulate(CLI::App& app, Request& request) {
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
   command->add_option("input", request.input, "Points: " + io::endings_for(io::Use::read_records))
       ->required();
-  cli::add_result_arrays(command, request.results);
+  cli::add_result_arrays(command, request.results, true);
   command->add_option(
       "--device", request.options.device,
       "The device of each rank: a part of its name, #k for the k-th that flaunay devices lists, or "

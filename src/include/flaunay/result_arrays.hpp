@@ -5,23 +5,24 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
-#include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 
 /// The arrays of flaunay::Triangulation, in the order of the bits of flaunay_part. A row is X(type of the
-/// elements, name, of what there is one row per thing, elements per row, by what it is asked for, what it
-/// has). An array is computed always or on request, by the member of its name in flaunay::Options.
-#define FLAUNAY_TRIANGULATION_ARRAYS(X)                                                   \
-  X(std::int32_t, triangles, triangle, 3, always, "3 point indices per row")              \
-  X(std::int32_t, neighbors, triangle, 3, on_request,                                     \
-    "the triangle opposite to each vertex, -1 on the hull")                               \
-  X(std::int32_t, halfedges, halfedge, 1, on_request, "the opposite one, -1 on the hull") \
-  X(std::int32_t, hull, hull_vertex, 1, always, "counter-clockwise")                      \
-  X(std::int32_t, representatives, point, 1, always, "for each point the smallest index of an equal point")
+/// elements, name, of what there is one row per thing, elements per row, by what it is asked for, a line for
+/// users). An array is computed always or on request, by the member of its name in flaunay::Options.
+#define FLAUNAY_TRIANGULATION_ARRAYS(X)                                                               \
+  X(std::int32_t, triangles, triangle, 3, always, "Triangles, 3 point indices per row")               \
+  X(std::int32_t, neighbors, triangle, 3, on_request,                                                 \
+    "Neighbours, the triangle opposite to each vertex, -1 on the hull")                               \
+  X(std::int32_t, halfedges, halfedge, 1, on_request, "Halfedges, the opposite ones, -1 on the hull") \
+  X(std::int32_t, hull, hull_vertex, 1, always, "Hull, counter-clockwise")                            \
+  X(std::int32_t, representatives, point, 1, always,                                                  \
+    "Duplicates, for each point the smallest index of an equal point")
 
 /// The arrays that triangulations in chunks have, in the order of flaunay::MeshArray: X(name).
 #define FLAUNAY_MESH_ARRAYS(X) X(triangles) X(neighbors) X(hull) X(representatives)
@@ -72,7 +73,7 @@ struct TriangulationArray {
   const char* name;                           ///< the name of all the members below
   RowOf row;                                  ///< of what it has one row per thing
   std::size_t columns;                        ///< elements per row; 1: it has one dimension
-  const char* text;                           ///< what it has, for users
+  const char* text;                           ///< a line for users
   std::vector<T> Triangulation::*values;      ///< the array in host memory
   bool Options::*option;                      ///< the option that asks for it; null: it is computed always
   DeviceBuffer DeviceTriangulation::*buffer;  ///< the array in device memory
@@ -109,5 +110,19 @@ constexpr void for_each_array(const Visit& visit) {
       },
       kTriangulationArrays);
 }
+
+/// The place of an array in the table, by its name.
+constexpr std::size_t array_index(std::string_view name) {
+  std::size_t found = kTriangulationArrayCount;
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (array.name == name) found = k;
+  });
+  return found;
+}
+
+#define FLAUNAY_INDEX(name) array_index(#name),
+/// For each MeshArray its place in the table.
+constexpr std::array kMeshArrayIndices = {FLAUNAY_MESH_ARRAYS(FLAUNAY_INDEX)};
+#undef FLAUNAY_INDEX
 
 }  // namespace flaunay

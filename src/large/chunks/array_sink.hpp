@@ -1,10 +1,12 @@
 // Results of a triangulation in chunks that are arrays in memory.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "flaunay/chunks.hpp"
+#include "flaunay/result_arrays.hpp"
 
 namespace flaunay::chunks {
 
@@ -20,19 +22,10 @@ class ArraySink : public MeshSink {
   }
 
  private:
-  Index* place(MeshArray array) const {
-    switch (array) {
-      case MeshArray::triangles:
-        return arrays_.triangles;
-      case MeshArray::neighbors:
-        return arrays_.neighbors;
-      case MeshArray::hull:
-        return arrays_.hull;
-      case MeshArray::representatives:
-        return arrays_.representatives;
-    }
-    return nullptr;
-  }
+#define PLACE(name) &MeshArrays<Index>::name,
+  static constexpr std::array kPlaces = {FLAUNAY_MESH_ARRAYS(PLACE)};
+#undef PLACE
+  Index* place(MeshArray array) const { return arrays_.*kPlaces[static_cast<std::size_t>(array)]; }
 
   MeshArrays<Index> arrays_;
 };

@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "flaunay/result_arrays.hpp"
 #include "geometry/euler.hpp"
 #include "host/clock.hpp"
 #include "host/note.hpp"
@@ -50,8 +51,9 @@ class SharedSink : public MeshSink {
   }
 
  private:
-  static constexpr std::array kArrays{MeshArray::triangles, MeshArray::neighbors, MeshArray::hull,
-                                      MeshArray::representatives};
+#define ARRAY(name) MeshArray::name,
+  static constexpr std::array kArrays{FLAUNAY_MESH_ARRAYS(ARRAY)};
+#undef ARRAY
 
   MeshSink& sink_;
   std::array<bool, kArrays.size()> wanted_{};
