@@ -32,7 +32,9 @@ class Threads {
   /// Calls work(k) for each k below n.
   template <typename WorkOnOne>
   void share_each(std::size_t n, const WorkOnOne& work) {
-    share(n, 1, [&](std::size_t begin, std::size_t) { work(begin); });
+    share(n, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) work(k);
+    });
   }
 
  private:
