@@ -1,18 +1,22 @@
 // The record of a call's launches (research::Options::record): beside the statistics, and the steps of merges
-// beside those of a sequential twin.
+// beside their definition.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
-#include "mesh/rings.h"
-#include "tests/support/bounds.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {
@@ -34,57 +38,77 @@ Triangulation run(Triangulator& on, const Coordinates& points, Record record, Mo
   return research::triangulate(on, points.data(), points.size() / 2, options);
 }
 
-// Points that every cut divides by x, in the order of x.
+// Points that every cut divides by x, in the order of x; integers, for which the reference is fast.
 Coordinates flat_points(std::size_t n, std::uint64_t seed) {
   FixtureRandom random(seed);
   std::vector<double> xs;
-  for (std::size_t i = 0; i < n; ++i) xs.push_back(random.unit());
+  for (std::size_t i = 0; i < n; ++i) xs.push_back(std::floor(0x1p29 * random.unit()));
   std::sort(xs.begin(), xs.end());
   Coordinates points;
-  constexpr double kHeight = 0x1p-10;
   for (const double x : xs) {
     points.push_back(x);
-    points.push_back(kHeight * random.unit());
+    points.push_back(std::floor(0x1p19 * random.unit()));
   }
   return points;
 }
 
-/// Merges of points that are sorted by x, cut in halves down to four: with the same functions, but as one
-/// recursion on the host.
-class MergeTwin {
- public:
-  explicit MergeTwin(const Coordinates& points) : edges_(kernel::EDGES_PER_VERTEX * points.size() / 2) {
-    for (std::size_t i = 0; i < points.size(); i += 2) vertices_.push_back({points[i], points[i + 1]});
-    vertex_edge_.resize(vertices_.size());
-    rings_ = kernel::rings_on(edges_.data(), vertices_.data(), vertex_edge_.data(),
-                              bounds_for(magnitudes_of(points)));
-    rings_.unused = 0;
-    const auto count = static_cast<int>(vertices_.size());
-    int depth = 0;
-    while (count > kernel::LEAF_VERTICES << depth) ++depth;
-    solve(count, depth, 0);
+using Edge = std::pair<int, int>;
+
+/// The lower hull of points [begin, end), which are sorted by x.
+std::vector<int> lower_hull(const Coordinates& points, int begin, int end) {
+  const auto at = [&](int v) { return &points[2 * static_cast<std::size_t>(v)]; };
+  std::vector<int> hull;
+  for (int v = begin; v < end; ++v) {
+    while (hull.size() > 1 && reference_orient2d(at(hull[hull.size() - 2]), at(hull.back()), at(v)) <= 0)
+      hull.pop_back();
+    hull.push_back(v);
   }
-  std::uint32_t steps() const { return rings_.counted.steps; }
+  return hull;
+}
+
+/// The steps of merging points that are sorted by x, in halves down to four, as docs/counting.md defines
+/// them: found without merging, from the triangulations of both halves and of the whole.
+class StepsTwin {
+ public:
+  explicit StepsTwin(const Coordinates& points) : points_(points) {
+    const auto count = static_cast<int>(points.size() / 2);
+    int depth = 0;
+    while (count > 4 << depth) ++depth;
+    edges_of_part(count, depth, 0, 0);
+  }
+  std::uint32_t steps() const { return steps_; }
 
  private:
-  int begin_of(int count, int depth, int part) const {
-    return static_cast<int>((static_cast<long>(part) * count) >> depth);
-  }
-  kernel::hull_ends solve(int count, int depth, int part, int level = 0) {
-    if (level == depth) {
-      const int begin = begin_of(count, depth, part);
-      return kernel::make_leaf(&rings_, begin, begin_of(count, depth, part + 1) - begin);
+  /// The edges of part `part` of 2^level, whose merges are counted.
+  std::set<Edge> edges_of_part(int count, int depth, int part, int level) {
+    const auto begin_of = [&](int p, int l) { return static_cast<int>((static_cast<long>(p) * count) >> l); };
+    const int begin = begin_of(part, level), end = begin_of(part + 1, level);
+    std::set<Edge> edges;
+    if (end - begin == 2) edges.insert({begin, begin + 1});
+    const auto triangles = reference_delaunay(&points_[2 * static_cast<std::size_t>(begin)],
+                                              static_cast<std::size_t>(end - begin));
+    for (const auto& [a, b, c] : triangles) {
+      for (const auto& [v, w] : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)})
+        edges.insert({begin + v, begin + w});
     }
-    const kernel::hull_ends low = solve(count, depth, 2 * part, level + 1);
-    const kernel::hull_ends high = solve(count, depth, 2 * part + 1, level + 1);
-    kernel::merge_triangulations(&rings_, low.last_x, high.first_x);
-    return kernel::joined_ends(&rings_, low, high, 0);
+    if (level == depth) return edges;
+    const int middle = begin_of(2 * part + 1, level + 1);
+    for (const int half : {2 * part, 2 * part + 1}) {
+      for (const Edge& edge : edges_of_part(count, depth, half, level + 1)) steps_ += edges.count(edge) == 0;
+    }
+    for (const auto& [v, w] : edges) steps_ += v < middle && middle <= w;
+    // The tangent's ends move along the halves' hulls, from the points beside the cut, to that of the whole.
+    const std::vector<int> hull = lower_hull(points_, begin, end);
+    const int right = *std::lower_bound(hull.begin(), hull.end(), middle);
+    const int left = *std::prev(std::lower_bound(hull.begin(), hull.end(), middle));
+    for (const int v : lower_hull(points_, begin, middle)) steps_ += v > left;
+    for (const int v : lower_hull(points_, middle, end)) steps_ += v < right;
+    ++steps_;
+    return edges;
   }
 
-  std::vector<kernel::ring_edge> edges_;
-  std::vector<kernel::double2> vertices_;
-  std::vector<int> vertex_edge_;
-  kernel::rings rings_{};
+  const Coordinates& points_;
+  std::uint32_t steps_ = 0;
 };
 
 const LaunchStatistics& only(const std::vector<LaunchStatistics>& launches, const std::string& kernel) {
@@ -136,7 +160,7 @@ TEST(Launches, StepsAreTheTwins) {
     const Coordinates points = flat_points(n, n);
     const Triangulation mesh = run(triangulator(), points, Record::steps);
     const LaunchStatistics& solve = only(mesh.launches, "solve_blocks");
-    EXPECT_EQ(solve.longest_chain, MergeTwin(points).steps());
+    EXPECT_EQ(solve.longest_chain, StepsTwin(points).steps());
     EXPECT_EQ(solve.steps, solve.longest_chain);
     for (const char* walk : {"mark_outside", "write_hulls"}) {
       EXPECT_EQ(only(mesh.launches, walk).longest_chain, mesh.statistics.hull_vertices);
@@ -153,7 +177,7 @@ TEST(Launches, StepsOfSeveralSets) {
   std::uint64_t sum = 0;
   for (const std::size_t size : sizes) {
     const Coordinates set = flat_points(size, size);
-    const std::uint32_t steps = MergeTwin(set).steps();
+    const std::uint32_t steps = StepsTwin(set).steps();
     longest = std::max(longest, steps);
     sum += steps;
     points.insert(points.end(), set.begin(), set.end());

@@ -175,6 +175,7 @@ TEST(SmallGaps, AreThoseOfTheTwin) {
 }
 
 TEST(Gaps, AreThoseOfTheTwin) {
+  if (testing::tests_native()) GTEST_SKIP() << "native kernels have no work-groups";
   MetGaps met;
   under_each_group_of_tiles([&](Runtime& runtime) {
     check_gap_trees(runtime, gap_sets(1000, {5, 1, 8, 0, 3}), 64, met);
@@ -182,7 +183,6 @@ TEST(Gaps, AreThoseOfTheTwin) {
     for (const std::size_t samples : {1, 2, 3})
       check_gap_trees(runtime, gap_sets(90, {6, 3, 5}), samples, met);
   });
-  if (testing::tests_native()) return;
   EXPECT_GT(met.along[0], 100u);
   EXPECT_GT(met.along[1], 100u);
   EXPECT_GT(met.medians, 100u);
