@@ -1685,7 +1685,7 @@ static void test_chunks_in_arrays(void) {
   check_same_mesh(arrays.triangles, arrays.neighbors, arrays.hull, arrays.representatives, expected);
   flaunay_chunk_report_destroy(report);
 
-  // The same hull in 64 bits, and nothing else, on a device that is in use by this program.
+  // The hull alone in 64 bits, on a device that is in use by this program.
   int64_t* wide = malloc(kPoints * sizeof *wide);
   REQUIRE(wide != NULL);
   const flaunay_mesh_arrays hull_alone = {.index_type = FLAUNAY_INT64, .hull = wide};

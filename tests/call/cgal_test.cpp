@@ -1,4 +1,4 @@
-// The same counts as CGAL on every fixture, and the same triangles where the triangulation is unique.
+// Beside CGAL: equal counts on every fixture, and equal triangles where the triangulation is unique.
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>

@@ -341,7 +341,7 @@ TEST(SmallEmbedding, QueuesInOrderAndNot) {
   const Queue unordered = embedder().make_queue(CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
   const Queue ordered = embedder().make_queue();
   DeviceTriangulation result;
-  // The same memory on one queue after the other, without waiting in between.
+  // One buffer on one queue after the other, without waiting in between.
   for (int k = 0; k < 6; ++k) {
     const Queue& queue = k % 2 == 0 ? unordered : ordered;
     cl_event done = nullptr;

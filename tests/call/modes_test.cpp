@@ -248,7 +248,7 @@ TEST(Modes, NoPoints) {
   }
 }
 
-/// The same bytes again, after other work and with any number of threads.
+/// Bytes do not depend on the work before, nor on the number of threads.
 TEST(Modes, AreDeterministic) {
   const Coordinates points = make_fixture("kuzmin", 5000, 8);
   for (const Execution& execution : executions(false)) {

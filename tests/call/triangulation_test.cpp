@@ -505,7 +505,7 @@ TEST(Triangulation, EverySubsetOfAGrid) {
   }
 }
 
-/// The same one by one, of a 3 x 3 grid.
+/// Each subset of a 3 x 3 grid in a call of its own.
 TEST(Triangulation, EverySubsetOfASmallGridAlone) {
   for (unsigned bits = 0; bits < 512; ++bits) {
     Coordinates points;
@@ -1225,7 +1225,7 @@ TEST(Statistics, DeviceMemory) {
   }
 }
 
-/// The same call again takes no more memory, where kernels work in place and where everything is copied.
+/// A repeated call takes no more memory, where kernels work in place and where everything is copied.
 TEST(Statistics, DeviceMemoryStaysWhatItWas) {
   const Coordinates points = io::generate("uniform", 50000, 3).coordinates;
   for (const char* tuning : {"cpu", "gpu"}) {

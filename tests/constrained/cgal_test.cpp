@@ -1,5 +1,5 @@
-// The same triangles as CGAL's constrained Delaunay triangulation where it is unique, and the same numbers of
-// edges elsewhere.
+// Beside CGAL's constrained Delaunay triangulation: equal triangles where it is unique, equally many edges
+// elsewhere.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -82,7 +82,7 @@ std::vector<std::int32_t> triangles_of(const Constrained& triangulation) {
   return triangles;
 }
 
-// The same triangles wherever no four points on a circle leave a choice.
+// Triangles are equal wherever no four points on a circle leave a choice.
 TEST(ConstrainedCgal, NastySegments) {
   int unique = 0;
   for (const NastySegments& nasty : nasty_segments()) {

@@ -154,7 +154,7 @@ std::size_t expect_pairs(const Pieces& given, int& grids) {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   EXPECT_EQ(pairs, all);
-  // The same by a grid, if it takes few comparisons.
+  // A grid finds these pairs too, if it takes few comparisons.
   std::vector<constrained::Line> grid_lines;
   for (const Piece& edge : lines.edges)
     grid_lines.push_back({given.points[edge.from], given.points[edge.to]});

@@ -316,7 +316,8 @@ static void print_device_derived(const char* key, const flaunay_device_points* g
   clReleaseMemObject(asked.memory);
 }
 
-// The same points, their offsets in host memory or in device memory, behind others in the buffer or not.
+// What calls on device memory return: offsets in host memory or in device memory, points behind others in the
+// buffer or at its beginning.
 static void print_on_device(const Sets* sets, int offsets_on_device, size_t first) {
   static double shifted[2 * kMostPoints + 2 * 8];
   memcpy(shifted + 2 * first, sets->points, sets->count * sizeof(double[2]));

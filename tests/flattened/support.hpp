@@ -347,7 +347,7 @@ struct LoopOptions {
 void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::vector<std::size_t>& offsets,
                   const LoopOptions& options, Met& met);
 void check_levels(Runtime& runtime, const Coordinates& coordinates, const LoopOptions& options, Met& met);
-/// The same for fixtures of n points, under each tuning.
+/// The level loop on fixtures of n points, under each tuning.
 void check_fixtures(const std::vector<std::string>& names, std::size_t n, const LoopOptions& options,
                     Met& met);
 

@@ -204,7 +204,7 @@ Outcome constrain(const Flat& all, const Triangulation& delaunay, const Segments
   }
 }
 
-/// The same from the last segment to the first, each the other way round.
+/// Inserts from the last segment to the first, each the other way round: what differs, or "".
 std::string compare_with_reversed(const Flat& all, const Triangulation& delaunay,
                                   const constrained::Result& result) {
   const Segments reversed(all.segments.rbegin(), all.segments.rend());

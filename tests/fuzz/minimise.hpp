@@ -18,7 +18,7 @@ Batch minimise(Batch batch, const Fails& fails, std::size_t most_calls = 20'000)
 
 using SegmentsFail = std::function<bool(const SegmentBatch&)>;
 
-/// The same with segments. Removes segments too. A point takes the segments with it that end there.
+/// Also removes segments. A point that is removed takes the segments with it that end there.
 SegmentBatch minimise(SegmentBatch batch, const SegmentsFail& fails, std::size_t most_calls = 20'000);
 
 /// The batch as an .xy file: one point per line. `comment` may have several lines; the sets of a batch are

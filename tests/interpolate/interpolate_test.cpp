@@ -85,7 +85,7 @@ std::string bytes_of(const std::vector<double>& numbers) {
   return std::string(reinterpret_cast<const char*>(numbers.data()), sizeof(double) * numbers.size());
 }
 
-/// The same bytes with every tuning, and of every column as if it were alone. Returns the results.
+/// Returns the results. Their bytes must not depend on the tuning, nor those of a column on the others.
 template <typename Method>
 std::vector<double> consistent(const Case& input, const Method& method, const std::vector<double>& values,
                                std::size_t columns) {

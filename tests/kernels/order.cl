@@ -21,8 +21,8 @@ kernel void sort_cases(int n, int axis, global const int* restrict offsets,
   }
 }
 
-// The same step by step: after the coarse keys, after their ties, which are finished or given up, and merged
-// from there.
+// What each step of a sort leaves: the coarse keys, their ties, which are finished or given up, and the merge
+// of these.
 kernel void sort_steps(int n, int axis, global const int* restrict offsets,
                        global const double2* restrict points, global keyed* elements, global keyed* spare,
                        global keyed* restrict coarse, global int* restrict finished,

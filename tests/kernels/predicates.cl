@@ -71,7 +71,7 @@ kernel void circle_filtered_cases(int n, filter_bound bound, global const double
   }
 }
 
-// The same, by the angles under which c and d see the edge from a to b. bound: of the in-circle test.
+// In-circle signs by the angles under which c and d see the edge from a to b. bound: of the in-circle test.
 kernel void angle_compared_cases(int n, filter_bound bound, global const double* restrict cases,
                                  global char* restrict signs) {
   const int i = get_global_id(0);

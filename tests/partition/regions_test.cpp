@@ -131,7 +131,7 @@ Partition partition_of(const LabelledMesh& cut, FixtureRandom& random) {
   return partition;
 }
 
-/// The same as flat arrays of ids, for solve_regions.
+/// The regions as flat arrays of ids, for solve_regions.
 geometry::RegionArrays arrays_of(const LabelledMesh& cut, const geometry::PointSets& sets) {
   Ids id_of(sets.representatives.size(), -1);
   for (std::size_t id = 0; id < sets.source.size(); ++id) id_of[sets.source[id]] = static_cast<int>(id);

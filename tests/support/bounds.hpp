@@ -23,7 +23,7 @@ inline geometry::Magnitudes magnitudes_of(const std::vector<double>& coordinates
   return magnitudes;
 }
 
-/// The same beside another coordinate of 53 bits, so that no filter takes them for coarse.
+/// Magnitudes with another coordinate of 53 bits, so that no filter takes them for coarse.
 inline geometry::Magnitudes beside_fine_ones(geometry::Magnitudes magnitudes) {
   constexpr int kBits = std::numeric_limits<double>::digits;
   if (magnitudes.lowest > magnitudes.largest) return {0, 1 - kBits};

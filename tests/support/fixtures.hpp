@@ -84,7 +84,7 @@ inline Coordinates star(std::size_t n, std::uint64_t seed) {
   return points;
 }
 
-/// The same with integers, exactly cocircular.
+/// A star of integers, exactly cocircular.
 inline Coordinates integer_star(std::size_t n, std::uint64_t seed) {
   Coordinates points = io::generate("integer-circle", n > 0 ? n - 1 : 0, seed).coordinates;
   if (n > 0) add(points, 0.0, 0.0);

@@ -19,7 +19,7 @@ using TriangleSet = std::vector<std::array<std::int32_t, 3>>;
 TriangleSet reference_delaunay(const double* coordinates, std::size_t n);
 TriangleSet reference_delaunay(const std::vector<double>& coordinates);
 
-/// The same form for a result, 3 indices per triangle.
+/// A result, 3 indices per triangle, as a TriangleSet.
 TriangleSet sorted_triangles(const std::vector<std::int32_t>& triangles);
 
 /// The triangles one after the other, as Triangulation::triangles has them.
@@ -28,7 +28,7 @@ std::vector<std::int32_t> flat_triangles(const TriangleSet& triangles);
 /// For each triangle the triangles opposite to its corners, -1 for none: as Triangulation::neighbors.
 /// Every directed edge must occur at most once.
 std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles);
-/// Triangulation::halfedges, likewise.
+/// For each edge of a triangle its twin, -1 for none: as Triangulation::halfedges.
 std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles);
 
 /// Exact signs for any finite doubles; points are pointers to x, y. +1: a, b, c turn left.
