@@ -130,10 +130,10 @@ inline std::string broken_vertices(const HostRings& g, std::size_t block, const 
 /// What is wrong with the rings of a set, or "". They are to be the canonical Delaunay triangulation: one
 /// planar component, with each vertex's edges in counter-clockwise order, a convex hull around triangles, and
 /// across each edge nothing in the circle of the other side; of four points of a circle the diagonal leaves
-/// the first. Points on a line: the path along it.
+/// the first, unless is_canonical is false. Points on a line: the path along it.
 class RingCheck {
  public:
-  RingCheck(const HostRings& g, std::size_t set)
+  RingCheck(const HostRings& g, std::size_t set, bool is_canonical = true)
       : g_(g),
         first_block_(g.set_blocks[set]),
         last_block_(g.set_blocks[set + 1]),
@@ -142,7 +142,8 @@ class RingCheck {
         first_edge_(static_cast<cl_int>(kEdgesPerPoint) * first_),
         last_edge_(static_cast<cl_int>(kEdgesPerPoint) * last_),
         vertices_(g.vertices_of(first_block_, last_block_)),
-        exact_(std::vector<cl_double2>(g.vertices.begin() + first_, g.vertices.begin() + last_)) {}
+        exact_(std::vector<cl_double2>(g.vertices.begin() + first_, g.vertices.begin() + last_)),
+        is_canonical_(is_canonical) {}
 
   std::string run() {
     for (const auto step : {&RingCheck::edges, &RingCheck::free_edges, &RingCheck::rings, &RingCheck::ends,
@@ -348,7 +349,7 @@ class RingCheck {
       const cl_int a = g_.from(e), b = g_.to(e), c = g_.to(g_.along_face(e)), d = g_.to(g_.along_face(e ^ 1));
       const int side = exact_.in_circle(a - first_, b - first_, c - first_, d - first_);
       if (side > 0) return fail("vertex {} is in the circle across edge {}", d, e);
-      if (side < 0) continue;
+      if (side < 0 || !is_canonical_) continue;
       const cl_int first = ends_twin(g_, {a, b, c, d})[0];
       if (first != a && first != b) return fail("edge {} is not the canonical diagonal", e);
     }
@@ -358,6 +359,7 @@ class RingCheck {
   cl_int first_block_, last_block_, first_, last_, first_edge_, last_edge_;
   std::vector<cl_int> vertices_;
   ExactPoints exact_;
+  bool is_canonical_;
   std::size_t used_ = 0;
   std::vector<bool> outside_;
   bool flat_ = true;
