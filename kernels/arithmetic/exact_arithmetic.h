@@ -19,7 +19,7 @@ static inline double2 two_sum(double a, double b) {
   return VECTOR(double2, x, (a - a_virtual) + (b - b_virtual));
 }
 
-// The same for |a| >= |b| or a = 0.
+// A sum as of two_sum, for |a| >= |b| or a = 0.
 static inline double2 fast_two_sum(double a, double b) {
   const double x = a + b;
   return VECTOR(double2, x, b - (x - a));

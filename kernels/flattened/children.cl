@@ -25,7 +25,7 @@ kernel void child_sizes(int n, global const int* restrict corner_offsets, global
   }
 }
 
-// The same for sets, before the first level: one child each.
+// The sizes of sets, before the first level: one child each.
 kernel void set_sizes(int n, global const int* restrict child_points, global const int* restrict child_corners,
                       global uint8* restrict sizes) {
   const int s = get_global_id(0);

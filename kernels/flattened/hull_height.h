@@ -80,7 +80,7 @@ OUT_OF_LINE static inline int depth_by_expansions(double2 a, double2 b, double2 
   return expansion_sign(&sum);
 }
 
-// The same in integers below 2^NARROW_BITS or 2^WIDE_BITS, as pu * (bs^2 - as^2 + bu^2) - bu * (ps^2 - as^2 + pu^2):
+// The sign in integers below 2^NARROW_BITS or 2^WIDE_BITS, of pu * (bs^2 - as^2 + bu^2) - bu * (ps^2 - as^2 + pu^2):
 // the sums of squares are below 2^63, or 2^125.
 static inline int depth_narrow(long as, long bs, long bu, long ps, long pu) {
   return sign_of_128(

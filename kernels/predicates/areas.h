@@ -22,7 +22,7 @@ static inline double2 area_filtered(double2 a, double2 b, double2 q) {
   return VECTOR(double2, left - right, fabs(left) + fabs(right));
 }
 
-// The same, with all bits right except the last.
+// Twice the area, with all bits right except the last.
 static inline double area_exact(double2 a, double2 b, double2 q) {
   const double2 ax = two_sum(a.x, -q.x), ay = two_sum(a.y, -q.y);
   const double2 bx = two_sum(b.x, -q.x), by = two_sum(b.y, -q.y);

@@ -18,7 +18,7 @@ constrained::DomainRequest request_of(const ConstrainedOptions& options, bool ar
 void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Constraints& constraints, const constrained::DomainRequest& request,
                    ConstrainedTriangulation& result);
-/// The same on a device, or natively. with_doubles: finds holes; another one if the first one computes in
+/// Labels on a device, or natively. with_doubles: finds holes; another one if the first one computes in
 /// fixed point.
 void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,

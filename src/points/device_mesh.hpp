@@ -11,7 +11,7 @@ namespace flaunay::points {
 using host::Arena;
 using host::Buffer;
 
-/// The same numbers, as kernels have them.
+/// Offsets or sizes, as kernels have them.
 inline std::vector<cl_int> integers(const std::vector<std::size_t>& values) {
   return {values.begin(), values.end()};
 }

@@ -9,7 +9,7 @@ namespace flaunay::points {
 /// Finds the magnitudes of n points, x0 y0 x1 y1 ... Waits once. Temporary memory: 12 bytes. O(n).
 geometry::Magnitudes inspect(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n);
 
-/// The same for each of several sets. offsets: sets + 1. Temporary memory: 16 bytes a set.
+/// The magnitudes of each of several sets. offsets: sets + 1. Temporary memory: 16 bytes a set.
 std::vector<geometry::Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<cl_double>& points,
                                                const std::vector<std::size_t>& offsets);
 

@@ -36,7 +36,7 @@ struct RunFacts {
 /// The final line: counts, the time of each phase, points per second.
 std::string summary(const Statistics& statistics, const RunFacts& facts);
 
-/// The same for a triangulation in chunks.
+/// The final line for a triangulation in chunks.
 std::string chunk_summary(const ChunkStatistics& statistics, const RunFacts& facts);
 std::string chunk_statistics_json(const ChunkStatistics& statistics, const RunFacts& facts);
 

@@ -25,7 +25,7 @@ Points generate(const std::string& distribution, std::size_t n, std::uint64_t se
 
 /// Takes the next `count` points: x0 y0 x1 y1 ...
 using PointConsumer = std::function<void(const double* coordinates, std::size_t count)>;
-/// The same points in pieces; most distributions hold no more of them.
+/// Hands these points over in pieces; most distributions hold no more than a piece.
 void generate(const std::string& distribution, std::size_t n, std::uint64_t seed,
               const PointConsumer& consume);
 

@@ -50,7 +50,7 @@ Points read_points(const std::string& path);
 
 /// Throws Error(usage) that lists the endings if read_points does not know the ending of path.
 void check_points_ending(const std::string& path);
-/// The same for write_points.
+/// Throws Error(usage) that lists the endings if write_points does not know the ending of path.
 void check_points_output(const std::string& path);
 
 /// The points of a .bin file.

@@ -132,7 +132,7 @@ class Lines {
     if (!field(text)) fail_line("expected {}, found the end of the line", what);
     return whole_number(text, what);
   }
-  /// The same of a field of this line.
+  /// A field of this line as a whole number.
   long long whole_number(std::string_view text, std::string_view what) const {
     long long value = 0;
     const std::size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;

@@ -39,7 +39,7 @@ struct VerifyChunksReport : VerifyReport {
   std::uint64_t scratch_bytes = 0;  ///< written to the folder
 };
 
-/// The same checks as verify(), reading everything in pieces. neighbors may be null. Throws Error(input) if a
+/// Checks what verify() checks, reading everything in pieces. neighbors may be null. Throws Error(input) if a
 /// point is not finite, naming it, or if a source or the scratch folder fails. One of several violations is
 /// reported: that of the first window, not always that with the smallest index.
 ///

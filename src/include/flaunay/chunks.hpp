@@ -129,12 +129,12 @@ struct MeshArrays {
   Index* representatives = nullptr;  ///< room for n indices
 };
 
-/// The same with points and results in memory. Throws Error(input), too, if there are more points than
-/// 32-bit indices can count.
+/// Points and results are in memory. Throws Error(input), too, if there are more points than 32-bit indices
+/// can count.
 FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
                                                const MeshArrays<std::int32_t>& results,
                                                const ChunkOptions& options = {});
-/// The same with 64-bit indices.
+/// Results have 64-bit indices.
 FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
                                                const MeshArrays<std::int64_t>& results,
                                                const ChunkOptions& options = {});

@@ -53,7 +53,7 @@ struct Statistics {
 };
 
 /// A rank's part of a triangulation. Points are numbered over all ranks: those of rank 0 first, then those of
-/// rank 1, and so on. Rows (triangles) are numbered likewise.
+/// rank 1, and so on. Rows (triangles) are numbered so, too.
 struct Triangulation {
   /// 3 point numbers per row, counter-clockwise, smallest number first.
   std::vector<std::int64_t> triangles;
@@ -84,7 +84,7 @@ struct Triangulation {
 /// each point is sent once, and a few of a hundred once more. O(n log n) work over all ranks.
 FLAUNAY_API Triangulation triangulate(MPI_Comm communicator, const double* coordinates, std::size_t n,
                                       const Options& options = {});
-/// The same with the rank's own triangulator, for several calls. Options::device is not used.
+/// Uses the rank's own triangulator, for several calls. Options::device is not used.
 FLAUNAY_API Triangulation triangulate(MPI_Comm communicator, Triangulator& triangulator,
                                       const double* coordinates, std::size_t n, const Options& options = {});
 

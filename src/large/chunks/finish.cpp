@@ -137,7 +137,7 @@ std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first
     const std::int32_t from = corner(border.triangle, after(border.corner));
     const std::int32_t to = corner(border.triangle, after(after(border.corner)));
     if (border.closed >= 0) {
-      // The same edge as its two ends see it.
+      // One edge, as each of its two ends sees it.
       const std::int64_t there = open_edge(to, from, 0);
       if (there < 0)
         throw Error(ErrorKind::internal, "an edge is open at one of its ends alone; please report the input");

@@ -47,7 +47,7 @@ using CheckCount = std::function<void(std::size_t points)>;
 chunks::ChunkPoints move_given(Ranks& ranks, host::Threads& threads, const GivenPoints& points,
                                const chunks::ChunkTree& tree, const CheckCount& check_count);
 
-/// The same in later rounds, for points with their open edges.
+/// For later rounds: the points of this rank's leaf, with their open edges.
 chunks::ChunkPoints move_open(Ranks& ranks, chunks::ChunkPoints points, const chunks::ChunkTree& tree,
                               const Workers& workers, const CheckCount& check_count);
 
