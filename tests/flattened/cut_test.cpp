@@ -1,13 +1,39 @@
 // The stage `cut`: where regions are cut, and where their paths begin and end.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "tests/flattened/support.hpp"
-#include "tests/support/cut_twin.hpp"
 
 namespace flaunay::flattened {
+namespace {
+
+/// alternate_axis: 0 or 1, or -1 for the longer interquartile range (as rounded to double).
+Frame cut_twin(const ExactPoints& points, const Region& region, int alternate_axis) {
+  const std::size_t count = region.x_list.size();
+  Frame frame;
+  frame.axis = alternate_axis;
+  if (alternate_axis < 0) {
+    const double x_range = points[region.x_list[3 * count / 4]].s[0] - points[region.x_list[count / 4]].s[0];
+    const double y_range = points[region.y_list[3 * count / 4]].s[1] - points[region.y_list[count / 4]].s[1];
+    frame.axis = y_range > x_range ? 1 : 0;
+  }
+  frame.q = frame.axis == 0 ? points[region.x_list[count / 2]].s[0] : points[region.y_list[count / 2]].s[1];
+  return frame;
+}
+
+/// The border vertices of smallest and of largest u, the lowest of each.
+std::pair<int, int> ends_twin(const ExactPoints& points, const Frame& frame, const Region& region) {
+  std::vector<int> vertices;
+  for (const Corner& corner : region.corners) vertices.push_back(corner.vertex);
+  const std::vector<int> by_u = points.lowest_by_u(frame, vertices);
+  return {by_u.front(), by_u.back()};
+}
+
+}  // namespace
 
 CutLevel check_cut(Call& call, const ExactPoints& points, const PointTable& table, Level& level,
                    const std::vector<Region>& regions, int alternate, Met& met) {
@@ -16,8 +42,8 @@ CutLevel check_cut(Call& call, const ExactPoints& points, const PointTable& tabl
   std::vector<cl_int> axes, first_ends, last_ends;
   std::vector<cl_double> cuts;
   for (const Region& region : regions) {
-    const Frame frame = testing::cut_twin(points, region, alternate);
-    const auto ends = testing::ends_twin(points, frame, region);
+    const Frame frame = cut_twin(points, region, alternate);
+    const auto ends = ends_twin(points, frame, region);
     axes.push_back(frame.axis);
     cuts.push_back(frame.q);
     first_ends.push_back(ends.first);

@@ -4,8 +4,11 @@
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,6 +19,46 @@
 #include "tests/support/endgame_twin.hpp"
 
 namespace flaunay::flattened {
+namespace {
+
+/// The convex hulls of sets, and the first regions.
+struct BordersTwin {
+  std::vector<int> hull;
+  std::vector<std::size_t> hull_offsets{0};
+  std::size_t triangles = 0;
+  Regions regions;
+  std::vector<bool> on_border;  ///< by id; collinear sets have nothing else
+};
+
+BordersTwin borders_twin(const ExactPoints& points, const std::vector<cl_int>& set_offsets,
+                         const std::vector<cl_int>& y_order) {
+  BordersTwin twin;
+  twin.on_border.assign(points.size(), false);
+  for (std::size_t s = 0; s + 1 < set_offsets.size(); ++s) {
+    std::vector<int> ids(static_cast<std::size_t>(set_offsets[s + 1] - set_offsets[s]));
+    std::iota(ids.begin(), ids.end(), set_offsets[s]);
+    bool collinear = false;
+    const std::vector<int> hull = testing::border_twin(points, ids, collinear);
+    const std::size_t h = hull.size();
+    for (const int id : hull) twin.on_border[static_cast<std::size_t>(id)] = true;
+    Region region;
+    if (!collinear) {
+      twin.triangles += 2 * ids.size() - 2 - h;
+      for (std::size_t k = 0; k < h; ++k)
+        region.corners.push_back({hull[(k + h - 1) % h], hull[k], hull[(k + 1) % h]});
+      const auto internal = [&](int id) { return !twin.on_border[static_cast<std::size_t>(id)]; };
+      std::copy_if(ids.begin(), ids.end(), std::back_inserter(region.x_list), internal);
+      std::copy_if(y_order.begin() + set_offsets[s], y_order.begin() + set_offsets[s + 1],
+                   std::back_inserter(region.y_list), internal);
+    }
+    twin.regions.add(std::move(region));
+    twin.hull.insert(twin.hull.end(), hull.begin(), hull.end());
+    twin.hull_offsets.push_back(twin.hull.size());
+  }
+  return twin;
+}
+
+}  // namespace
 
 /// Runs the level loop and holds every stage of every level against its twin, the twin being fed with what
 /// the device had before. Stops at the first level that differs.
@@ -33,16 +76,15 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::v
   Level level;
   RetiredRegions retired;
   const Borders borders = initial_borders(work, table, level, retired);
-  const testing::BordersTwin borders_twin =
-      testing::borders_twin(points, set_offsets, call.read(table.y_order, table.count));
-  EXPECT_TRUE(same(call.read(borders.hull, borders.size), borders_twin.hull));
-  EXPECT_TRUE(same(borders.hull_offsets, borders_twin.hull_offsets));
-  EXPECT_EQ(borders.triangles, borders_twin.triangles);
+  const BordersTwin twin = borders_twin(points, set_offsets, call.read(table.y_order, table.count));
+  EXPECT_TRUE(same(call.read(borders.hull, borders.size), twin.hull));
+  EXPECT_TRUE(same(borders.hull_offsets, twin.hull_offsets));
+  EXPECT_EQ(borders.triangles, twin.triangles);
   const auto side = call.read(table.side, table.count);
   for (std::size_t id = 0; id < table.count; ++id)
-    ASSERT_EQ(side[id] == 2, borders_twin.on_border[id]) << "id " << id;
+    ASSERT_EQ(side[id] == 2, twin.on_border[id]) << "id " << id;
   Regions regions = download(call, level, retired);
-  ASSERT_TRUE(same_regions(regions, borders_twin.regions));
+  ASSERT_TRUE(same_regions(regions, twin.regions));
   check_endgame(call, points, table, retired, regions.retired, met);
   std::size_t triangles = 0;
   const auto count_retired = [&] {

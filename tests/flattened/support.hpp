@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +23,6 @@
 #include "tests/support/device.hpp"
 #include "tests/support/exact_points.hpp"
 #include "tests/support/fixtures.hpp"
-#include "tests/support/merge_twin.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/regions.hpp"
 #include "tests/support/same.hpp"
@@ -40,7 +40,6 @@ using testing::ExactPoints;
 using testing::FixtureRandom;
 using testing::Frame;
 using testing::make_fixture;
-using testing::MergeCounts;
 using testing::Region;
 using testing::Regions;
 using testing::same;
@@ -203,6 +202,14 @@ inline ::testing::AssertionResult same_regions(const Regions& found, const Regio
   }
   return ::testing::AssertionSuccess();
 }
+
+/// What the borders that were merged had to offer.
+struct MergeCounts {
+  std::array<std::size_t, 4> corners_by_parts{};  ///< corners on the path by how many new ones they gave
+  std::size_t path_leaves_region = 0;             ///< corners with a path edge outside the wedge
+  std::size_t pinch_points = 0;                   ///< vertices with several corners in one region
+  std::size_t path_on_border = 0;                 ///< corners with a path edge that is a border edge
+};
 
 /// What the tests met, so that they can say that they met it.
 struct Met {

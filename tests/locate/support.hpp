@@ -51,17 +51,6 @@ inline std::vector<std::string> tunings() {
   return {"own", "small", "gpu"};
 }
 
-inline bool is_fixed_point(const Runtime& runtime) { return tuning_of(runtime).fixed_point != 0; }
-
-/// Those of tests that compute in fixed point, too, which is not done natively.
-inline std::vector<std::string> tunings_with_fixed_point() {
-  std::vector<std::string> names = tunings();
-  if (names.size() > 1 && !testing::tests_native()) {
-    names.insert(names.end(), {"fixed_point=1", "small,fixed_point=1", "gpu,fixed_point=1"});
-  }
-  return names;
-}
-
 /// Sets of points, their triangulation, and queries for each.
 struct Case {
   Coordinates points;
