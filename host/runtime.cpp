@@ -21,9 +21,9 @@ Runtime::Runtime(const boost::compute::context& context, const boost::compute::d
         return std::make_unique<OpenClBackend>(accounts, context, device);
       }) {}
 
-Runtime::Runtime(std::shared_ptr<const Sizes> sizes)
+Runtime::Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads)
     : Runtime(std::move(sizes),
-              [](Accounts& accounts) { return std::make_unique<NativeBackend>(accounts); }) {}
+              [threads](Accounts& accounts) { return std::make_unique<NativeBackend>(accounts, threads); }) {}
 
 Runtime::Runtime(std::shared_ptr<const Sizes> sizes, const MakeBackend& make)
     : sizes_(std::move(sizes)), backend_(make(accounts_)), arena_(backend_->memory()) {

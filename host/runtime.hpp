@@ -34,8 +34,8 @@ class Runtime {
   Runtime(const boost::compute::context& context, const boost::compute::device& device,
           std::shared_ptr<const Sizes> sizes);
   /// Runs kernels natively, on threads of the host: OpenCL is not used. Launches and copies are complete when
-  /// the call returns; there are no queues and events.
-  explicit Runtime(std::shared_ptr<const Sizes> sizes);
+  /// the call returns; there are no queues and events. threads: see Threads.
+  explicit Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads = 0);
   ~Runtime();
 
   /// Whether kernels run on threads of the host; each command is complete when its call returns.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
 
@@ -225,11 +226,26 @@ void fit_sort_group(Runtime& runtime) {
   }
 }
 
+// Each element moves to before those that are greater.
+void insert_sorted(cl_ulong* keys, cl_int* payloads, std::size_t n) {
+  for (std::size_t i = 1; i < n; ++i) {
+    const auto place = std::upper_bound(keys, keys + i, keys[i]) - keys;
+    std::rotate(keys + place, keys + i, keys + i + 1);
+    std::rotate(payloads + place, payloads + i, payloads + i + 1);
+  }
+}
+
 }  // namespace
 
 void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl_int>& payloads,
                  std::size_t n) {
   if (n < 2) return;
+  // Counting digits would take longer.
+  constexpr std::size_t kFew = 48;
+  if (runtime.is_native() && n <= kFew) {
+    return insert_sorted(reinterpret_cast<cl_ulong*>(address_of(keys.memory())),
+                         reinterpret_cast<cl_int*>(address_of(payloads.memory())), n);
+  }
   fit_sort_group(runtime);
   Arena::Scope scope(runtime.arena());
   const Sizes& sizes = runtime.sizes();

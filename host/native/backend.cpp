@@ -16,17 +16,12 @@ class NativeKernel : public Kernel {
   NativeKernel(const char* name, NativeFunction made) : Kernel(name), function(made) {}
 
   void set_argument(cl_uint index, const void* value, std::size_t bytes) override {
-    if (values_.size() <= index) values_.resize(index + 1);
+    if (values_.size() <= index) add_values(index + 1);
     if (bytes > sizeof(Value))
       throw DeviceError(fmt::format("an argument of kernel {} is too large", name()));
     std::memcpy(values_[index].bytes, value, bytes);
   }
-  std::vector<void*> values() {
-    std::vector<void*> all;
-    all.reserve(values_.size());
-    for (Value& value : values_) all.push_back(value.bytes);
-    return all;
-  }
+  void** values() { return places_.data(); }
 
   const NativeFunction function;
 
@@ -34,7 +29,14 @@ class NativeKernel : public Kernel {
   struct Value {
     alignas(8) unsigned char bytes[kLargestArgument];
   };
+  void add_values(std::size_t count) {
+    places_.resize(count);
+    values_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) places_[k] = values_[k].bytes;
+  }
+
   std::vector<Value> values_;
+  std::vector<void*> places_;  // of the values
 };
 
 }  // namespace
@@ -52,11 +54,10 @@ constexpr std::size_t kPartsPerThread = 8;
 void NativeBackend::launch(Kernel& kernel, std::size_t work_items, std::size_t group) {
   auto& native = static_cast<NativeKernel&>(kernel);
   accounts().add_launch(kernel.name(), work_items, group);
-  const std::vector<void*> values = native.values();
   const double begin = profiling_ ? now() : 0;
   threads_.share(work_items, std::max(group, work_items / (kPartsPerThread * threads_.count())),
                  [&](std::size_t first, std::size_t last) {
-                   native.function({first, last, work_items}, values.data());
+                   native.function({first, last, work_items}, native.values());
                  });
   if (profiling_) accounts().add_time(kernel.name(), accounts().last_launch(), now() - begin);
 }

@@ -8,7 +8,8 @@ namespace flaunay::host {
 
 class NativeBackend : public Backend {
  public:
-  using Backend::Backend;
+  /// threads: see Threads.
+  NativeBackend(Accounts& accounts, std::size_t threads) : Backend(accounts), threads_(threads) {}
 
   std::string name() const override { return "host"; }
   MemorySource memory() const override { return native_memory(); }

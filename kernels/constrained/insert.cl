@@ -98,6 +98,8 @@ static inline uint2 size_of_walk(int rows) {
 
 // How many pieces a walk counts at a time.
 #define COUNTED_PIECES 64u
+// From how many rows on it counts those; most walks are shorter.
+#define COUNTED_ROWS 16u
 
 // The next piece of what is left of a segment between two corners, which it moves. Returns at which end it was, see
 // find_departure. walk: of the piece; rows is 0 if it is an edge already.
@@ -168,13 +170,13 @@ FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walke
 }
 
 // n keys of segments, see segments.cl. flags: bytes, four in each word. ends: of the first piece, the lexicographically
-// smaller one first. Stops counting pieces at the limit.
-kernel void walk_segments(int n, uint limit, filter_bound bound, global const coordinate* restrict points,
-                          global const int* restrict triangles, global const int* restrict neighbors,
-                          global const int* restrict hull, global const ulong* restrict keys,
-                          global volatile uint* restrict claims, global volatile uint* restrict flags,
-                          global constraint_walk* restrict walks, global int* restrict ends,
-                          global uint* restrict pieces, global uint2* restrict sizes,
+// smaller one first. Stops at limits of pieces and of rows, of all segments together.
+kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound bound,
+                          global const coordinate* restrict points, global const int* restrict triangles,
+                          global const int* restrict neighbors, global const int* restrict hull,
+                          global const ulong* restrict keys, global volatile uint* restrict claims,
+                          global volatile uint* restrict flags, global constraint_walk* restrict walks,
+                          global int* restrict ends, global uint* restrict pieces, global uint2* restrict sizes,
                           global volatile uint* restrict status) {
   const int s = get_global_id(0);
   if (s < n) {
@@ -190,22 +192,32 @@ kernel void walk_segments(int n, uint limit, filter_bound bound, global const co
       count = second_place - first_place;
       ends[2 * s] = hull[from];
       ends[2 * s + 1] = hull[from + 1];
-      for (uint k = 1; k < count && read_shared(&status[INSERTION_PIECES]) <= limit; k += COUNTED_PIECES)
+      for (uint k = 1; k < count && read_shared(&status[INSERTION_PIECES]) <= most_pieces; k += COUNTED_PIECES)
         atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
     } else {
       int first = (int)first_place, second = (int)second_place;
+      uint rows = 0;
       constraint_walk walk;
       while (triangles[first] != triangles[second]) {
+        if (read_shared(&status[INSERTION_ROWS]) > most_rows) {
+          atomic_or(&status[INSERTION_STOPPED], 1u);
+          break;
+        }
         if (next_piece(&mesh, &first, &second, rank_of(s), claims, &walk) == LEAVES_NONE) {
           atomic_or(&status[INSERTION_BROKEN], 1u);
           break;
         }
         if (walk.rows == 0) flag_edge(walk.corner, &mesh, flags);
         if (count % COUNTED_PIECES == 1) {
-          if (read_shared(&status[INSERTION_PIECES]) > limit) break;
+          if (read_shared(&status[INSERTION_PIECES]) > most_pieces) break;
           atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
         }
         ++count;
+        rows += (uint)walk.rows;
+        if (rows >= COUNTED_ROWS) {
+          atomic_add(&status[INSERTION_ROWS], rows);
+          rows = 0;
+        }
       }
       if (count == 1) {
         walks[s] = walk;

@@ -4,8 +4,9 @@
 // places in the plane. A vertex of a set without triangles has PLACE_ON_LINE and its number on the hull. Before
 // insertion:
 // - mark_ends, over the segments: checks them, and marks the vertices at their ends. clear_vertices is before that.
-// - start_rows, over the triangles: the places of the marked vertices; all rows are unclaimed. line_places, over the
-//   hulls: those in sets on a line.
+// - start_rows, over the triangles: the places of the marked vertices; all rows are unclaimed, and at first unchanged
+// and
+//   without constraints. line_places, over the hulls: those in sets on a line.
 // - segment_keys, over the segments: a key of the places of both ends, by which the host sorts them.
 // - find_runs and write_unique, over the sorted segments: leave out what is equal.
 // After insertion, of constraint edges that are linked to straight chains:
@@ -76,9 +77,9 @@ kernel void mark_ends(int n, int points, int sets, global const int* restrict of
 #define ROWS_AT_ONCE 64
 
 // n triangles.
-kernel void start_rows(int n, int chunk, global const int* restrict triangles, global const uint* restrict marks,
-                       global volatile uint* restrict places, global uint* restrict claims,
-                       global uchar* restrict flags, global uchar* restrict changed) {
+kernel void start_rows(int n, int chunk, int is_first, global const int* restrict triangles,
+                       global const uint* restrict marks, global volatile uint* restrict places,
+                       global uint* restrict claims, global uchar* restrict flags, global uchar* restrict changed) {
   const int c = get_global_id(0);
   int low = c * chunk;
   if (low < n) {
@@ -95,7 +96,7 @@ kernel void start_rows(int n, int chunk, global const int* restrict triangles, g
       for (int i = 0; i < count; ++i) fetch((global const void*)&places[triangles[marked[i]]]);
       for (; low < end; ++low) {
         claims[low] = UNCLAIMED;
-        flags[low] = changed[low] = 0;
+        if (is_first) flags[low] = changed[low] = 0;
       }
       for (int i = 0; i < count; ++i) atomic_min(&places[triangles[marked[i]]], (uint)marked[i]);
     }

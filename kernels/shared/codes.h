@@ -55,7 +55,9 @@ INTEGER_CONSTANT(INSERTION_CROSSED, 1);  // whether segments cross
 INTEGER_CONSTANT(INSERTION_BROKEN, 2);   // whether a walk left the triangulation, which is an error of the program
 INTEGER_CONSTANT(INSERTION_LONG, 3);     // how many constraints have walks longer than SHORT_WALK
 INTEGER_CONSTANT(INSERTION_PIECES, 4);   // parts of segments that have several
-INTEGER_CONSTANT(INSERTION_NUMBERS, 5);
+INTEGER_CONSTANT(INSERTION_ROWS, 5);     // how many rows were walked through, of those with long walks
+INTEGER_CONSTANT(INSERTION_STOPPED, 6);  // whether walks ended early, because there were too many rows
+INTEGER_CONSTANT(INSERTION_NUMBERS, 7);
 
 // What became of a constraint in a round.
 INTEGER_CONSTANT(CONSTRAINT_WAITS, 0);

@@ -10,8 +10,8 @@
 #include "call/host_call.hpp"
 #include "call/implementation.hpp"
 #include "call/insert_segments.hpp"
+#include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
-#include "constrained/insertion/constrained.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
@@ -26,27 +26,6 @@ Ids checked_segments(const Constraints& constraints) {
   call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
   call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
   return {constraints.segments, constraints.segments + 2 * constraints.segment_count};
-}
-
-// Per edge the smallest index of a segment that has it. Segments come in ascending order and skip edges that
-// earlier ones have, by shortcuts to the next edge without a segment.
-Ids segments_of_edges(std::size_t edges, const Ids& piece_offsets, const Ids& piece_edges) {
-  Ids owner(edges, -1), next(edges + 1);
-  std::iota(next.begin(), next.end(), 0);
-  const auto next_free = [&next](std::int32_t e) {
-    while (next[e] != e) e = next[e] = next[next[e]];
-    return e;
-  };
-  for (std::size_t s = 0; s + 1 < piece_offsets.size(); ++s) {
-    for (std::int32_t p = piece_offsets[s]; p < piece_offsets[s + 1]; ++p) {
-      const std::int32_t end = piece_edges[2 * p + 1];
-      for (std::int32_t e = next_free(piece_edges[2 * p]); e < end; e = next_free(e)) {
-        owner[e] = static_cast<std::int32_t>(s);
-        next[e] = e + 1;
-      }
-    }
-  }
-  return owner;
 }
 
 ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
@@ -74,8 +53,7 @@ void call::take(constrained::Result&& made, ConstrainedTriangulation& result) {
   result.piece_edges = std::move(made.segment_edges);
   result.piece_offsets.resize(segments + 1);
   std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
-  result.edge_segments =
-      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
+  result.edge_segments = constrained::first_pieces(result.constraint_edges.size() / 2, result.piece_edges);
   result.added_offsets.assign(sets + 1, 0);
 }
 
@@ -143,8 +121,12 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   }
   result.representatives.swap(representatives);
   result.piece_offsets = std::move(split.piece_offsets);
-  result.edge_segments =
-      segments_of_edges(result.constraint_edges.size() / 2, result.piece_offsets, result.piece_edges);
+  Ids segment_of(result.piece_edges.size() / 2);
+  for (std::size_t s = 0; s + 1 < result.piece_offsets.size(); ++s) {
+    std::fill(segment_of.begin() + result.piece_offsets[s], segment_of.begin() + result.piece_offsets[s + 1],
+              static_cast<std::int32_t>(s));
+  }
+  for (std::int32_t& piece : result.edge_segments) piece = segment_of[piece];
   result.added_points = std::move(split.added_points);
   result.added_offsets = std::move(split.added_offsets);
   end_split(seconds);
@@ -192,9 +174,6 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
                                                    const Constraints& constraints,
                                                    const ConstrainedOptions& options, bool are_closed) {
   const Rings& rings = constraints.rings;
-  if (!rings.segment_offsets.empty()) {
-    constrained::check_rings(rings, constraints.segment_count, options.fill_rule);
-  }
   ConstrainedTriangulation result = constrain(self, coordinates, offsets, constraints, options);
   const double begin = host::now();
   const constrained::DomainRequest request = request_of(options, are_closed);
@@ -216,6 +195,9 @@ ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
                                                    const Constraints& constraints,
                                                    const ConstrainedOptions& options) {
   return call::take_turn(*implementation_, [&] {
+    if (!constraints.rings.segment_offsets.empty()) {
+      constrained::check_rings(constraints.rings, constraints.segment_count, options.fill_rule);
+    }
     return call::constrain_and_leave(*implementation_, coordinates, offsets, constraints, options, false);
   });
 }

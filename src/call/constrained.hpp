@@ -6,7 +6,7 @@
 
 #include "call/implementation.hpp"
 #include "constrained/domains/map.hpp"
-#include "constrained/insertion/constrained.hpp"
+#include "constrained/insertion/insert.hpp"
 #include "flaunay/constrained.hpp"
 
 namespace flaunay::call {
@@ -27,7 +27,8 @@ void leave_polygons(const double* coordinates, const std::vector<std::size_t>& o
                     const Constraints& constraints, const constrained::Curves& curves,
                     const ConstrainedOptions& options, Overlaps overlaps, ConstrainedTriangulation& result);
 
-/// Implements Triangulator::constrained. are_closed: whether segments are known to be closed curves.
+/// Implements Triangulator::constrained, with rings that are checked. are_closed: whether segments are known
+/// to be closed curves.
 ConstrainedTriangulation constrain_and_leave(Implementation& self, const double* coordinates,
                                              const std::vector<std::size_t>& offsets,
                                              const Constraints& constraints,

@@ -7,7 +7,7 @@
 #include "call/handles.hpp"
 #include "call/insert_segments.hpp"
 #include "call/on_host.hpp"
-#include "constrained/insertion/device.hpp"
+#include "constrained/insertion/insert.hpp"
 #include "geometry/magnitudes.hpp"
 
 namespace flaunay {

@@ -4,9 +4,10 @@
 
 #include "call/device_mesh.hpp"
 #include "call/on_host.hpp"
-#include "constrained/insertion/device.hpp"
+#include "constrained/crossings/first_crossing.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/note.hpp"
+#include "host/of_thread.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -38,6 +39,12 @@ void add(const Statistics& step, Statistics& all) {
       [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
 }
 
+// Runs what a thread does alone. As mode blocks does for small sets, it takes the compiler's arithmetic to be
+// exact.
+struct RuntimeOfThread {
+  host::Runtime runtime{native_tuning(), 1};
+};
+
 }  // namespace
 
 constrained::Result insert_on(Engine& engine, const double* coordinates,
@@ -58,11 +65,12 @@ constrained::Result insert_on(Engine& engine, const double* coordinates,
 constrained::Result insert_segments(Implementation& self, const double* coordinates,
                                     const std::vector<std::size_t>& offsets, Triangulation& delaunay,
                                     const std::vector<std::int32_t>& segments, const Options& options) {
-  constrained::check_first_segments(coordinates, offsets, delaunay.representatives, segments);
+  constrained::check_first_segments(coordinates, offsets, segments);
   const bool may_stay = !self.is_named() && !options.profile;
   const std::size_t size = offsets.back() + segments.size() / 2;
   if (may_stay && size <= self.host_tuning().host_points) {
-    return constrained::constrain(coordinates, offsets, delaunay, segments);
+    host::Runtime& runtime = host::of_thread<RuntimeOfThread>().runtime;
+    return constrained::constrain(runtime, coordinates, offsets, delaunay, segments, options.halfedges);
   }
   Engine& engine = self.for_host_memory();
   try {

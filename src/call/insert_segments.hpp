@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "constrained/insertion/constrained.hpp"
+#include "constrained/insertion/insert.hpp"
 
 namespace flaunay::call {
 

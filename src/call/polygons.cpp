@@ -6,7 +6,7 @@
 
 #include "call/constrained.hpp"
 #include "call/device_mesh.hpp"
-#include "constrained/crossings/crossing_error.hpp"
+#include "constrained/crossings/first_crossing.hpp"
 #include "constrained/domains/domain_on_host.hpp"
 #include "constrained/domains/map.hpp"
 #include "geometry/magnitudes.hpp"

@@ -271,6 +271,18 @@ constexpr Row kTable[] = {
      "To begin again takes about as long as a walk of so many steps on a GPU; one vertex in hundreds has as "
      "many edges "
      "at most."},
+    {"walked_most",
+     &Tuning::walked_most,
+     {8},
+     {64},
+     {0},
+     "Stages make walks short, but each takes a pass over all triangles, and on a GPU about fifty launches."},
+    {"pieces_most",
+     &Tuning::pieces_most,
+     {2},
+     {16},
+     {0},
+     "The host joins segments one after the other; a GPU sorts many edges in that time."},
     {"host_points",
      &Tuning::host_points,
      {6000},

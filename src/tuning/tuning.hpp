@@ -67,6 +67,12 @@ struct Tuning : host::Sizes {
   /// Of longer chains, if a vertex takes away more triangles than this, it is inserted earlier instead.
   std::size_t chain_walk_most = 1;
 
+  /// If segments are walked along through more triangles than so many per triangle and segment, they are
+  /// inserted in stages.
+  std::size_t walked_most = 1;
+  /// If they have more edges in all than so many per point and segment, those that overlap are joined first.
+  std::size_t pieces_most = 1;
+
   /// Sets of at most a block's points each, and of at most this many together, are triangulated on the
   /// calling thread if no device is named; 0: none.
   std::size_t host_points = 0;

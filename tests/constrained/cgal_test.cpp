@@ -16,9 +16,9 @@
 
 #include "app/verify/constrained.hpp"
 #include "constrained/crossings/split.hpp"
-#include "constrained/insertion/constrained.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
+#include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
@@ -65,7 +65,7 @@ TEST(ConstrainedCgal, CountsOnFixtures) {
       const Coordinates points = fixture.make(n, 2);
       const Triangulation delaunay = delaunay_of(points, {0, points.size() / 2});
       const Segments segments = edges_of_stretched(points, 16, 3, n);
-      const auto result = constrained::constrain(points.data(), {0, points.size() / 2}, delaunay, segments);
+      const auto result = insert(points, {0, points.size() / 2}, delaunay, segments);
       const Constrained expected = cgal_constrained(points, delaunay, segments);
       EXPECT_EQ(result.triangles.size() / 3, expected.dimension() < 2 ? 0 : expected.number_of_faces());
       EXPECT_EQ(result.constraint_edges.size() / 2, constrained_edges(expected));
@@ -90,8 +90,7 @@ TEST(ConstrainedCgal, NastySegments) {
       SCOPED_TRACE(nasty.name + ", n = " + std::to_string(n));
       const SegmentInput input = nasty.make(n, 1);
       const Triangulation delaunay = delaunay_of(input.points, {0, input.points.size() / 2});
-      const auto result =
-          constrained::constrain(input.points.data(), {0, input.points.size() / 2}, delaunay, input.segments);
+      const auto result = insert(input.points, {0, input.points.size() / 2}, delaunay, input.segments);
       const Constrained expected = cgal_constrained(input.points, delaunay, input.segments);
       const std::vector<std::int32_t> triangles = triangles_of(expected);
       EXPECT_EQ(result.triangles.size(), triangles.size());
@@ -116,7 +115,7 @@ TEST(ConstrainedCgal, SameTriangles) {
       const Coordinates points = make_fixture(name, 20000, 3);
       const Triangulation delaunay = delaunay_of(points, {0, points.size() / 2});
       const Segments segments = edges_of_stretched(points, factor, 5, 3);
-      const auto result = constrained::constrain(points.data(), {0, points.size() / 2}, delaunay, segments);
+      const auto result = insert(points, {0, points.size() / 2}, delaunay, segments);
       const Constrained expected = cgal_constrained(points, delaunay, segments);
       EXPECT_EQ(sorted_triangles(result.triangles), sorted_triangles(triangles_of(expected)));
     }
@@ -152,7 +151,7 @@ TEST(SplitCgal, CountsWhereNothingIsRounded) {
     const constrained::Split split = constrained::split(points.data(), {0, points.size() / 2}, segments);
     const constrained::AllPoints all = constrained::join_added(points.data(), {0, points.size() / 2}, split);
     const Triangulation delaunay = delaunay_of(all.coordinates, all.offsets);
-    const auto result = constrained::constrain(all.coordinates.data(), all.offsets, delaunay, split.pieces);
+    const auto result = insert(all.coordinates, all.offsets, delaunay, split.pieces);
     EXPECT_FALSE(split.is_snapped);
     const std::set<std::int32_t> vertices(result.triangles.begin(), result.triangles.end());
     EXPECT_EQ(vertices.size(), expected.number_of_vertices());

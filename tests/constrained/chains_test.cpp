@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/insertion/mesh.hpp"
-#include "constrained/insertion/polygon.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
+#include "tests/constrained/sequential/mesh.hpp"
+#include "tests/constrained/sequential/polygon.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/runtimes.hpp"
@@ -32,7 +32,14 @@ using namespace geometry;
 
 namespace {
 
+using geometry::Point;
+using geometry::Predicates;
 using host::Runtime;
+using sequential::Cavity;
+using sequential::ChainTriangle;
+using sequential::ConstrainedMesh;
+using sequential::Departure;
+using sequential::PolygonTriangulator;
 using testing::Coordinates;
 using testing::download;
 using testing::FixtureRandom;

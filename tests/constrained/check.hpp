@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "app/verify/exact.hpp"
-#include "constrained/insertion/constrained.hpp"
+#include "constrained/insertion/insert.hpp"
 #include "flaunay/research.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"

@@ -1,7 +1,7 @@
 // All segments at once, on a device or natively: the same bytes and the same errors as one after the other.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
-#include "constrained/insertion/device.hpp"
+#include "tests/support/device.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "constrained/insertion/insert.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "tests/constrained/segments.hpp"
-#include "tests/support/device.hpp"
+#include "tests/constrained/sequential/insert.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/paths.hpp"
@@ -72,7 +73,7 @@ bool expect_as_twin(const Coordinates& points, const std::vector<std::size_t>& o
                     const Segments& segments) {
   const Triangulation delaunay = delaunay_of(points, offsets);
   const Outcome expected =
-      outcome_of([&] { return constrained::constrain(points.data(), offsets, delaunay, segments); });
+      outcome_of([&] { return sequential::constrain(points.data(), offsets, delaunay, segments); });
   Options options;
   options.halfedges = true;
   Triangulation halfedges;

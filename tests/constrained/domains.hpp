@@ -12,8 +12,8 @@
 
 #include "call/constrained.hpp"
 #include "constrained/domains/domain_on_host.hpp"
-#include "constrained/insertion/constrained.hpp"
 #include "tests/constrained/check.hpp"
+#include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 
@@ -25,7 +25,7 @@ inline ConstrainedTriangulation constrained_of(const Coordinates& points,
                                                const Segments& segments) {
   ConstrainedTriangulation result;
   static_cast<Triangulation&>(result) = delaunay_of(points, offsets);
-  call::take(constrained::constrain(points.data(), offsets, result, segments), result);
+  call::take(insert(points, offsets, result, segments), result);
   return result;
 }
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "constrained/insertion/device.hpp"
+#include "constrained/insertion/insert.hpp"
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"
@@ -191,7 +191,8 @@ TEST(SmallInsertionKernels, WalksOfSegments) {
           const auto sizes = guarded<cl_uint2>(runtime, 1);
           const auto status = upload(runtime, Uints(kernel::INSERTION_NUMBERS, 0));
           runtime.map_in_small_groups(
-              1, kernels::walk_segments{.limit = 1000,
+              1, kernels::walk_segments{.most_pieces = 1000,
+                                        .most_rows = 1000,
                                         .bound = scaled.bounds.orient,
                                         .points = scaled.coordinates,
                                         .triangles = upload(runtime, mesh.triangles),

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tests/constrained/check.hpp"
+#include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/integer_points.hpp"
@@ -386,8 +387,7 @@ void expect_triangulation(const Coordinates& points, const Offsets& offsets, con
   Segments pieces;
   for (const std::int32_t i : result.pieces) pieces.push_back(all.place[i]);
   const Triangulation delaunay = delaunay_of(all.coordinates, all.offsets);
-  const constrained::Result triangulation =
-      constrained::constrain(all.coordinates.data(), all.offsets, delaunay, pieces);
+  const constrained::Result triangulation = insert(all.coordinates, all.offsets, delaunay, pieces);
   expect_edges(expected_edges(all.coordinates, all.offsets, delaunay, pieces), triangulation);
   expect_canonical(all.coordinates, delaunay, triangulation);
 }

@@ -17,7 +17,9 @@
 #include "app/verify/constrained.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
+#include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
+#include "tests/constrained/sequential/insert.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
@@ -39,8 +41,7 @@ struct Case {
   Case() = default;
   Case(Coordinates coordinates, Segments ends) : points(std::move(coordinates)), segments(std::move(ends)) {
     const std::vector<std::size_t> offsets = {0, points.size() / 2};
-    const constrained::Result result =
-        constrained::constrain(points.data(), offsets, delaunay_of(points, offsets), segments);
+    const constrained::Result result = insert(points, offsets, delaunay_of(points, offsets), segments);
     triangles = result.triangles;
     neighbors = result.neighbors;
     edges = result.constraint_edges;
@@ -476,8 +477,8 @@ SegmentInput moved(SegmentInput input, double factor) {
 void expect_right(const SegmentInput& input) {
   const std::vector<std::size_t> offsets = {0, input.points.size() / 2};
   const Triangulation delaunay = delaunay_of(input.points, offsets);
-  const constrained::Result result =
-      constrained::constrain(input.points.data(), offsets, delaunay, input.segments);
+  const sequential::Result result =
+      sequential::constrain(input.points.data(), offsets, delaunay, input.segments);
   expect_edges(expected_edges(input.points, offsets, delaunay, input.segments), result);
   expect_canonical(input.points, delaunay, result);
   EXPECT_EQ(result.repeated_polygons, 0u);
@@ -526,8 +527,7 @@ TEST(NastySegments, AsSetsOfOneCall) {
     offsets.push_back(all.points.size() / 2);
   }
   const Triangulation delaunay = delaunay_of(all.points, offsets);
-  const constrained::Result result =
-      constrained::constrain(all.points.data(), offsets, delaunay, all.segments);
+  const constrained::Result result = insert(all.points, offsets, delaunay, all.segments);
   std::size_t edge = 0;
   for (std::size_t s = 0; s < inputs.size(); ++s) {
     Case alone(inputs[s].points, inputs[s].segments);

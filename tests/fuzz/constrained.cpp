@@ -4,7 +4,8 @@
 // result, shrinks it and prints it as a test.
 //
 //   fuzz_constrained [--seconds N] [--seed S] [--first CASE]
-#include "constrained/insertion/constrained.hpp"
+
+#include "app/verify/constrained.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest-spi.h>
@@ -19,12 +20,12 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/constrained.hpp"
 #include "constrained/crossings/split.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
+#include "tests/constrained/sequential/insert.hpp"
 #include "tests/fuzz/minimise.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/fuzz/segments.hpp"
@@ -197,7 +198,7 @@ struct Outcome {
 
 Outcome constrain(const Flat& all, const Triangulation& delaunay, const Segments& segments) {
   try {
-    return {"", constrained::constrain(all.points.data(), all.offsets, delaunay, segments)};
+    return {"", sequential::constrain(all.points.data(), all.offsets, delaunay, segments)};
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input) throw;
     return {error.what(), std::nullopt};

@@ -1,6 +1,7 @@
 #include "constrained/crossings/lines.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "geometry/sort.hpp"
 
@@ -80,10 +81,15 @@ class LineFinder {
 
 }  // namespace
 
+std::vector<Piece> join_pieces(const Predicates& predicates, const Point* points,
+                               const std::vector<Piece>& pieces, std::vector<std::int32_t>& line_of) {
+  return LineFinder(predicates, points, pieces).find(line_of);
+}
+
 LineEdges cut_at_vertices(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces,
                           const std::vector<std::int32_t>& vertices) {
   std::vector<std::int32_t> line_of;
-  const std::vector<Piece> lines = LineFinder(predicates, points, pieces).find(line_of);
+  const std::vector<Piece> lines = join_pieces(predicates, points, pieces, line_of);
   const Pairs inner = inner_vertices(predicates, points, lines, vertices);
   LineEdges result;
   result.edges.reserve(lines.size() + inner.size());
@@ -114,6 +120,24 @@ LineEdges cut_at_vertices(const Predicates& predicates, const Point* points, con
     result.ranges.insert(result.ranges.end(), {edge_from(pieces[p].from), edge_from(pieces[p].to)});
   }
   return result;
+}
+
+// Pieces skip the edges that earlier ones have, by shortcuts to the next edge without a piece.
+std::vector<std::int32_t> first_pieces(std::size_t edges, const std::vector<std::int32_t>& ranges) {
+  std::vector<std::int32_t> first(edges, -1), next(edges + 1);
+  std::iota(next.begin(), next.end(), 0);
+  const auto next_free = [&next](std::int32_t e) {
+    while (next[e] != e) e = next[e] = next[next[e]];
+    return e;
+  };
+  for (std::size_t p = 0; p < ranges.size() / 2; ++p) {
+    const std::int32_t end = ranges[2 * p + 1];
+    for (std::int32_t e = next_free(ranges[2 * p]); e < end; e = next_free(e)) {
+      first[e] = static_cast<std::int32_t>(p);
+      next[e] = e + 1;
+    }
+  }
+  return first;
 }
 
 }  // namespace flaunay::constrained

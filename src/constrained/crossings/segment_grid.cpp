@@ -154,4 +154,19 @@ bool SegmentGrid::find_near(const std::vector<Point>& points, double distance, c
   return true;
 }
 
+std::vector<Line> lines_of(const Point* points, const std::vector<Piece>& pieces) {
+  std::vector<Line> lines;
+  lines.reserve(pieces.size());
+  for (const Piece piece : pieces) lines.push_back({points[piece.from], points[piece.to]});
+  return lines;
+}
+
+void find_crossings_by_place(const Predicates& predicates, const Point* points,
+                             const std::vector<Piece>& pieces, const FoundPair& found) {
+  const std::vector<Line> lines = lines_of(points, pieces);
+  if (!SegmentGrid(lines).find_crossings(predicates, found)) {
+    find_crossings(predicates, points, pieces, found);
+  }
+}
+
 }  // namespace flaunay::constrained

@@ -53,4 +53,12 @@ class SegmentGrid {
   std::vector<std::int32_t> segments_;  // by cells, ascending
 };
 
+/// Calls `found` with the pairs of pieces that cross, as find_crossings of pairs.hpp does, by a grid where
+/// that suffices.
+void find_crossings_by_place(const geometry::Predicates& predicates, const geometry::Point* points,
+                             const std::vector<Piece>& pieces, const FoundPair& found);
+
+/// The lines of pieces.
+std::vector<Line> lines_of(const geometry::Point* points, const std::vector<Piece>& pieces);
+
 }  // namespace flaunay::constrained

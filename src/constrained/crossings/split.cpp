@@ -13,8 +13,8 @@
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/point_tree.hpp"
 #include "constrained/crossings/segment_grid.hpp"
+#include "constrained/crossings/segment_set.hpp"
 #include "constrained/crossings/snap.hpp"
-#include "constrained/insertion/constrained.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/point_sets.hpp"
@@ -49,8 +49,9 @@ class SetSplitter {
       cut();
       CrossingPlaces crossings(vertices_, predicates_, edges_.edges, limits.pieces, patience);
       bool is_complete = true;
-      find_all_crossings(edges_.edges,
-                         [&](std::int32_t e, std::int32_t f) { return is_complete = crossings.add(e, f); });
+      find_crossings_by_place(predicates_, points(), edges_.edges, [&](std::int32_t e, std::int32_t f) {
+        return is_complete = crossings.add(e, f);
+      });
       if (is_complete) {
         if (vertices_.points.size() > vertices_.given || !crossings.empty()) lead_through(crossings, limits);
         return;
@@ -103,13 +104,6 @@ class SetSplitter {
     return place;
   }
 
-  std::vector<Line> lines(const std::vector<Piece>& pieces) const {
-    std::vector<Line> lines;
-    lines.reserve(pieces.size());
-    for (const Piece piece : pieces) lines.push_back(line(piece));
-    return lines;
-  }
-
   // Makes edges of the pieces, which are cut at the vertices on them.
   void cut() {
     edges_.edges = pieces_;
@@ -127,7 +121,7 @@ class SetSplitter {
   bool find_near() {
     constexpr std::size_t kMostNear = 4;
     const std::size_t most = kMostNear * (edges_.edges.size() + vertices_.points.size());
-    const std::vector<Line> all = lines(edges_.edges);
+    const std::vector<Line> all = lines_of(points(), edges_.edges);
     double largest = 0;
     for (const auto& [a, b] : all) {
       largest = std::max({largest, std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y)});
@@ -177,12 +171,6 @@ class SetSplitter {
     return is_complete;
   }
 
-  void find_all_crossings(const std::vector<Piece>& edges, const FoundPair& found) const {
-    const std::vector<Line> all = lines(edges);
-    if (!SegmentGrid(all).find_crossings(predicates_, found))
-      find_crossings(predicates_, points(), edges, found);
-  }
-
   // Leads edges through the places of their crossings; and if parts of them cross then, through all vertices
   // whose cells they meet.
   void lead_through(CrossingPlaces& crossings, const SplitLimits& limits) {
@@ -225,7 +213,7 @@ class SetSplitter {
     remove_equal(parts);
     const LineEdges cut_parts = cut_at_vertices(predicates_, points(), parts, vertices_.sorted);
     bool found = false;
-    find_all_crossings(cut_parts.edges, [&found](std::int32_t, std::int32_t) {
+    find_crossings_by_place(predicates_, points(), cut_parts.edges, [&found](std::int32_t, std::int32_t) {
       found = true;
       return false;
     });
@@ -243,26 +231,6 @@ class SetSplitter {
   Chains chains_;  // of edges; none if nothing crosses
   bool is_snapped_ = false;
 };
-
-// Segments by their sets; those of length zero are left out.
-std::vector<Ids> segments_of_sets(const double* coordinates, const std::vector<std::size_t>& offsets,
-                                  const Ids& segments) {
-  std::vector<Ids> by_set(offsets.size() - 1);
-  std::size_t set = 0;
-  for (std::size_t s = 0; s < segments.size() / 2; ++s) {
-    const auto from = static_cast<std::size_t>(segments[2 * s]),
-               to = static_cast<std::size_t>(segments[2 * s + 1]);
-    if (coordinates[2 * from] == coordinates[2 * to] && coordinates[2 * from + 1] == coordinates[2 * to + 1])
-      continue;
-    if (from < offsets[set] || from >= offsets[set + 1]) {
-      set =
-          static_cast<std::size_t>(std::upper_bound(offsets.begin(), offsets.end(), from) - offsets.begin()) -
-          1;
-    }
-    by_set[set].push_back(static_cast<std::int32_t>(s));
-  }
-  return by_set;
-}
 
 // Whether some of the segments may cross.
 bool may_cross(const double* coordinates, const Ids& segments, const Ids& of_set, int shift) {
@@ -308,21 +276,9 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
   Ids ends;
   for (std::size_t set = 0; set < by_set.size(); ++set) {
     if (may_cross(coordinates, segments, by_set[set], scalings.shift(set))) {
-      const std::size_t first = offsets[set];
-      const PointSets points = ingest(coordinates + 2 * first, {0, offsets[set + 1] - first});
-      Vertices vertices(coordinates + 2 * first, points, 0);
-      Ids rank(offsets[set + 1] - first);
-      for (std::size_t i = 0; i < points.source.size(); ++i)
-        rank[points.source[i]] = static_cast<std::int32_t>(i);
-      const auto id = [&](std::int32_t i) {
-        return rank[points.representatives[static_cast<std::size_t>(i) - first]];
-      };
-      std::vector<Piece> pieces;
-      for (const std::int32_t s : by_set[set]) {
-        const std::int32_t from = id(segments[2 * s]), to = id(segments[2 * s + 1]);
-        pieces.push_back({std::min(from, to), std::max(from, to)});
-      }
-      SetSplitter splitter(vertices, pieces);
+      SegmentSet segments_of_set(coordinates, offsets, set, segments, by_set[set]);
+      Vertices& vertices = segments_of_set.vertices;
+      SetSplitter splitter(vertices, segments_of_set.pieces);
       splitter.run(limits);
       result.is_snapped |= splitter.is_snapped();
 
@@ -336,8 +292,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
           const Point point = vertices.unscaled(vertices.points[v]);
           result.added_points.insert(result.added_points.end(), {point.x, point.y});
         }
-        index[v] = vertices.is_added(v) ? static_cast<std::int32_t>(next++)
-                                        : static_cast<std::int32_t>(first) + points.source[v];
+        index[v] = vertices.is_added(v) ? static_cast<std::int32_t>(next++) : segments_of_set.index(v);
       }
       for (std::size_t k = 0; k < by_set[set].size(); ++k) {
         const auto s = static_cast<std::size_t>(by_set[set][k]);

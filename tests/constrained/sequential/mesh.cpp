@@ -1,4 +1,4 @@
-#include "constrained/insertion/mesh.hpp"
+#include "tests/constrained/sequential/mesh.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "geometry/halfedges.hpp"
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 using namespace geometry;
 
 namespace {
@@ -258,4 +258,4 @@ void ConstrainedMesh::write(std::vector<std::int32_t>& triangles, std::vector<st
   }
 }
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential

@@ -1,9 +1,9 @@
-#include "constrained/insertion/constraints.hpp"
+#include "tests/constrained/sequential/constraints.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 
 std::int32_t Constraints::add(std::int32_t a, std::int32_t b, std::int32_t owner) {
   if (comes_before(b, a)) std::swap(a, b);
@@ -67,4 +67,4 @@ std::int32_t Constraints::number_from(std::int32_t edge, std::int32_t vertex) co
   return static_cast<std::int32_t>(found - order_.begin());
 }
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential

@@ -1,10 +1,13 @@
-#include "constrained/insertion/device.hpp"
+#include "constrained/insertion/insert.hpp"
 
 #include <algorithm>
+#include <random>
 #include <utility>
 
+#include "constrained/crossings/first_crossing.hpp"
+#include "constrained/crossings/segment_set.hpp"
 #include "constrained/insertion/chains.hpp"
-#include "flaunay/research.hpp"
+#include "constrained/insertion/joined.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/insert.cl.hpp"
@@ -14,6 +17,7 @@
 #include "points/inspect.hpp"
 #include "shared/codes.h"
 #include "shared/limits.h"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::constrained {
 using namespace geometry;
@@ -24,9 +28,10 @@ using host::Arena;
 using points::DeviceMesh;
 using points::download;
 
-// Segments with more pieces in all, per point and segment, are left to the twin.
-constexpr std::size_t kPieces = 16;
-constexpr std::size_t kMostPieces = std::size_t{1} << 30;
+constexpr std::size_t kMostPieces = std::size_t{1} << 30, kMostRows = 0xffffffff;
+
+// Of segments that are inserted in stages, each stage has so many times as many as those before it together.
+constexpr std::size_t kStageGrowth = 4, kSmallestStage = 16;
 
 // Points as predicates need them.
 struct ScaledPoints {
@@ -80,22 +85,118 @@ class Insertion {
   void run(const ProvideEdges& provide) {
     copy_rows();
     clear_status();
-    const auto ends = arena_.allocate<cl_int>(2 * segment_count_);
+    const Pairs ends{arena_.allocate<cl_int>(2 * segment_count_), segment_count_};
     clear_vertices(false);
-    mark_ends(ends);
-    place_vertices();
-    const UniquePairs segments = unique_pairs(ends, segment_count_);
+    mark_ends(ends.ends);
+    place_vertices(true);
+    const Tuning& tuning = tuning_of(runtime_);
+    insert_all(ends,
+               {std::min(kMostPieces, tuning.pieces_most * (n_ + segment_count_)),
+                std::min(kMostRows, tuning.walked_most * (rows_ + segment_count_))},
+               result_.segment_edges, provide);
+    sort_rows();
+    runtime_.map(rows_, kernels::write_constrained{.flags = flags_, .constrained = result_.constrained});
+    write_halfedges();
+  }
+
+ private:
+  // Vertices, two each.
+  struct Pairs {
+    Buffer<cl_int> ends{};
+    std::size_t count = 0;
+  };
+
+  // Of all segments together.
+  struct Limits {
+    std::size_t pieces = kMostPieces, rows = kMostRows;
+  };
+
+  // Inserts segments, and numbers their edges. ranges: see Result::segment_edges.
+  void insert_all(const Pairs& segments, const Limits& limits, const Buffer<cl_int>& ranges,
+                  const ProvideEdges& provide) {
+    UniquePairs unique = unique_pairs(segments);
     if (status(kernel::INSERTION_WRONG) != 0) throw_wrong();
-    Walks walks = walk(segments);
-    if (status(kernel::INSERTION_PIECES) == 0) {
-      insert(walks, segments.count);
-      number_edges(segments, walks.ends, provide);
-      return finish_rows();
+    Walks walks = walk(unique, limits);
+    bool overlaps = status(kernel::INSERTION_PIECES) > limits.pieces;
+    if (!overlaps && status(kernel::INSERTION_STOPPED) != 0) {
+      overlaps = !insert_in_stages(segments, limits.pieces);
+      if (!overlaps) {
+        start_again();
+        unique = unique_pairs(segments);
+        walks = walk(unique, {.pieces = limits.pieces});
+        overlaps = status(kernel::INSERTION_PIECES) > limits.pieces;
+      }
     }
-    if (status(kernel::INSERTION_PIECES) > most_pieces()) return by_twin(provide);
+    if (overlaps) return insert_joined(segments, limits, provide);
+    if (status(kernel::INSERTION_PIECES) == 0) {
+      insert(walks, unique.count);
+      return number_edges(unique, walks.ends, ranges, provide);
+    }
+    const Pairs all = write_pieces(unique, walks);
+    start_again();
+    const UniquePairs pieces = unique_pairs(all);
+    const Walks of_pieces = walk(pieces, {});
+    insert(of_pieces, pieces.count);
+    number_chained(unique, walks.pieces, pieces, of_pieces.ends, ranges, provide);
+  }
+
+  // Makes segments edges, a random part of them first: then those that come later cross few triangles.
+  // Returns false, with some inserted, if they have too many pieces.
+  bool insert_in_stages(const Pairs& segments, std::size_t most_pieces) {
+    const std::vector<std::int32_t> ends = download(runtime_, segments.ends, 2 * segments.count);
+    // The numbers are always the same.
+    std::minstd_rand random;
+    std::vector<std::vector<std::int32_t>> stages(1);
+    for (std::size_t most = kSmallestStage; most < segments.count; most *= kStageGrowth)
+      stages.emplace_back();
+    for (std::size_t s = 0; s < segments.count; ++s) {
+      std::size_t stage = stages.size() - 1;
+      while (stage > 0 && random() % kStageGrowth == 0) --stage;
+      stages[stage].insert(stages[stage].end(), {ends[2 * s], ends[2 * s + 1]});
+    }
+    for (std::vector<std::int32_t>& stage : stages) {
+      Arena::Scope scope(arena_);
+      const std::size_t count = stage.size() / 2;
+      if (count == 0) continue;
+      start_again();
+      const UniquePairs unique = unique_pairs({runtime_.upload(arena_, std::move(stage)), count});
+      const Walks walks = walk(unique, {.pieces = most_pieces});
+      if (status(kernel::INSERTION_PIECES) > most_pieces) return false;
+      if (status(kernel::INSERTION_PIECES) == 0) {
+        insert(walks, unique.count);
+      } else {
+        const Pairs all = write_pieces(unique, walks);
+        start_again();
+        const UniquePairs pieces = unique_pairs(all);
+        insert(walk(pieces, {}), pieces.count);
+      }
+    }
+    return true;
+  }
+
+  // Inserts segments that have very many edges in common: each line that they cover once.
+  void insert_joined(const Pairs& segments, const Limits& limits, const ProvideEdges& provide) {
+    const std::vector<double> coordinates = read_coordinates();
+    const JoinedSegments joined(coordinates, delaunay_.point_offsets,
+                                download(runtime_, segments.ends, 2 * segments.count));
+    const std::size_t count = joined.joined().size() / 2;
+    const auto ranges = arena_.allocate<cl_int>(2 * count);
+    Pairs edges;
+    start_again();
+    insert_all({runtime_.upload(arena_, joined.joined()), count}, {.rows = limits.rows}, ranges,
+               [&](std::size_t edge_count) {
+                 edges = {provide(edge_count), edge_count};
+                 return edges.ends;
+               });
+    const std::vector<std::int32_t> found = joined.segment_edges(
+        download(runtime_, edges.ends, 2 * edges.count), download(runtime_, ranges, 2 * count));
+    runtime_.write(result_.segment_edges, 0, found.size(), found.data());
+  }
+
+  Pairs write_pieces(const UniquePairs& segments, const Walks& walks) {
     host::exclusive_scan(runtime_, walks.pieces, segments.count, walks.pieces);
     const std::size_t all = runtime_.read_one(walks.pieces, segments.count);
-    const auto piece_ends = arena_.allocate<cl_int>(2 * all);
+    const Pairs pieces{arena_.allocate<cl_int>(2 * all), all};
     runtime_.map_in_small_groups(segments.count, kernels::write_pieces{.bound = points_.bounds.orient,
                                                                        .points = points_.coordinates,
                                                                        .triangles = result_.triangles,
@@ -104,18 +205,17 @@ class Insertion {
                                                                        .keys = segments.keys,
                                                                        .offsets = walks.pieces,
                                                                        .claims = claims_,
-                                                                       .ends = piece_ends});
-    clear_status();
-    clear_vertices(true);
-    place_vertices();
-    const UniquePairs pieces = unique_pairs(piece_ends, all);
-    const Walks piece_walks = walk(pieces);
-    insert(piece_walks, pieces.count);
-    number_chained(segments, walks.pieces, pieces, piece_walks.ends, provide);
-    finish_rows();
+                                                                       .ends = pieces.ends});
+    return pieces;
   }
 
- private:
+  // For other segments, in the triangulation as it is now.
+  void start_again() {
+    clear_status();
+    clear_vertices(true);
+    place_vertices(false);
+  }
+
   void copy_rows() {
     if (result_.triangles.memory() != delaunay_.triangles.memory()) {
       runtime_.copy(delaunay_.triangles, 0, result_.triangles, 0, 3 * rows_);
@@ -124,8 +224,6 @@ class Insertion {
       runtime_.copy(delaunay_.neighbors, 0, result_.neighbors, 0, 3 * rows_);
     }
   }
-
-  std::size_t most_pieces() const { return std::min(kMostPieces, kPieces * (n_ + segment_count_)); }
 
   // The numbers as of the last wait.
   cl_uint status(int which) const { return last_status_[which]; }
@@ -142,43 +240,16 @@ class Insertion {
     throw Error(ErrorKind::internal, "a segment leaves the triangulation; please report the input");
   }
   [[noreturn]] void throw_wrong() {
-    check_segments(delaunay_.point_offsets, download(runtime_, segments_, 2 * segment_count_));
+    check_segments(delaunay_.point_offsets, read_segments());
     throw Error(ErrorKind::internal, "a device finds wrong segments, the host does not");
   }
-  // The twin names the segments. What was the Delaunay triangulation may have changed already.
   [[noreturn]] void throw_crossing() {
-    const std::vector<double> coordinates = download(runtime_, delaunay_.coordinates, 2 * n_);
-    research::Options options;
-    options.mode = research::Mode::dwyer;
-    options.neighbors = true;
-    constrained::constrain(
-        coordinates.data(), delaunay_.point_offsets,
-        research::triangulate_on_host(coordinates.data(), delaunay_.point_offsets, options),
-        download(runtime_, segments_, 2 * segment_count_));
-    throw Error(ErrorKind::internal, "segments cross on a device only; please report the input");
+    check_crossings(read_coordinates().data(), delaunay_.point_offsets, read_segments());
+    throw Error(ErrorKind::internal, "a device finds segments that cross, the host does not");
   }
 
-  void by_twin(const ProvideEdges& provide) {
-    Triangulation delaunay;
-    const std::vector<double> coordinates = download(runtime_, delaunay_.coordinates, 2 * n_);
-    delaunay.triangles = download(runtime_, result_.triangles, 3 * rows_);
-    delaunay.neighbors = download(runtime_, result_.neighbors, 3 * rows_);
-    delaunay.hull = download(runtime_, delaunay_.hull, delaunay_.hull_offsets.back());
-    delaunay.representatives = download(runtime_, delaunay_.representatives, n_);
-    delaunay.triangle_offsets = delaunay_.triangle_offsets;
-    delaunay.hull_offsets = delaunay_.hull_offsets;
-    const Result made = constrained::constrain(coordinates.data(), delaunay_.point_offsets, delaunay,
-                                               download(runtime_, segments_, 2 * segment_count_));
-    const auto write = [this](const auto& to, const auto& values) {
-      runtime_.write(to, 0, values.size(), values.data());
-    };
-    write(result_.triangles, made.triangles);
-    write(result_.neighbors, made.neighbors);
-    write(result_.constrained, made.constrained);
-    write(result_.segment_edges, made.segment_edges);
-    write(provide(made.constraint_edges.size() / 2), made.constraint_edges);
-    write_halfedges();
-  }
+  std::vector<double> read_coordinates() { return download(runtime_, delaunay_.coordinates, 2 * n_); }
+  std::vector<std::int32_t> read_segments() { return download(runtime_, segments_, 2 * segment_count_); }
 
   void clear_vertices(bool all) {
     runtime_.map(n_, kernels::clear_vertices{.all = all, .marks = marks_, .places = places_});
@@ -194,9 +265,10 @@ class Insertion {
                                                     .marks = marks_,
                                                     .status = status_});
   }
-  void place_vertices() {
+  void place_vertices(bool is_first) {
     runtime_.chunks(rows_, runtime_.sizes().chunk(rows_),
-                    kernels::start_rows{.triangles = result_.triangles,
+                    kernels::start_rows{.is_first = is_first,
+                                        .triangles = result_.triangles,
                                         .marks = marks_,
                                         .places = places_,
                                         .claims = claims_,
@@ -214,14 +286,15 @@ class Insertion {
                      .places = places_});
   }
 
-  UniquePairs unique_pairs(const Buffer<cl_int>& ends, std::size_t count) {
+  UniquePairs unique_pairs(const Pairs& pairs) {
+    const std::size_t count = pairs.count;
     UniquePairs unique{arena_.allocate<cl_int>(count), arena_.allocate<cl_ulong>(count)};
     Arena::Scope scope(arena_);
     const auto keys = arena_.allocate<cl_ulong>(count);
     const auto payloads = arena_.allocate<cl_int>(count);
     const auto ranks = arena_.allocate<cl_uint>(count + 1);
-    runtime_.map(count,
-                 kernels::segment_keys{.ends = ends, .places = places_, .keys = keys, .payloads = payloads});
+    runtime_.map(count, kernels::segment_keys{
+                            .ends = pairs.ends, .places = places_, .keys = keys, .payloads = payloads});
     host::sort_by_key(runtime_, keys, payloads, count);
     runtime_.map(count, kernels::find_runs{.keys = keys, .counts = ranks});
     host::exclusive_scan(runtime_, ranks, count, ranks);
@@ -237,11 +310,12 @@ class Insertion {
     return unique;
   }
 
-  Walks walk(const UniquePairs& pairs) {
+  Walks walk(const UniquePairs& pairs, const Limits& limits) {
     const std::size_t count = pairs.count;
     const Walks made{arena_.allocate<kernel::constraint_walk>(count), arena_.allocate<cl_int>(2 * count),
                      arena_.allocate<cl_uint>(count + 1), arena_.allocate<cl_uint2>(count + 1)};
-    runtime_.map_in_small_groups(count, kernels::walk_segments{.limit = most_pieces(),
+    runtime_.map_in_small_groups(count, kernels::walk_segments{.most_pieces = limits.pieces,
+                                                               .most_rows = limits.rows,
                                                                .bound = points_.bounds.orient,
                                                                .points = points_.coordinates,
                                                                .triangles = result_.triangles,
@@ -452,7 +526,8 @@ class Insertion {
   // -------------------------------------------------------------------------------------------------------
   // Results
 
-  void number_edges(const UniquePairs& edges, const Buffer<cl_int>& ends, const ProvideEdges& provide) {
+  void number_edges(const UniquePairs& edges, const Buffer<cl_int>& ends, const Buffer<cl_int>& ranges,
+                    const ProvideEdges& provide) {
     const Buffer<cl_int> made = provide(edges.count);
     Arena::Scope scope(arena_);
     const auto keys = arena_.allocate<cl_ulong>(edges.count);
@@ -465,16 +540,16 @@ class Insertion {
     host::sort_by_key(runtime_, keys, payloads, edges.count);
     runtime_.map(edges.count, kernels::number_edges{
                                   .keys = keys, .payloads = payloads, .numbers = numbers, .edges = made});
-    runtime_.map(segment_count_, kernels::write_segments{.with_pieces = false,
-                                                         .unique_of = edges.of,
-                                                         .offsets = Buffer<cl_uint>(),
-                                                         .piece_of = edges.of,
-                                                         .numbers = numbers,
-                                                         .segment_edges = result_.segment_edges});
+    runtime_.map(edges.of.size(), kernels::write_segments{.with_pieces = false,
+                                                          .unique_of = edges.of,
+                                                          .offsets = Buffer<cl_uint>(),
+                                                          .piece_of = edges.of,
+                                                          .numbers = numbers,
+                                                          .segment_edges = ranges});
   }
 
   void number_chained(const UniquePairs& segments, const Buffer<cl_uint>& offsets, const UniquePairs& edges,
-                      const Buffer<cl_int>& ends, const ProvideEdges& provide) {
+                      const Buffer<cl_int>& ends, const Buffer<cl_int>& ranges, const ProvideEdges& provide) {
     const Buffer<cl_int> made = provide(edges.count);
     Arena::Scope scope(arena_);
     const std::size_t count = edges.count;
@@ -515,18 +590,12 @@ class Insertion {
                                                 .ends = ends,
                                                 .numbers = numbers,
                                                 .edges = made});
-    runtime_.map(segment_count_, kernels::write_segments{.with_pieces = true,
-                                                         .unique_of = segments.of,
-                                                         .offsets = offsets,
-                                                         .piece_of = edges.of,
-                                                         .numbers = numbers,
-                                                         .segment_edges = result_.segment_edges});
-  }
-
-  void finish_rows() {
-    sort_rows();
-    runtime_.map(rows_, kernels::write_constrained{.flags = flags_, .constrained = result_.constrained});
-    write_halfedges();
+    runtime_.map(segments.of.size(), kernels::write_segments{.with_pieces = true,
+                                                             .unique_of = segments.of,
+                                                             .offsets = offsets,
+                                                             .piece_of = edges.of,
+                                                             .numbers = numbers,
+                                                             .segment_edges = ranges});
   }
 
   void sort_rows() {

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/insertion/polygon.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/predicates.hpp"
+#include "tests/constrained/sequential/polygon.hpp"
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 
 /// The triangles that a segment crosses between two vertices on it, and what bounds them on its left and on
 /// its right, both from the first vertex to the last one.
@@ -96,4 +96,4 @@ class ConstrainedMesh {
   std::vector<Open> open_;
 };
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential

@@ -1,4 +1,4 @@
-#include "constrained/insertion/polygon.hpp"
+#include "tests/constrained/sequential/polygon.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -7,7 +7,7 @@
 
 #include "geometry/halfedges.hpp"
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 using namespace geometry;
 
 namespace {
@@ -172,4 +172,4 @@ void PolygonTriangulator::list_triangles() {
   });
 }
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential

@@ -7,7 +7,7 @@
 
 #include "geometry/predicates.hpp"
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 
 /// Edges in the order in which they became constraints, each directed from its lexicographically smaller
 /// vertex to the other one. Edges of one segment that follow each other are linked, so every segment runs
@@ -57,4 +57,4 @@ class Constraints {
   std::vector<std::int32_t> chain_offsets_;  // the numbers at which chains begin, and the end of the last one
 };
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential

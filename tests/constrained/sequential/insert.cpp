@@ -1,4 +1,4 @@
-#include "constrained/insertion/constrained.hpp"
+#include "tests/constrained/sequential/insert.hpp"
 
 #include <fmt/format.h>
 
@@ -9,22 +9,18 @@
 #include <tuple>
 #include <utility>
 
-#include "constrained/crossings/crossing.hpp"
-#include "constrained/crossings/crossing_error.hpp"
-#include "constrained/insertion/constraints.hpp"
-#include "constrained/insertion/mesh.hpp"
+#include "constrained/crossings/segment_set.hpp"
 #include "geometry/magnitudes.hpp"
 #include "mesh/barycentric.h"
+#include "tests/constrained/sequential/constraints.hpp"
+#include "tests/constrained/sequential/mesh.hpp"
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 using namespace geometry;
 
 namespace {
 
 using Ids = std::vector<std::int32_t>;
-
-// The first segments are compared with each other in so many pairs per segment of all.
-constexpr double kPairsPerSegment = 4;
 
 struct ScaledPoints {
   std::vector<Point> points;
@@ -48,11 +44,6 @@ ScaledPoints scale_points(const double* coordinates, const std::vector<std::size
     }
   }
   return scaled;
-}
-
-std::size_t set_of(const std::vector<std::size_t>& offsets, std::int32_t point) {
-  return std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(point)) - offsets.begin() -
-         1;
 }
 
 // A segment between distinct points, the lexicographically smaller one first.
@@ -248,11 +239,11 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
 [[noreturn]] void throw_crossing(const ScaledPoints& scaled, int shift, const Ids& segments,
                                  const Segment& first, const Segment& second) {
   const Point place = crossing(scaled, shift, first, second);
-  throw CrossingError(
+  throw Error(
+      ErrorKind::input,
       fmt::format("segments {} (points {} and {}) and {} (points {} and {}) cross near ({:.17g}, {:.17g})",
                   second.index, segments[2 * second.index], segments[2 * second.index + 1], first.index,
-                  segments[2 * first.index], segments[2 * first.index + 1], place.x, place.y),
-      second.index, first.index);
+                  segments[2 * first.index], segments[2 * first.index + 1], place.x, place.y));
 }
 
 // Of segments that cross, names the first one that crosses an earlier one.
@@ -267,75 +258,19 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
     const std::int32_t index = inserter.first_crossed(segment);
     const auto other = std::find_if(unique.begin(), unique.end(),
                                     [index](const Segment& candidate) { return candidate.index == index; });
-    throw_crossing(scaled, scaled.scalings.shift(set_of(offsets, segment.from)), segments, segment, *other);
+    throw_crossing(scaled, scaled.scalings.shift(constrained::set_of(offsets, segment.from)), segments,
+                   segment, *other);
   }
   throw Error(ErrorKind::internal, "segments cross in one order only; please report the input");
 }
 
 }  // namespace
 
-void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments) {
-  if (segments.size() % 2 != 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("segments need two points each, but {} indices were given", segments.size()));
-  }
-  const auto n = static_cast<std::int32_t>(offsets.back());
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i] < 0 || segments[i] >= n) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("segment {} has point {}, but there are {} points", i / 2, segments[i], n));
-    }
-    if (i % 2 == 0 || offsets.size() == 2) continue;
-    if (set_of(offsets, segments[i - 1]) != set_of(offsets, segments[i])) {
-      throw Error(ErrorKind::usage, fmt::format("segment {} joins points {} and {} of different sets", i / 2,
-                                                segments[i - 1], segments[i]));
-    }
-  }
-}
-
-void check_first_segments(const double* coordinates, const std::vector<std::size_t>& offsets,
-                          const Ids& representatives, const Ids& segments) {
-  if (offsets.size() != 2 || segments.size() < 4) return;
-  const auto pairs = kPairsPerSegment * static_cast<double>(segments.size() / 2);
-  const auto count = std::min(segments.size() / 2, 1 + static_cast<std::size_t>(std::sqrt(2 * pairs)));
-  int largest = std::numeric_limits<int>::min();
-  for (std::size_t k = 0; k < 2 * count; ++k) {
-    if (segments[k] < 0 || static_cast<std::size_t>(segments[k]) >= offsets.back()) return;
-    const double* p = coordinates + 2 * static_cast<std::size_t>(segments[k]);
-    for (const double c : {p[0], p[1]}) largest = std::max(largest, c == 0 ? largest : std::ilogb(c));
-  }
-  if (largest == std::numeric_limits<int>::min()) return;
-  const int shift = kernel::LARGEST_EXPONENT - largest;
-  const auto scaled = [coordinates, shift](std::int32_t i) -> Point {
-    const double* p = coordinates + 2 * static_cast<std::size_t>(i);
-    return {std::ldexp(p[0], shift) + 0.0, std::ldexp(p[1], shift) + 0.0};
-  };
-  Predicates predicates;
-  predicates.bounds.orient = ORIENT_BOUND;
-  std::vector<Line> lines;
-  for (std::size_t s = 0; s < count; ++s) {
-    Line line{scaled(segments[2 * s]), scaled(segments[2 * s + 1])};
-    if (kernel::comes_before(line.b, line.a)) std::swap(line.a, line.b);
-    for (std::size_t earlier = 0; earlier < lines.size(); ++earlier) {
-      if (!cross(predicates, lines[earlier], line)) continue;
-      const Point place = round_crossing(lines[earlier], line, std::ldexp(1.0, kernel::LOWEST_EXPONENT));
-      // There may be a point.
-      if (predicates.orient(line.a, line.b, place) == 0) return;
-      const ScaledPoints all = scale_points(coordinates, offsets);
-      const auto segment = [&](std::size_t k) {
-        return oriented(all, representatives, segments, static_cast<std::int32_t>(k));
-      };
-      throw_crossing(all, all.scalings.shift(0), segments, segment(s), segment(earlier));
-    }
-    lines.push_back(line);
-  }
-}
-
 Result constrain(const double* coordinates, const std::vector<std::size_t>& offsets,
                  const Triangulation& delaunay, const Ids& segments) {
   check_offsets(offsets);
   check_coordinates(coordinates, offsets.back());
-  check_segments(offsets, segments);
+  constrained::check_segments(offsets, segments);
   if (delaunay.neighbors.size() != delaunay.triangles.size()) {
     throw Error(ErrorKind::usage, "a triangulation without neighbours cannot be constrained");
   }
@@ -365,4 +300,4 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   return result;
 }
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential

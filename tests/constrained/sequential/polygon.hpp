@@ -8,7 +8,7 @@
 
 #include "geometry/predicates.hpp"
 
-namespace flaunay::constrained {
+namespace flaunay::sequential {
 
 /// Positions in a chain, ascending. A triangle (i, j, k) is counter-clockwise as (i, k, j).
 using ChainTriangle = std::array<std::int32_t, 3>;
@@ -76,4 +76,4 @@ class PolygonTriangulator {
   std::vector<std::int32_t> order_, next_, previous_, inside_, triangles_, twins_, free_;
 };
 
-}  // namespace flaunay::constrained
+}  // namespace flaunay::sequential
