@@ -360,14 +360,14 @@ Blocks blocks_of(Workspace& work, const OpenPoints& open, bool is_merged) {
 }  // namespace
 
 Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-                   Exchange& exchange, statistics::Phases& phases) {
+                   const Exchange& exchange, statistics::Phases& phases) {
   Workspace work{runtime, persistent};
   Numbers numbers;
   const host::Runtime::Settled settled(runtime);
   const Tuning& tuning = tuning_of(runtime);
 
   phases.progress("blocks", 0);
-  const auto representatives = exchange.representatives();
+  const Buffer<cl_int>& representatives = exchange.representatives;
   const Blocks first_blocks = [&] {
     Arena::Scope points_scope(runtime.arena());
     return make_blocks(work, exchange.points(), offsets, representatives);
@@ -376,7 +376,7 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
 
   double done = kBlocksMade;
   phases.progress("triangulate", done);
-  const Emitted emitted = make_emitted(work, first_blocks, exchange.wants_links());
+  const Emitted emitted = make_emitted(work, first_blocks, exchange.wants_links);
   // What a round needs is given back when it ends.
   Workspace rounds_work{runtime, runtime.arena(), work.bounds};
   SetBoxes boxes;

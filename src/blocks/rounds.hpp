@@ -12,6 +12,6 @@ namespace flaunay::blocks {
 
 /// The same as run, in rounds. The results are the same bytes.
 Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-                   Exchange& exchange, statistics::Phases& phases);
+                   const Exchange& exchange, statistics::Phases& phases);
 
 }  // namespace flaunay::blocks

@@ -1,5 +1,7 @@
 #include "blocks/run.hpp"
 
+#include <utility>
+
 #include "blocks/rounds.hpp"
 #include "tuning/tuning.hpp"
 
@@ -18,14 +20,14 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
 }
 
 Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-            Exchange& exchange, statistics::Phases& phases) {
+            const Exchange& exchange, statistics::Phases& phases) {
   if (tuning_of(runtime).round_points > 0) return run_rounds(runtime, persistent, offsets, exchange, phases);
   Workspace work{runtime, persistent};
   Rings rings;
   const host::Runtime::Settled settled(runtime);
 
   phases.progress("blocks", 0);
-  const auto representatives = exchange.representatives();
+  const Buffer<cl_int>& representatives = exchange.representatives;
   const Blocks blocks = [&] {
     Arena::Scope points_scope(runtime.arena());
     return make_blocks(work, exchange.points(), offsets, representatives);
@@ -49,6 +51,28 @@ Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::si
   write_mesh(work, blocks, rings, outcome.sizes, exchange.mesh(outcome.sizes), &milestones);
   milestones.report();
   return outcome;
+}
+
+points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& coordinates, Arena& results) {
+  const std::size_t n = offsets.back();
+  points::DeviceMesh mesh;
+  mesh.point_offsets = offsets;
+  mesh.coordinates = coordinates;
+  mesh.triangles = results.allocate<cl_int>(3 * kMostTrianglesPerPoint * n);
+  mesh.neighbors = results.allocate<cl_int>(3 * kMostTrianglesPerPoint * n);
+  mesh.hull = results.allocate<cl_int>(n);
+  mesh.representatives = results.allocate<cl_int>(n);
+  const Exchange exchange{[&] { return coordinates; }, mesh.representatives, true,
+                          [&](const MeshSizes&) {
+                            return MeshBuffers{mesh.triangles, mesh.neighbors, {}, mesh.hull};
+                          }};
+  const Options unheard;
+  statistics::Phases phases(unheard);
+  MeshSizes sizes = run(runtime, persistent, offsets, exchange, phases).sizes;
+  mesh.triangle_offsets = std::move(sizes.triangle_offsets);
+  mesh.hull_offsets = std::move(sizes.hull_offsets);
+  return mesh;
 }
 
 }  // namespace flaunay::blocks

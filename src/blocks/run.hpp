@@ -3,30 +3,27 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "blocks/stages.hpp"
+#include "points/device_mesh.hpp"
 #include "statistics/phases.hpp"
 
 namespace flaunay::blocks {
 
-/// Provides the points of a call and the memory for its results: vectors in host memory, or buffers of the
-/// caller.
-class Exchange {
- public:
-  virtual ~Exchange() = default;
-  /// The coordinates, x0 y0 x1 y1 ... They may be in the runtime's arena, because they are needed only until
-  /// the points are in blocks.
-  virtual Buffer<cl_double> points() = 0;
-  /// The array for the representatives, one per point.
-  virtual Buffer<cl_int> representatives() = 0;
-  /// Called while the device computes, for work of the host that needs no results.
-  virtual void while_device_computes() {}
-  /// Whether neighbours or halfedges are wanted.
-  virtual bool wants_links() const = 0;
-  /// The arrays for the parts of the mesh, called when its size is known. Parts that are not wanted have no
+/// The points of a call and the memory for its results: vectors in host memory, or buffers in device memory.
+struct Exchange {
+  /// Returns the coordinates, x0 y0 x1 y1 ... They may be in the runtime's arena, because they are needed
+  /// only until the points are in blocks.
+  std::function<Buffer<cl_double>()> points;
+  Buffer<cl_int> representatives;  ///< one per point
+  bool wants_links;                ///< whether neighbours or halfedges are wanted
+  /// Returns the arrays for the parts of the mesh, when its size is known. Parts that are not wanted have no
   /// memory.
-  virtual MeshBuffers mesh(const MeshSizes& sizes) = 0;
+  std::function<MeshBuffers(const MeshSizes&)> mesh;
+  /// Called while the device computes, for work of the host that needs no results.
+  std::function<void()> while_device_computes = [] {};
 };
 
 /// What the host knows about a result when run returns.
@@ -45,6 +42,10 @@ struct Outcome {
 /// when the last kernel is enqueued. Allocates from both arenas, in the caller's scopes. Throws Error(input)
 /// for points that are not finite or whose magnitudes differ too much. O(n log n).
 Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-            Exchange& exchange, statistics::Phases& phases);
+            const Exchange& exchange, statistics::Phases& phases);
+
+/// Triangulates points in device memory, whose arrays come from `results`; otherwise as above.
+points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& coordinates, Arena& results);
 
 }  // namespace flaunay::blocks

@@ -5,11 +5,9 @@
 #include <numeric>
 #include <utility>
 
-#include "call/device_mesh.hpp"
 #include "call/domains.hpp"
-#include "call/host_call.hpp"
-#include "call/implementation.hpp"
 #include "call/insert_segments.hpp"
+#include "call/triangulate.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
 #include "geometry/halfedges.hpp"
@@ -70,7 +68,8 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
   plain.neighbors = true;
   plain.halfedges = false;
   ConstrainedTriangulation result;
-  static_cast<Triangulation&>(result) = call::triangulate(self, {coordinates, nullptr}, offsets, plain);
+  static_cast<Triangulation&>(result) =
+      call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain);
 
   const double begin = host::now();
   constrained::Result edges = call::insert_segments(self, coordinates, offsets, result, segments, options);

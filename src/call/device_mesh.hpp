@@ -5,39 +5,20 @@
 #include <cstddef>
 #include <vector>
 
-#include "call/engine.hpp"
-#include "flaunay/device_memory.hpp"
+#include "call/frame.hpp"
 #include "points/device_mesh.hpp"
 
 namespace flaunay::call {
 
-/// Throws Error(usage) with the message `what` unless the condition holds.
-void expect(bool holds, const char* what);
+// Each makes a mesh without coordinates in a call; Frame::points makes those. Throws Error(usage) for a
+// triangulation of another number of points, or without neighbours.
 
-/// Makes a mesh from points and a triangulation in host memory, which are used in place or copied; the mesh
-/// is valid until the next wait. All sets are treated as one. Throws Error(usage) for a triangulation without
-/// neighbours or of another number of points.
-points::DeviceMesh mesh_of(host::Runtime& runtime, const double* coordinates, std::size_t n,
+/// From host memory. All sets are treated as one.
+points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const Triangulation& triangulation);
+/// From host memory, of several sets. Also throws Error(usage) if the triangulation has other sets.
+points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const std::vector<std::size_t>& offsets,
                            const Triangulation& triangulation);
-/// Makes a mesh of several sets. Also throws Error(usage) if the triangulation has other sets.
-points::DeviceMesh mesh_of(host::Runtime& runtime, const double* coordinates,
-                           const std::vector<std::size_t>& offsets, const Triangulation& triangulation);
-/// Makes a mesh from points and a triangulation in device memory. Throws Error(usage) if a part is missing.
-points::DeviceMesh mesh_of(host::Runtime& runtime, const DevicePoints& points,
-                           const DeviceTriangulation& triangulation);
-/// The same without the coordinates.
-points::DeviceMesh mesh_without_points(host::Runtime& runtime, const DevicePoints& points,
-                                       const DeviceTriangulation& triangulation);
-
-/// The setting of a call on host memory other than a triangulation: the triangulator's own memory and queue,
-/// and a scope of the scratch arena.
-class OwnCall {
- public:
-  explicit OwnCall(Engine& self);
-  host::Runtime& runtime;
-
- private:
-  host::Arena::Scope scope_;
-};
+/// From device memory. Also throws Error(usage) if a part is missing.
+points::DeviceMesh mesh_of(Frame& call, const DevicePoints& points, const DeviceTriangulation& triangulation);
 
 }  // namespace flaunay::call

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "call/device_mesh.hpp"
+#include "call/frame.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
@@ -99,12 +99,12 @@ void apply_domains(Implementation& self, const double* coordinates, const std::v
     return;
   }
   Engine& engine = self.for_host_memory();
-  const OwnCall own(engine);
+  const Frame call(engine);
   if (constraints.hole_count == 0 || engine.has_doubles()) {
-    return apply_domains_on(own.runtime, own.runtime, coordinates, offsets, constraints, request, result);
+    return apply_domains_on(call.runtime, call.runtime, coordinates, offsets, constraints, request, result);
   }
-  const OwnCall other(self.with_doubles(engine));
-  apply_domains_on(own.runtime, other.runtime, coordinates, offsets, constraints, request, result);
+  const Frame other(self.with_doubles(engine));
+  apply_domains_on(call.runtime, other.runtime, coordinates, offsets, constraints, request, result);
 }
 
 void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "geometry/magnitudes.hpp"
-#include "points/inspect.hpp"
 
 namespace flaunay {
 
@@ -159,23 +158,6 @@ void check_points(host::Runtime& runtime, const DevicePoints& points, const std:
   if (points.sets > kMostCountable) throw_usage(fmt::format("too many sets of {}", what));
   const std::size_t bytes = points.count == 0 ? 0 : (points.first + points.count) * bytes_per_point(points);
   check_buffer(runtime, points.memory, bytes, Access::read, what);
-}
-
-host::Buffer<cl_double> wide_points(host::Runtime& runtime, host::Arena& copies, const DevicePoints& points) {
-  const std::size_t n = points.count;
-  if (n == 0) return copies.allocate<cl_double>(0);
-  if (points.precision == Precision::float32) {
-    const host::Buffer<cl_float> narrow(retained(points.memory), 2 * (points.first + n));
-    const auto wide = copies.allocate<cl_double>(2 * n);
-    points::widen(runtime, narrow, points.first, n, wide);
-    return wide;
-  }
-  const host::Buffer<cl_double> given(retained(points.memory), 2 * (points.first + n));
-  if (points.first == 0) return given;
-  // A copy and not a sub-buffer, which would have to begin at an aligned address.
-  const auto wide = copies.allocate<cl_double>(2 * n);
-  runtime.copy(given, 2 * points.first, wide, 0, 2 * n);
-  return wide;
 }
 
 void make_result(host::Runtime& runtime, DeviceBuffer& buffer, std::size_t bytes, const std::string& what,

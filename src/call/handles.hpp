@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "call/implementation.hpp"
@@ -58,28 +59,8 @@ void check_distinct(std::vector<cl_mem> buffers);
 /// unless they go from 0 to the number of points without decreasing.
 std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoints& points);
 
-/// Returns the points as doubles: the buffer itself, or a copy in `copies` if it holds floats or the points
-/// do not begin at its start. check_points must have been called.
-host::Buffer<cl_double> wide_points(host::Runtime& runtime, host::Arena& copies, const DevicePoints& points);
-
 /// Throws Error(usage) if the buffer of points is missing or too small.
 void check_points(host::Runtime& runtime, const DevicePoints& points, const std::string& what);
-
-/// Returns a buffer with the results of an earlier call, after check_buffer.
-template <typename T>
-host::Buffer<T> input_buffer(host::Runtime& runtime, const DeviceBuffer& buffer, std::size_t count,
-                             const std::string& what) {
-  check_buffer(runtime, buffer.memory(), count * sizeof(T), Access::read, what);
-  return {DeviceBufferAccess::memory(buffer), count};
-}
-
-/// Returns the caller's buffer of numbers that kernels read, after check_buffer. Null is an empty buffer.
-template <typename T>
-host::Buffer<T> given_buffer(host::Runtime& runtime, cl_mem memory, std::size_t count,
-                             const std::string& what) {
-  check_buffer(runtime, memory, count * sizeof(T), Access::read, what);
-  return {memory == nullptr ? nullptr : retained(memory), count};
-}
 
 /// Provides a buffer of at least this size for results. If it is flaunay's own, makes it or replaces it by a
 /// larger one, and increments `made`. Throws Error(usage) if the caller's buffer is too small.
@@ -91,6 +72,16 @@ host::Buffer<T> result_buffer(host::Runtime& runtime, DeviceBuffer& buffer, std:
                               const std::string& what, std::size_t& made) {
   make_result(runtime, buffer, count * sizeof(T), what, made);
   return {DeviceBufferAccess::memory(buffer), count};
+}
+
+/// Enqueues the copy of an array to a buffer, of which the host need not be allowed to write.
+template <typename T>
+void write_result(host::Runtime& runtime, const host::Buffer<T>& to, std::vector<T> values) {
+  const std::size_t count = values.size();
+  if (count == 0) return;
+  const host::Buffer<T> copy(host::allocate_memory(runtime.memory(), count * sizeof(T)), count);
+  runtime.write_kept(copy, std::move(values));
+  runtime.copy(copy, 0, to, 0, count);
 }
 
 /// A call on the caller's queue. It begins by waiting for the caller's events, and ends by setting the

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "call/device_mesh.hpp"
-#include "call/on_host.hpp"
+#include "call/frame.hpp"
 #include "constrained/crossings/first_crossing.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/note.hpp"
@@ -73,15 +72,17 @@ constrained::Result insert_segments(Implementation& self, const double* coordina
     return constrained::constrain(runtime, coordinates, offsets, delaunay, segments, options.halfedges);
   }
   Engine& engine = self.for_host_memory();
-  try {
-    return insert_on(engine, coordinates, offsets, delaunay, segments, options);
-  } catch (const geometry::TooWideForFixedPoint& error) {
-    Engine& other = self.with_doubles(engine);
-    if (delaunay.statistics.host_points == 0) {
-      add_note(engine, other, error.reason(), "segments inserted", delaunay.statistics);
-    }
-    return insert_on(other, coordinates, offsets, delaunay, segments, options);
-  }
+  const auto insert = [&](Engine& used) {
+    return insert_on(used, coordinates, offsets, delaunay, segments, options);
+  };
+  return in_fixed_point_or([&] { return insert(engine); },
+                           [&](const std::string& reason) {
+                             Engine& other = self.with_doubles(engine);
+                             if (delaunay.statistics.host_points == 0) {
+                               add_note(engine, other, reason, "segments inserted", delaunay.statistics);
+                             }
+                             return insert(other);
+                           });
 }
 
 }  // namespace flaunay::call

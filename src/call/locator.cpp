@@ -7,13 +7,9 @@
 #include <utility>
 
 #include "call/device_mesh.hpp"
-#include "call/errors.hpp"
-#include "call/handles.hpp"
-#include "call/on_host.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
 #include "derived/locate/read_back.hpp"
-#include "geometry/magnitudes.hpp"
 
 namespace flaunay {
 
@@ -22,52 +18,29 @@ using host::Buffer;
 
 namespace call {
 
-/// An engine of a triangulator, and the locator that it made.
+/// A locator, and where it answers queries. Those in host memory need no device.
 struct Answerer {
-  Answerer(call::Engine& used_engine, call::Engine* used_device)
-      : engine(used_engine), device(used_device), own(engine.runtime.memory()) {
-    if (engine.runtime.sizes().separate_buffers) own.separate_buffers();
+  explicit Answerer(const Place& used) : place(used), own(used.engine.runtime.memory()) {
+    if (place.engine.runtime.sizes().separate_buffers) own.separate_buffers();
   }
 
-  /// Whether the host computes, and the caller's arrays are in device memory.
-  bool is_on_host() const { return device != &engine; }
-
+  /// Makes the locator in a call. mesh: without coordinates.
+  template <typename Points>
+  void make(Frame& call, const Points& points, points::DeviceMesh mesh) {
+    mesh.coordinates = call.points(points);
+    locator = locate::make_locator(call.runtime, own, mesh);
+  }
   /// Makes the locator of a triangulation in host memory.
-  void make_from(const double* coordinates, const std::vector<std::size_t>& offsets,
-                 const Triangulation& triangulation) {
-    engine.check_size(offsets.empty() ? 0 : offsets.back());
-    const call::OwnCall own_call(engine);
-    const host::Runtime::Settled settled(own_call.runtime);
-    const points::DeviceMesh mesh = call::mesh_of(own_call.runtime, coordinates, offsets, triangulation);
-    locator = locate::make_locator(own_call.runtime, own, mesh);
-    own_call.runtime.finish();
+  void make(const double* coordinates, const std::vector<std::size_t>& offsets,
+            const Triangulation& triangulation) {
+    const HostPoints points{coordinates, nullptr, offsets.empty() ? 0 : offsets.back()};
+    Frame call(place.engine);
+    call.check_size(points.count);
+    make(call, points, mesh_of(call, points, offsets, triangulation));
+    call.end();
   }
 
-  /// Computes so many results in host memory. work(runtime, results) enqueues the kernels that write them.
-  template <typename Result, typename Work>
-  std::vector<Result> compute(std::size_t count, const Work& work) {
-    const call::OwnCall own_call(engine);
-    host::Runtime& runtime = own_call.runtime;
-    std::vector<Result> result;
-    runtime.resize(result, count);
-    const host::Runtime::Settled settled(runtime);
-    const Buffer<Result> output = runtime.output(result);
-    work(runtime, output);
-    runtime.fetch_later(output, result);
-    runtime.finish();
-    return result;
-  }
-
-  /// The caller's numbers in device memory, where the engine has them. To be called in a call of its runtime.
-  Buffer<cl_double> given(cl_mem memory, std::size_t count, const char* what) {
-    const auto there = call::given_buffer<cl_double>(device->runtime, memory, count, what);
-    if (!is_on_host()) return there;
-    return engine.runtime.upload(engine.runtime.arena(), points::download(device->runtime, there, count));
-  }
-
-  call::Engine& engine;
-  call::Engine*
-      device;  ///< has the caller's device memory: the engine, or if that is native, another or none
+  Place place;
   Arena own;
   locate::Locator locator;
 };
@@ -82,15 +55,14 @@ struct Locator::Implementation {
   /// make(answerer).
   template <typename Make>
   void make_with(const Make& make) {
-    if (!asked_.has_doubles()) {
-      fixed = std::make_unique<call::Answerer>(asked_, &asked_);
-      try {
-        return make(*fixed);
-      } catch (const geometry::TooWideForFixedPoint&) {
-        fixed.reset();
-      }
-    }
-    doubles_ = new_with_doubles();
+    call::in_fixed_point_or(
+        [&] {
+          if (!asked_.has_doubles()) fixed = std::make_unique<call::Answerer>(call::Place{asked_, &asked_});
+          if (fixed) make(*fixed);
+        },
+        [&](const std::string&) { fixed.reset(); });
+    if (fixed) return;
+    doubles_ = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
     make(*doubles_);
   }
 
@@ -98,10 +70,12 @@ struct Locator::Implementation {
   call::Answerer& doubles() {
     if (!doubles_) {
       call::take_turn(*owner, [&] {
-        auto made = new_with_doubles();
-        const call::OwnCall own_call(asked_);
-        const locate::ReadMesh mesh = locate::read_back(own_call.runtime, fixed->locator);
-        made->make_from(mesh.coordinates.data(), mesh.point_offsets, mesh.triangulation);
+        auto made = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
+        const locate::ReadMesh mesh = [&] {
+          const call::Frame call(asked_);
+          return locate::read_back(call.runtime, fixed->locator);
+        }();
+        made->make(mesh.coordinates.data(), mesh.point_offsets, mesh.triangulation);
         doubles_ = std::move(made);
       });
     }
@@ -111,15 +85,9 @@ struct Locator::Implementation {
   /// Answers by the locator in fixed point, if there is one, or else, and if what is asked does not fit that,
   /// by the one with doubles.
   template <typename Answer>
-  auto by_either(const Answer& answer) {
-    if (fixed) {
-      try {
-        return answer(*fixed);
-      } catch (const geometry::TooWideForFixedPoint&) {
-        // Answered below.
-      }
-    }
-    return answer(doubles());
+  auto answer_with(const Answer& answer) {
+    return call::in_fixed_point_or([&] { return answer(fixed ? *fixed : doubles()); },
+                                   [&](const std::string&) { return answer(doubles()); });
   }
 
   // Kernels use 32-bit indices for the coordinates of queries, and for columns.
@@ -135,7 +103,7 @@ struct Locator::Implementation {
                  "more numbers than memory can hold");
   }
 
-  /// Answers queries in host memory. columns: the length of each result. work(runtime, locator, queries, m,
+  /// Answers queries in host memory. columns: the length of each result. work(call, locator, queries, m,
   /// offsets, results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
   std::vector<Result> answer(call::Answerer& by, const double* queries,
@@ -145,29 +113,27 @@ struct Locator::Implementation {
       const std::size_t m = offsets.back();
       check_queries(m, columns);
       call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
-      return by.compute<Result>(m * columns, [&](host::Runtime& runtime, const Buffer<Result>& results) {
-        work(runtime, by.locator, runtime.view(queries, 2 * m), m, offsets, results);
-      });
+      std::vector<Result> results;
+      call::Frame call(by.place.engine);
+      const auto output = call.out<Result>(results, m * columns);
+      work(call, by.locator, call.points(call::HostPoints{queries, nullptr, m}), m, offsets, output);
+      call.end();
+      return results;
     });
   }
 
-  /// Runs a call on device memory. work(runtime) enqueues it.
+  /// Runs a call on device memory. work(call) enqueues it.
   template <typename Work>
   void on_device(call::Answerer& by, const Enqueue& enqueue, const Work& work) {
     call::take_turn(*owner, enqueue, [&] {
-      call::Engine* const device = by.device;
       call::expect(
-          device != nullptr,
+          by.place.device != nullptr,
           "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
           "make it from device memory, or name a device");
-      call::Engine& first = owner->on_device();
-      const Enqueue own_enqueue = device == &first ? enqueue : call::on_queue_of(first, enqueue);
-      device->use_own_memory();
-      call::check_enqueue(device->runtime, own_enqueue);
-      call::QueuedCall queued(device->runtime, own_enqueue);
-      Arena::Scope scope(device->runtime.arena());
-      work(device->runtime);
-      queued.end();
+      call::Frame call(*owner, by.place, enqueue);
+      call.begin();
+      work(call);
+      call.end();
     });
   }
 
@@ -177,27 +143,13 @@ struct Locator::Implementation {
   void answer(call::Answerer& by, const DevicePoints& queries, const std::vector<cl_mem>& read,
               DeviceBuffer& result, std::size_t columns, const char* what, const Enqueue& enqueue,
               const Work& work) {
-    on_device(by, enqueue, [&](host::Runtime& runtime) {
-      call::check_points(runtime, queries, "queries");
+    on_device(by, enqueue, [&](call::Frame& call) {
+      call.check(queries, "queries");
       check_queries(queries.count, columns);
-      const std::vector<std::size_t> offsets = call::checked_offsets(runtime, queries);
-      const auto output = call::result_buffer<Result>(runtime, result, queries.count * columns, what,
-                                                      by.device->buffer_allocations);
-      std::vector<cl_mem> buffers{queries.memory, queries.device_offsets, result.memory()};
-      buffers.insert(buffers.end(), read.begin(), read.end());
-      call::check_distinct(buffers);
-      if (!by.is_on_host()) {
-        work(runtime, by.locator, call::wide_points(runtime, runtime.arena(), queries), queries.count,
-             offsets, output);
-        return;
-      }
-      const std::vector<double> points = call::read_wide_points(runtime, queries);
-      call::write_result(runtime, output,
-                         by.compute<Result>(queries.count * columns, [&](host::Runtime& native,
-                                                                         const Buffer<Result>& results) {
-                           work(native, by.locator, native.view(points.data(), points.size()), queries.count,
-                                offsets, results);
-                         }));
+      const std::vector<std::size_t> offsets = call.offsets(queries);
+      const auto output = call.out<Result>(result, queries.count * columns, what);
+      call.check_distinct(read);
+      work(call, by.locator, call.points(queries), queries.count, offsets, output);
     });
   }
 
@@ -222,33 +174,44 @@ struct Locator::Implementation {
     return {are_given, std::move(given), options.tolerance, options.iterations};
   }
 
-  /// queries: as the functions in derived/interpolate/interpolate.hpp take them.
-  template <typename... Queries>
-  void interpolate(host::Runtime& runtime, locate::Locator& locator, const InterpolationOptions& options,
-                   const Buffer<cl_double>& values, const flaunay::interpolate::Gradients& gradients,
-                   const Queries&... queries) {
-    const flaunay::interpolate::Table table{values, options.columns, options.fill};
-    switch (options.method) {
-      case Interpolation::linear:
-        return flaunay::interpolate::linear(runtime, locator, table, queries...);
-      case Interpolation::nearest:
-        return flaunay::interpolate::nearest(runtime, locator, table, queries...);
-      case Interpolation::clough_tocher:
-        return flaunay::interpolate::clough_tocher(runtime, locator, table, gradients, queries...);
-      case Interpolation::sibson:
-      case Interpolation::laplace:
-        return flaunay::interpolate::natural(runtime, locator, natural_weights(options.method), table,
-                                             queries...);
-    }
-    throw Error(ErrorKind::usage, "no such method of interpolation");
+  /// What answers queries by interpolation. Values and gradients are in host or device memory; gradients are
+  /// estimated if they are null.
+  template <typename Values>
+  auto interpolation(const InterpolationOptions& options, Values values, Values gradients) {
+    return [this, &options, values, gradients](call::Frame& call, auto& locator, const auto&... queries) {
+      const std::size_t count = numbers(options.columns);
+      const bool are_given = gradients != nullptr;
+      const auto known = gradients_by(options.estimation, are_given,
+                                      call.in<cl_double>(gradients, are_given ? 2 * count : 0, "gradients"));
+      const flaunay::interpolate::Table table{call.in<cl_double>(values, count, "values"), options.columns,
+                                              options.fill};
+      switch (options.method) {
+        case Interpolation::linear:
+          return flaunay::interpolate::linear(call.runtime, locator, table, queries...);
+        case Interpolation::nearest:
+          return flaunay::interpolate::nearest(call.runtime, locator, table, queries...);
+        case Interpolation::clough_tocher:
+          return flaunay::interpolate::clough_tocher(call.runtime, locator, table, known, queries...);
+        case Interpolation::sibson:
+        case Interpolation::laplace:
+          return flaunay::interpolate::natural(call.runtime, locator, natural_weights(options.method), table,
+                                               queries...);
+      }
+      throw Error(ErrorKind::usage, "no such method of interpolation");
+    };
   }
 
-  void estimate_gradients(host::Runtime& runtime, const locate::Locator& locator,
-                          const Buffer<cl_double>& values, std::size_t columns,
-                          const GradientOptions& options, const Buffer<cl_double>& results) {
-    const flaunay::interpolate::Table table{values, columns, std::numeric_limits<double>::quiet_NaN()};
-    flaunay::interpolate::estimate_gradients(runtime, locator, table, gradients_by(options, false, {}),
-                                             results);
+  /// Estimates gradients in a call. The number of values is that of numbers().
+  template <typename Values, typename Results>
+  void estimate_gradients(call::Frame& call, const locate::Locator& locator, Values values,
+                          std::size_t columns, const GradientOptions& options, Results& results) {
+    const std::size_t count = numbers(columns);
+    const auto output = call.out<cl_double>(results, 2 * count, "gradients");
+    const flaunay::interpolate::Table table{call.in<cl_double>(values, count, "values"), columns,
+                                            std::numeric_limits<double>::quiet_NaN()};
+    call.check_distinct();
+    flaunay::interpolate::estimate_gradients(call.runtime, locator, table, gradients_by(options, false, {}),
+                                             output);
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
@@ -256,17 +219,16 @@ struct Locator::Implementation {
   std::size_t point_count = 0;
 
  private:
-  std::unique_ptr<call::Answerer> new_with_doubles() const {
-    call::Engine& engine = owner->with_doubles(asked_);
-    call::Engine* const device = !engine.runtime.is_native()   ? &engine
-                                 : !asked_.runtime.is_native() ? &asked_
-                                                               : nullptr;
-    return std::make_unique<call::Answerer>(engine, device);
-  }
-
   call::Engine& asked_;  ///< one of the owner's
   std::unique_ptr<call::Answerer> doubles_;
 };
+
+namespace {
+
+constexpr auto kLocate = [](call::Frame& call, auto&&... all) { locate::locate(call.runtime, all...); };
+constexpr auto kNearest = [](call::Frame& call, auto&&... all) { locate::nearest(call.runtime, all...); };
+
+}  // namespace
 
 std::unique_ptr<Locator::Implementation> Locator::make(Triangulator& triangulator, bool on_device) {
   const auto& owner = triangulator.implementation_;
@@ -285,7 +247,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
   call::take_turn(*self.owner, [&] {
-    self.make_with([&](call::Answerer& by) { by.make_from(coordinates, offsets, triangulation); });
+    self.make_with([&](call::Answerer& by) { by.make(coordinates, offsets, triangulation); });
     self.point_count = offsets.back();
   });
 }
@@ -295,16 +257,10 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
     : implementation_(make(triangulator, true)) {
   Implementation& self = *implementation_;
   self.make_with([&](call::Answerer& by) {
-    self.on_device(by, enqueue, [&](host::Runtime& runtime) {
-      call::check_points(runtime, points, "points");
-      points::DeviceMesh mesh = call::mesh_without_points(runtime, points, triangulation);
-      if (by.is_on_host()) {
-        const call::MeshOnHost read = call::read_mesh(runtime, points, mesh);
-        by.make_from(read.coordinates.data(), mesh.point_offsets, read.triangulation);
-      } else {
-        mesh.coordinates = call::wide_points(runtime, runtime.arena(), points);
-        by.locator = locate::make_locator(runtime, by.own, mesh);
-      }
+    self.on_device(by, enqueue, [&](call::Frame& call) {
+      call.check(points, "points");
+      call.check_size(points.count);
+      by.make(call, points, call::mesh_of(call, points, triangulation));
     });
   });
   self.point_count = points.count;
@@ -319,16 +275,14 @@ std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) 
 }
 
 std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->by_either([&](call::Answerer& by) {
-    return implementation_->answer<std::int32_t>(by, queries, offsets, 1,
-                                                 [](auto&&... all) { locate::locate(all...); });
+  return implementation_->answer_with([&](call::Answerer& by) {
+    return implementation_->answer<std::int32_t>(by, queries, offsets, 1, kLocate);
   });
 }
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
-  implementation_->by_either([&](call::Answerer& by) {
-    implementation_->answer<cl_int>(by, queries, {}, triangles, 1, "located triangles", enqueue,
-                                    [](auto&&... all) { locate::locate(all...); });
+  implementation_->answer_with([&](call::Answerer& by) {
+    implementation_->answer<cl_int>(by, queries, {}, triangles, 1, "located triangles", enqueue, kLocate);
   });
 }
 
@@ -337,16 +291,14 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->by_either([&](call::Answerer& by) {
-    return implementation_->answer<std::int32_t>(by, queries, offsets, 1,
-                                                 [](auto&&... all) { locate::nearest(all...); });
+  return implementation_->answer_with([&](call::Answerer& by) {
+    return implementation_->answer<std::int32_t>(by, queries, offsets, 1, kNearest);
   });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
-  implementation_->by_either([&](call::Answerer& by) {
-    implementation_->answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue,
-                                    [](auto&&... all) { locate::nearest(all...); });
+  implementation_->answer_with([&](call::Answerer& by) {
+    implementation_->answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue, kNearest);
   });
 }
 
@@ -375,44 +327,34 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
   const std::size_t numbers = implementation_->numbers(options.columns);
   if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
-  return implementation_->answer<double>(
-      implementation_->doubles(), queries, offsets, options.columns,
-      [&](auto& runtime, auto& locator, const auto&... all) {
-        const bool are_given = options.gradients != nullptr;
-        const auto gradients = Implementation::gradients_by(
-            options.estimation, are_given, runtime.view(options.gradients, are_given ? 2 * numbers : 0));
-        implementation_->interpolate(runtime, locator, options, runtime.view(values, numbers), gradients,
-                                     all...);
-      });
+  return implementation_->answer<double>(implementation_->doubles(), queries, offsets, options.columns,
+                                         implementation_->interpolation(options, values, options.gradients));
 }
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
-  call::Answerer& by = implementation_->doubles();
+  const auto work = implementation_->interpolation(options, values, options.device_gradients);
   implementation_->answer<cl_double>(
-      by, queries, {values, options.device_gradients}, results, options.columns, "interpolated values",
-      enqueue, [&](auto& runtime, auto& locator, const auto&... all) {
+      implementation_->doubles(), queries, {values, options.device_gradients}, results, options.columns,
+      "interpolated values", enqueue, [&](auto&&... all) {
         call::expect(options.gradients == nullptr, "gradients in host memory of values in device memory");
-        const std::size_t numbers = implementation_->numbers(options.columns);
-        const bool are_given = options.device_gradients != nullptr;
-        const auto gradients = Implementation::gradients_by(
-            options.estimation, are_given,
-            by.given(options.device_gradients, are_given ? 2 * numbers : 0, "gradients"));
-        implementation_->interpolate(runtime, locator, options, by.given(values, numbers, "values"),
-                                     gradients, all...);
+        work(all...);
       });
 }
 
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,
                                        const GradientOptions& options) {
-  call::Answerer& by = implementation_->doubles();
-  return call::take_turn(*implementation_->owner, [&] {
-    const std::size_t numbers = implementation_->numbers(columns);
-    if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
-    return by.compute<double>(2 * numbers, [&](host::Runtime& runtime, const Buffer<double>& results) {
-      implementation_->estimate_gradients(runtime, by.locator, runtime.view(values, numbers), columns,
-                                          options, results);
-    });
+  Implementation& self = *implementation_;
+  call::Answerer& by = self.doubles();
+  return call::take_turn(*self.owner, [&] {
+    if (self.numbers(columns) > 0) {
+      call::expect(values != nullptr, "points have no values: the pointer is null");
+    }
+    std::vector<double> results;
+    call::Frame call(by.place.engine);
+    self.estimate_gradients(call, by.locator, values, columns, options, results);
+    call.end();
+    return results;
   });
 }
 
@@ -420,20 +362,8 @@ void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t colu
                         const GradientOptions& options, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
   call::Answerer& by = self.doubles();
-  self.on_device(by, enqueue, [&](host::Runtime& runtime) {
-    const std::size_t numbers = self.numbers(columns);
-    const auto output = call::result_buffer<cl_double>(runtime, gradients, 2 * numbers, "gradients",
-                                                       by.device->buffer_allocations);
-    call::check_distinct({values, gradients.memory()});
-    const auto estimate = [&](host::Runtime& used, const Buffer<cl_double>& results) {
-      self.estimate_gradients(used, by.locator, by.given(values, numbers, "values"), columns, options,
-                              results);
-    };
-    if (by.is_on_host()) {
-      call::write_result(runtime, output, by.compute<cl_double>(2 * numbers, estimate));
-    } else {
-      estimate(runtime, output);
-    }
+  self.on_device(by, enqueue, [&](call::Frame& call) {
+    self.estimate_gradients(call, by.locator, values, columns, options, gradients);
   });
 }
 

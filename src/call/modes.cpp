@@ -70,7 +70,7 @@ research::Triangulation run_levels(TriangulatorAccess::Implementation& self, con
   research::Triangulation result;
   static_cast<Triangulation&>(result) = empty_result(engine, request.offsets.size() - 1);
   if (n == 0) return result;
-  const std::vector<double> doubles = widened(request.points, n);
+  const std::vector<double> doubles = widened(request.points);
   const double* const coordinates = doubles.empty() ? request.points.wide : doubles.data();
   const Recording recording(engine, request.options.record);
   engine.begin_call(request.options.profile);

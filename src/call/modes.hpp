@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "call/host_call.hpp"
+#include "call/triangulate.hpp"
 #include "flaunay/research.hpp"
 #include "modes/flattened/run.hpp"
 

@@ -25,17 +25,16 @@ void check_options(const Options& options) {
   }
 }
 
-Triangulation checked_call(Triangulator& triangulator, const call::HostPoints& points,
+// One of wide and narrow is null.
+Triangulation checked_call(Triangulator& triangulator, const double* wide, const float* narrow,
                            const std::vector<std::size_t>& offsets, const Options& options) {
   return with_errors([&] {
-    geometry::check_offsets(offsets);
-    const std::size_t n = offsets.back();
-    if (points.narrow == nullptr) geometry::check_coordinates(points.wide, n);
+    const call::HostPoints points = call::checked_points(wide, narrow, offsets);
     const call::ModeRow& row = call::row_of(options.mode);
     const call::Request request{points, offsets, options};
     if (row.on_host != nullptr) {
-      const std::vector<double> doubles = call::widened(points, n);
-      return row.on_host(points.narrow != nullptr ? doubles.data() : points.wide, request);
+      const std::vector<double> doubles = call::widened(points);
+      return row.on_host(narrow != nullptr ? doubles.data() : wide, request);
     }
     check_options(options);
     call::Implementation& self = TriangulatorAccess::implementation(triangulator);
@@ -58,12 +57,12 @@ Triangulation triangulate(Triangulator& triangulator, const float* coordinates, 
 
 Triangulation triangulate(Triangulator& triangulator, const double* coordinates,
                           const std::vector<std::size_t>& offsets, const Options& options) {
-  return checked_call(triangulator, {coordinates, nullptr}, offsets, options);
+  return checked_call(triangulator, coordinates, nullptr, offsets, options);
 }
 
 Triangulation triangulate(Triangulator& triangulator, const float* coordinates,
                           const std::vector<std::size_t>& offsets, const Options& options) {
-  return checked_call(triangulator, {nullptr, coordinates}, offsets, options);
+  return checked_call(triangulator, nullptr, coordinates, offsets, options);
 }
 
 Triangulation triangulate_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
@@ -76,7 +75,7 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
     }
     throw Error(ErrorKind::usage, fmt::format("only the modes {} run without a device", names));
   }
-  return row.on_host(coordinates, {{coordinates, nullptr}, offsets, options});
+  return row.on_host(coordinates, {{}, offsets, options});
 }
 
 Partition partition(Triangulator& triangulator, const double* coordinates, std::size_t n, int levels,

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "call/constrained.hpp"
-#include "call/device_mesh.hpp"
+#include "call/frame.hpp"
 #include "constrained/crossings/first_crossing.hpp"
 #include "constrained/domains/domain_on_host.hpp"
 #include "constrained/domains/map.hpp"

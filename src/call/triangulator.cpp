@@ -5,13 +5,8 @@
 #include <utility>
 
 #include "blocks/memory.hpp"
-#include "call/device_call.hpp"
 #include "call/device_info.hpp"
-#include "call/errors.hpp"
-#include "call/handles.hpp"
-#include "call/host_call.hpp"
-#include "call/implementation.hpp"
-#include "geometry/magnitudes.hpp"
+#include "call/triangulate.hpp"
 
 namespace flaunay {
 namespace {
@@ -47,11 +42,12 @@ boost::compute::device checked_member(cl_context context, cl_device_id device) {
   return boost::compute::device(device);
 }
 
-Triangulation checked_call(call::Implementation& self, const call::HostPoints& points,
+// One of wide and narrow is null.
+Triangulation checked_call(call::Implementation& self, const double* wide, const float* narrow,
                            const std::vector<std::size_t>& offsets, const Options& options) {
-  geometry::check_offsets(offsets);
-  if (points.narrow == nullptr) geometry::check_coordinates(points.wide, offsets.back());
-  return call::triangulate(self, points, offsets, options);
+  return call::take_turn(self, [&] {
+    return call::triangulate(self, call::checked_points(wide, narrow, offsets), offsets, options);
+  });
 }
 
 }  // namespace
@@ -101,16 +97,12 @@ Triangulation Triangulator::triangulate(const float* coordinates, std::size_t n,
 
 Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return call::take_turn(*implementation_, [&] {
-    return checked_call(*implementation_, {coordinates, nullptr}, offsets, options);
-  });
+  return checked_call(*implementation_, coordinates, nullptr, offsets, options);
 }
 
 Triangulation Triangulator::triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return call::take_turn(*implementation_, [&] {
-    return checked_call(*implementation_, {nullptr, coordinates}, offsets, options);
-  });
+  return checked_call(*implementation_, nullptr, coordinates, offsets, options);
 }
 
 void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,

@@ -25,56 +25,36 @@ namespace {
 
 using testing::stalling;
 
-/// All parts of a mesh, in host memory.
-class WholeExchange : public Exchange {
- public:
-  WholeExchange(Runtime& runtime, const Coordinates& coordinates, Triangulation& result)
-      : runtime_(runtime), coordinates_(coordinates), result_(result) {}
-
-  Buffer<cl_double> points() override { return runtime_.view(coordinates_.data(), coordinates_.size()); }
-  Buffer<cl_int> representatives() override {
-    result_.representatives.assign(coordinates_.size() / 2, -7);  // not yet written
-    return own_ = runtime_.output(result_.representatives);
-  }
-  bool wants_links() const override { return true; }
-  MeshBuffers mesh(const MeshSizes& sizes) override {
-    const auto room = [&](std::vector<std::int32_t>& values, std::size_t count) {
-      values.assign(count, -7);
-      return runtime_.output(values);
-    };
-    result_.triangle_offsets = sizes.triangle_offsets;
-    result_.hull_offsets = sizes.hull_offsets;
-    const std::size_t corners = 3 * sizes.triangles();
-    return mesh_ = {room(result_.triangles, corners), room(result_.neighbors, corners),
-                    room(result_.halfedges, corners), room(result_.hull, sizes.hull_vertices())};
-  }
-  void fetch() {
-    runtime_.fetch_later(own_, result_.representatives);
-    runtime_.fetch_later(mesh_.triangles, result_.triangles);
-    runtime_.fetch_later(mesh_.neighbors, result_.neighbors);
-    runtime_.fetch_later(mesh_.halfedges, result_.halfedges);
-    runtime_.fetch_later(mesh_.hull, result_.hull);
-    runtime_.finish();
-  }
-
- private:
-  Runtime& runtime_;
-  const Coordinates& coordinates_;
-  Triangulation& result_;
-  Buffer<cl_int> own_{};
-  MeshBuffers mesh_{};
-};
-
 /// With round_points as the tuning has them; 0: merged.
 Triangulation run_blocks(Runtime& runtime, const Coordinates& coordinates, const Offsets& offsets) {
   Call call(runtime);
   Triangulation result;
-  WholeExchange exchange(runtime, coordinates, result);
+  // Values of -7 are not yet written.
+  const auto room = [&runtime](std::vector<std::int32_t>& values, std::size_t count) {
+    values.assign(count, -7);
+    return runtime.output(values);
+  };
+  MeshBuffers mesh;
+  const Exchange exchange{[&] { return runtime.view(coordinates.data(), coordinates.size()); },
+                          room(result.representatives, coordinates.size() / 2), true,
+                          [&](const MeshSizes& sizes) {
+                            const std::size_t corners = 3 * sizes.triangles();
+                            return mesh = {room(result.triangles, corners), room(result.neighbors, corners),
+                                           room(result.halfedges, corners),
+                                           room(result.hull, sizes.hull_vertices())};
+                          }};
   const Options options;
   statistics::Phases phases(options);
-  const Outcome outcome = run(runtime, call.work.persistent, offsets, exchange, phases);
-  exchange.fetch();
+  Outcome outcome = run(runtime, call.work.persistent, offsets, exchange, phases);
+  runtime.fetch_later(exchange.representatives, result.representatives);
+  runtime.fetch_later(mesh.triangles, result.triangles);
+  runtime.fetch_later(mesh.neighbors, result.neighbors);
+  runtime.fetch_later(mesh.halfedges, result.halfedges);
+  runtime.fetch_later(mesh.hull, result.hull);
+  runtime.finish();
   outcome.write(offsets.back(), result.statistics);
+  result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
+  result.hull_offsets = std::move(outcome.sizes.hull_offsets);
   return result;
 }
 

@@ -4,12 +4,10 @@
 
 #include "blocks/run.hpp"
 #include "derived/locate/locator.hpp"
-#include "flaunay/flaunay.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
 #include "launchers/locate/levels.cl.hpp"
 #include "locate/nearest_search.h"
-#include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::locate {
@@ -19,44 +17,6 @@ namespace {
 
 // The last level has fewer vertices of the largest set than this many times the ratio.
 constexpr std::size_t kLeastSample = 4;
-
-// Takes the samples to the triangulation, and the triangulation to a locator.
-class SampleExchange : public blocks::Exchange {
- public:
-  SampleExchange(Arena& arena, const Buffer<cl_double>& coordinates)
-      : arena_(arena),
-        coordinates_(coordinates),
-        representatives_(arena.allocate<cl_int>(coordinates.size() / 2)) {}
-
-  Buffer<cl_double> points() override { return coordinates_; }
-  Buffer<cl_int> representatives() override { return representatives_; }
-  bool wants_links() const override { return true; }
-  blocks::MeshBuffers mesh(const blocks::MeshSizes& sizes) override {
-    mesh_.triangles = arena_.allocate<cl_int>(3 * sizes.triangles());
-    mesh_.neighbors = arena_.allocate<cl_int>(3 * sizes.triangles());
-    mesh_.hull = arena_.allocate<cl_int>(sizes.hull_vertices());
-    return mesh_;
-  }
-
-  /// Without coordinates.
-  DeviceMesh result(const std::vector<std::size_t>& offsets, const blocks::MeshSizes& sizes) const {
-    DeviceMesh mesh;
-    mesh.point_offsets = offsets;
-    mesh.triangle_offsets = sizes.triangle_offsets;
-    mesh.hull_offsets = sizes.hull_offsets;
-    mesh.triangles = mesh_.triangles;
-    mesh.neighbors = mesh_.neighbors;
-    mesh.hull = mesh_.hull;
-    mesh.representatives = representatives_;
-    return mesh;
-  }
-
- private:
-  Arena& arena_;
-  Buffer<cl_double> coordinates_;
-  Buffer<cl_int> representatives_;
-  blocks::MeshBuffers mesh_;
-};
 
 Stars make_stars(host::Runtime& runtime, Arena& own, const Locator& of, std::size_t vertices) {
   const std::size_t triangles = of.faces.size();
@@ -161,11 +121,7 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
     runtime.map(2 * samples,
                 kernels::give_coordinates{.coordinates = coordinates, .given = given.as<cl_ulong>()});
   }
-  SampleExchange exchange(results, given);
-  const Options options;
-  statistics::Phases phases(options);
-  const blocks::Outcome outcome = blocks::run(runtime, persistent, sizes.offsets, exchange, phases);
-  DeviceMesh mesh = exchange.result(sizes.offsets, outcome.sizes);
+  DeviceMesh mesh = blocks::run(runtime, persistent, sizes.offsets, given, results);
   mesh.coordinates = coordinates;
   const auto samples_locator = std::make_shared<Locator>(make_walk_locator(runtime, own, mesh));
   measure_clearances(runtime, *samples_locator);

@@ -1,0 +1,233 @@
+// The frame of a public call: queue, memory, the arrays of the caller and where kernels have them, and the
+// end. The work between is a function of a runtime and buffers, whatever computes and wherever the caller's
+// arrays are.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "call/handles.hpp"
+#include "call/implementation.hpp"
+#include "flaunay/device_memory.hpp"
+#include "geometry/magnitudes.hpp"
+#include "points/download.hpp"
+
+namespace flaunay::call {
+
+using host::Buffer;
+
+/// Coordinates in host memory, x0 y0 x1 y1 ..., in double or single precision; the other pointer is null.
+struct HostPoints {
+  const double* wide = nullptr;
+  const float* narrow = nullptr;
+  std::size_t count = 0;
+};
+
+/// Throws Error(usage) with the message `what` unless the condition holds.
+void expect(bool holds, const char* what);
+
+/// Where a call is computed.
+struct Place {
+  Engine& engine;            ///< computes
+  Engine* device = nullptr;  ///< has the caller's device memory: the engine, another one if that is native,
+                             ///< or null for calls on host memory
+
+  /// Whether the host computes, and the caller's arrays are in device memory.
+  bool is_apart() const { return device != nullptr && device != &engine; }
+};
+
+/// Where calls are computed that need doubles, in place of this engine of the triangulator.
+Place with_doubles(Implementation& self, Engine& asked);
+
+/// Returns work(), or if the input does not fit fixed point, with_doubles(reason).
+template <typename Work, typename WithDoubles>
+auto in_fixed_point_or(const Work& work, const WithDoubles& with_doubles) {
+  std::string reason;
+  try {
+    return work();
+  } catch (const geometry::TooWideForFixedPoint& error) {
+    reason = error.reason();
+  }
+  return with_doubles(reason);
+}
+
+/// Says in the statistics that the host did what this engine's device cannot do without doubles; nothing if
+/// the engine that was used is the same or on a device. what: for what doubles are needed, such as
+/// "constraints"; done: what became of them, such as "inserted".
+void add_note(const Engine& asked, const Engine& used, const std::string& what, const std::string& done,
+              Statistics& statistics);
+
+template <typename T>
+class Output;
+
+/// Exists as long as the call. If it ends by an exception, waits for what uses the caller's memory. Results
+/// in host memory must have been declared before it.
+class Frame {
+ public:
+  /// A call on host memory, with the engine's own memory and queue.
+  explicit Frame(Engine& engine, bool profile = false);
+  /// A call on device memory. Checks the queue and the events; those are waited for by begin(), and checks
+  /// that need no array go between.
+  Frame(Implementation& self, const Place& place, const Enqueue& enqueue);
+  void begin();
+  Frame(const Frame&) = delete;
+  Frame& operator=(const Frame&) = delete;
+
+  // Arrays that kernels read. A null pointer is an empty array. what: the array's name in error messages, for
+  // calls on device memory. If the host computes those, the arrays are read back. In host memory they must
+  // not change until the end.
+  template <typename T>
+  Buffer<T> in(const T* values, std::size_t count, const char* /*what*/ = "") {
+    return runtime.view_later(values, count);
+  }
+  template <typename T>
+  Buffer<T> in(const std::vector<T>& values) {
+    return runtime.view_later(values.data(), values.size());
+  }
+  template <typename T>
+  Buffer<T> in(cl_mem memory, std::size_t count, const char* what) {
+    check_buffer(place_.device->runtime, memory, count * sizeof(T), Access::read, what);
+    memories_.push_back(memory);
+    const Buffer<T> there(memory == nullptr ? nullptr : retained(memory), count);
+    return place_.is_apart() ? read_back(there, 0, count) : there;
+  }
+  /// Throws Error(usage) if the buffer of points is missing or too small.
+  void check(const DevicePoints& points, const char* what);
+  /// The coordinates in double precision. Those in device memory must have been checked.
+  Buffer<cl_double> points(const HostPoints& points);
+  Buffer<cl_double> points(const DevicePoints& points);
+  /// The offsets of sets; see checked_offsets.
+  std::vector<std::size_t> offsets(const DevicePoints& points);
+
+  /// An array of results, whose size may be known later. most: the size of the buffer that is needed, if it
+  /// is in device memory.
+  template <typename T>
+  Output<T> output(std::vector<T>& to, std::size_t most = 0, const char* what = "");
+  template <typename T>
+  Output<T> output(DeviceBuffer& to, std::size_t most, const char* what);
+  /// An array of so many results.
+  template <typename T, typename To>
+  Buffer<T> out(To& to, std::size_t count, const char* what = "") {
+    return output<T>(to, count, what).buffer(count);
+  }
+  /// Makes the end transfer what kernels have written to an array that in() has returned for this buffer.
+  template <typename T>
+  void write_back(const Buffer<T>& changed, const DeviceBuffer& to) {
+    if (!place_.is_apart()) return;
+    transfers_.push_back({changed.kept_memory(), retained(to.memory()), nullptr, changed.size(), copy<T>});
+  }
+
+  /// Throws Error(usage) if two arrays of the caller, or of these, are in the same buffer.
+  void check_distinct(const std::vector<cl_mem>& others = {});
+  /// Throws Error if the engine cannot take arrays of n points out of device memory.
+  void check_size(std::size_t n) const;
+  /// Transfers the results, and waits for them if they are in host memory; otherwise sets the caller's event.
+  void end();
+
+  const Place& place() const { return place_; }
+  Engine& engine;          ///< computes
+  host::Runtime& runtime;  ///< the engine's
+
+ private:
+  template <typename T>
+  friend class Output;
+
+  // Where a native engine has values of the caller's device memory.
+  template <typename T>
+  Buffer<T> read_back(const Buffer<T>& there, std::size_t first, std::size_t count) {
+    const auto values =
+        std::make_shared<std::vector<T>>(points::download(place_.device->runtime, there, first, count));
+    kept_.push_back(values);
+    return runtime.view(values->data(), count);
+  }
+
+  // What end() does with an array that kernels have written. A small struct, since some calls take a
+  // microsecond.
+  struct Transfer {
+    std::shared_ptr<_cl_mem> from, to;  // to: the caller's device memory if the host computes
+    std::shared_ptr<void> values;       // the vector for them, if there is one
+    std::size_t count;
+    void (*run)(Frame& call, const Transfer& transfer);
+  };
+  static constexpr std::size_t kUsualTransfers = 5;
+  template <typename T>
+  static void fetch(Frame& call, const Transfer& transfer) {
+    auto& values = *static_cast<std::vector<T>*>(transfer.values.get());
+    call.runtime.fetch_later(Buffer<T>(transfer.from, transfer.count), values);
+    if (call.place_.is_apart()) call.write<T>(transfer, std::move(values));
+  }
+  template <typename T>
+  static void copy(Frame& call, const Transfer& transfer) {
+    std::vector<T> values(transfer.count);
+    call.runtime.read(Buffer<T>(transfer.from, transfer.count), 0, transfer.count, values.data());
+    call.write<T>(transfer, std::move(values));
+  }
+  template <typename T>
+  void write(const Transfer& transfer, std::vector<T> values) {
+    write_result(place_.device->runtime, Buffer<T>(transfer.to, transfer.count), std::move(values));
+  }
+
+  Place place_;
+  Enqueue enqueue_;
+  std::vector<std::shared_ptr<void>> kept_;
+  std::vector<Transfer> transfers_;
+  std::vector<cl_mem> memories_;  // of the caller's arrays
+  std::optional<host::Arena::Scope> scope_;
+  std::optional<QueuedCall> queued_;
+  std::optional<host::Runtime::Settled> settled_;  // of calls on host memory
+};
+
+/// An array of results of a call.
+template <typename T>
+class Output {
+ public:
+  /// One that is not wanted.
+  Output() = default;
+  bool is_wanted() const { return frame_ != nullptr; }
+  /// Touches memory of the host for so many values while the device computes; otherwise page faults would
+  /// take longer than writing the results.
+  void reserve(std::size_t count) const {
+    if (values_ != nullptr) frame_->runtime.resize(*values_, count);
+  }
+  /// The buffer to which kernels write so many values; none if they are not wanted. If more than half of the
+  /// memory is unused, it is released.
+  Buffer<T> buffer(std::size_t count) const {
+    if (values_ == nullptr) return there_;
+    frame_->runtime.resize(*values_, count);
+    if (values_->capacity() / 2 > count) values_->shrink_to_fit();
+    const Buffer<T> made = frame_->runtime.output(*values_);
+    if (frame_->transfers_.empty()) frame_->transfers_.reserve(Frame::kUsualTransfers);
+    frame_->transfers_.push_back({made.kept_memory(), there_.kept_memory(), values_, count, Frame::fetch<T>});
+    return made;
+  }
+
+ private:
+  friend class Frame;
+  Output(Frame& frame, std::shared_ptr<std::vector<T>> values, Buffer<T> there)
+      : frame_(&frame), values_(std::move(values)), there_(std::move(there)) {}
+
+  Frame* frame_ = nullptr;
+  std::shared_ptr<std::vector<T>> values_;  // in host memory: the caller's, or those of a native engine
+  Buffer<T> there_{};                       // in device memory
+};
+
+template <typename T>
+Output<T> Frame::output(std::vector<T>& to, std::size_t /*most*/, const char* /*what*/) {
+  return {*this, std::shared_ptr<std::vector<T>>(std::shared_ptr<void>(), &to), {}};
+}
+
+template <typename T>
+Output<T> Frame::output(DeviceBuffer& to, std::size_t most, const char* what) {
+  const auto there =
+      result_buffer<T>(place_.device->runtime, to, most, what, place_.device->buffer_allocations);
+  memories_.push_back(there.memory());
+  return {*this, place_.is_apart() ? std::make_shared<std::vector<T>>() : nullptr, there};
+}
+
+}  // namespace flaunay::call

@@ -1,0 +1,231 @@
+#include "call/triangulate.hpp"
+
+#include <utility>
+
+#include "blocks/run.hpp"
+#include "blocks/small.hpp"
+#include "host/clock.hpp"
+#include "host/opencl/device.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::call {
+
+using host::Arena;
+
+namespace {
+
+// The arrays of a triangulation, in host or in device memory.
+class Arrays {
+ public:
+  template <typename Result>
+  Arrays(Frame& call, const Parts& wanted, std::size_t n, Result& result) : rows_(most_rows_of(n)) {
+    const auto make = [&](bool is_wanted, auto& to, std::size_t most, const char* what) {
+      return is_wanted && n > 0 ? call.output<cl_int>(to, most, what) : Output<cl_int>();
+    };
+    triangles_ = make(wanted.triangles, result.triangles, rows_, "triangles");
+    neighbors_ = make(wanted.neighbors, result.neighbors, rows_, "neighbors");
+    halfedges_ = make(wanted.halfedges, result.halfedges, rows_, "halfedges");
+    hull_ = make(wanted.hull, result.hull, n, "hull");
+    representatives = make(wanted.representatives, result.representatives, n, "representatives");
+  }
+
+  bool have_links() const { return neighbors_.is_wanted() || halfedges_.is_wanted(); }
+  void reserve() const {
+    for (const Output<cl_int>* rows : {&triangles_, &neighbors_, &halfedges_}) rows->reserve(rows_);
+  }
+  blocks::MeshBuffers mesh(const blocks::MeshSizes& sizes) const {
+    const std::size_t rows = 3 * sizes.triangles();
+    return {triangles_.buffer(rows), neighbors_.buffer(rows), halfedges_.buffer(rows),
+            hull_.buffer(sizes.hull_vertices())};
+  }
+
+  Output<cl_int> representatives;
+
+ private:
+  static std::size_t most_rows_of(std::size_t n) { return 3 * blocks::kMostTrianglesPerPoint * n; }
+
+  std::size_t rows_;
+  Output<cl_int> triangles_, neighbors_, halfedges_, hull_;
+};
+
+// Triangulates points of a call, at least one. Writes the offsets of the result and what is known about it.
+template <typename Points, typename Result>
+void compute(Frame& call, const Points& points, const std::vector<std::size_t>& offsets, const Arrays& arrays,
+             statistics::Phases& phases, Result& result) {
+  Engine& engine = call.engine;
+  const std::size_t n = offsets.back();
+  Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
+  blocks::Outcome outcome =
+      blocks::run(engine.runtime, engine.persistent, offsets,
+                  {[&] { return call.points(points); },
+                   arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
+                                                      : engine.persistent.allocate<cl_int>(n),
+                   arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return arrays.mesh(sizes); },
+                   [&] { arrays.reserve(); }},
+                  phases);
+  call.end();
+  outcome.write(n, result.statistics);
+  result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
+  result.hull_offsets = std::move(outcome.sizes.hull_offsets);
+}
+
+// Whether the sets are triangulated on the calling thread.
+bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
+  if (offsets.back() > tuning.host_points) return false;
+  for (std::size_t s = 1; s < offsets.size(); ++s) {
+    if (offsets[s] - offsets[s - 1] > tuning.block_points) return false;
+  }
+  return true;
+}
+
+Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
+                                const Options& options) {
+  Triangulation result;
+  const statistics::Phases phases(options);
+  phases.progress("triangulate", 0);
+  const double begin = host::now();
+  const std::vector<double> doubles = widened(points);
+  blocks::run_small(points.wide != nullptr ? points.wide : doubles.data(), offsets, options, result);
+  result.statistics.device = host::kHostName;
+  result.statistics.seconds = host::now() - begin;
+  result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
+  phases.progress("output", 1);
+  return result;
+}
+
+Triangulation triangulate_on(Engine& engine, const HostPoints& points,
+                             const std::vector<std::size_t>& offsets, const Options& options) {
+  const std::size_t n = points.count, sets = offsets.size() - 1;
+  Triangulation result = empty_result(engine, sets);
+  if (n == 0) return result;
+  statistics::Phases phases(options, [&engine] { return engine.runtime.working_clock(); });
+  const host::Runtime::BeforeCompiling announce(engine.runtime,
+                                                [&] { phases.interrupt("compiling kernels"); });
+  Frame call(engine, options.profile);
+  if (engine.workspace != nullptr) engine.provide_memory(n, sets);
+  engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+  const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true}, n, result);
+  compute(call, points, offsets, arrays, phases, result);
+  phases.end("output");
+  engine.write_accounts(result.statistics);
+  phases.write(result.statistics);
+  phases.progress("output", 1);
+  return result;
+}
+
+// reason: why the host computes, if it does.
+void triangulate_on(Implementation& self, const Place& place, const std::string& reason,
+                    const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
+                    const Enqueue& enqueue) {
+  Engine& device = *place.device;
+  Frame call(self, place, enqueue);
+  if ((parts.neighbors || parts.halfedges) && !parts.triangles) {
+    throw Error(ErrorKind::usage, "neighbours and halfedges are computed with triangles only");
+  }
+  call.check(points, "points");
+  device.check_size(points.count);
+  call.begin();
+  const double begin = device.runtime.working_clock();
+  std::vector<std::size_t> offsets = call.offsets(points);
+  const std::size_t n = points.count, sets = offsets.size() - 1;
+  const Arrays arrays(call, parts, n, result);
+  call.check_distinct({device.workspace.get()});
+  result.statistics = {};
+  result.statistics.device = call.runtime.name();
+  result.statistics.points = n;
+  result.parts = parts;
+  result.is_constrained = false;
+  result.points = n;
+  result.point_offsets = offsets;
+  result.triangle_offsets.assign(sets + 1, 0);
+  result.hull_offsets.assign(sets + 1, 0);
+  if (n > 0) {
+    call.check_size(n);
+    if (place.is_apart()) {
+      call.engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+    } else {
+      device.provide_memory(n, sets);
+    }
+    const Options unheard;
+    statistics::Phases phases(unheard);
+    compute(call, points, offsets, arrays, phases, result);
+    if (place.is_apart()) {
+      phases.end("output");
+      phases.write(result.statistics);
+      add_note(device, call.engine, reason, "triangulated", result.statistics);
+    }
+  } else {
+    call.end();
+  }
+  result.statistics.seconds = device.runtime.working_clock() - begin;
+  device.write_accounts(result.statistics);
+}
+
+}  // namespace
+
+HostPoints checked_points(const double* wide, const float* narrow, const std::vector<std::size_t>& offsets) {
+  geometry::check_offsets(offsets);
+  if (narrow == nullptr) geometry::check_coordinates(wide, offsets.back());
+  return {wide, narrow, offsets.back()};
+}
+
+std::vector<double> widened(const HostPoints& points) {
+  return points.narrow == nullptr ? std::vector<double>()
+                                  : std::vector<double>(points.narrow, points.narrow + 2 * points.count);
+}
+
+Triangulation empty_result(Engine& self, std::size_t sets) {
+  Triangulation result;
+  result.statistics.device = self.runtime.name();
+  result.triangle_offsets.assign(sets + 1, 0);
+  result.hull_offsets.assign(sets + 1, 0);
+  return result;
+}
+
+Triangulation triangulate(Implementation& self, const HostPoints& points,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  const bool may_be_small = !self.is_named() && !options.profile;
+  if (may_be_small && are_small(self.host_tuning(), offsets)) {
+    return triangulate_small(points, offsets, options);
+  }
+  Engine& engine = self.for_host_memory();
+  engine.check_size(points.count);
+  if (may_be_small && are_small(tuning_of(engine.runtime), offsets)) {
+    return triangulate_small(points, offsets, options);
+  }
+  const double begin = engine.runtime.working_clock();
+  return in_fixed_point_or(
+      [&] { return triangulate_on(engine, points, offsets, options); },
+      [&](const std::string& reason) {
+        const double seconds = engine.runtime.working_clock() - begin;
+        Engine& other = self.with_doubles(engine);
+        other.check_size(points.count);
+        Triangulation result = triangulate_on(other, points, offsets, options);
+        result.statistics.seconds += seconds;
+        result.statistics.phases.insert(result.statistics.phases.begin(), {"inspect", seconds});
+        add_note(engine, other, reason, "triangulated", result.statistics);
+        return result;
+      });
+}
+
+void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                 const Parts& parts, const Enqueue& enqueue) {
+  Engine& engine = self.on_device();
+  in_fixed_point_or(
+      [&] {
+        triangulate_on(self, {engine, &engine}, "", points, result, parts, enqueue);
+      },
+      [&](const std::string& reason) {
+        const Place place = with_doubles(self, engine);
+        const bool lends = !place.is_apart() && engine.workspace != nullptr;
+        if (lends) place.engine.workspace = engine.workspace;
+        triangulate_on(self, place, reason, points, result, parts, enqueue);
+        if (!lends) return;
+        // The next call may use the workspace on another queue, or another workspace.
+        place.engine.runtime.finish();
+        place.engine.workspace = nullptr;
+        place.engine.use_own_memory();
+      });
+}
+
+}  // namespace flaunay::call

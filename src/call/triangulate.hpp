@@ -1,0 +1,31 @@
+// Mode blocks for points and results in host memory or in device memory.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "call/frame.hpp"
+
+namespace flaunay::call {
+
+/// Coordinates of sets; one of wide and narrow is null. Throws Error(usage) for wrong offsets and for null
+/// coordinates in double precision.
+HostPoints checked_points(const double* wide, const float* narrow, const std::vector<std::size_t>& offsets);
+
+/// Converts the points to double precision. Returns an empty vector if they already are in it.
+std::vector<double> widened(const HostPoints& points);
+
+/// Implements Triangulator::triangulate for host memory: small sets on the calling thread if no device was
+/// named, others on the triangulator's engine for host memory. The offsets must have been checked.
+Triangulation triangulate(Implementation& self, const HostPoints& points,
+                          const std::vector<std::size_t>& offsets, const Options& options);
+
+/// Implements Triangulator::triangulate for device memory. What the device cannot compute in fixed point is
+/// computed with its doubles, or if it has none, on the host.
+void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                 const Parts& parts, const Enqueue& enqueue);
+
+/// Returns a result for this many sets without any triangles.
+Triangulation empty_result(Engine& self, std::size_t sets);
+
+}  // namespace flaunay::call
