@@ -26,6 +26,7 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
     endforeach()
   endforeach()
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/launchers.cmake)
+  file(GLOB LISTS CONFIGURE_DEPENDS ${DIRECTORY}/*/arguments.h)
   set(LAUNCHERS "")
   set(NATIVE_SOURCES "")
   foreach(FILE IN LISTS GIVEN_FILES)
@@ -45,7 +46,7 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
       OUTPUT ${OUTPUT}/${FILE}.hpp ${NATIVE_FILE}
       COMMAND ${CMAKE_COMMAND} -DDIRECTORY=${DIRECTORY} -DFILE=${FILE} -DPROGRAM=${PROGRAM}
               -DOUTPUT=${OUTPUT}/${FILE}.hpp ${NATIVE_ARGUMENT} -P ${SCRIPT}
-      DEPENDS ${DIRECTORY}/${FILE} ${INCLUDED_BY_${FILE}} ${SCRIPT}
+      DEPENDS ${DIRECTORY}/${FILE} ${INCLUDED_BY_${FILE}} ${LISTS} ${SCRIPT}
       VERBATIM)
     list(APPEND LAUNCHERS ${OUTPUT}/${FILE}.hpp)
   endforeach()

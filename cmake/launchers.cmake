@@ -6,7 +6,8 @@
 # file that is built: the file itself, or the one that includes it.
 #
 # It understands the forms that our kernel files use: signatures `kernel void name(arguments)` without macros other than
-# COUNTERS (operations/counting.h), which Runtime sets; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
+# COUNTERS (operations/counting.h), which Runtime sets, and the lists of arguments of headers named arguments.h, which
+# become structs; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
 #
 # With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp).
 cmake_policy(VERSION 3.25)
@@ -37,7 +38,8 @@ set(CPP_float_bits cl_uint)
 # The vector types of kernels.
 set(CPP_keyed cl_uint2)
 
-# Sets ${RESULT} to the C++ type of a kernel's type. Types that are not listed are structs of shared/records.h.
+# Sets ${RESULT} to the C++ type of a kernel's type. Types that are not listed are structs of the headers named records.h
+# that the file includes.
 function(cpp_type TYPE RESULT)
   if(DEFINED CPP_${TYPE})
     set(${RESULT} ${CPP_${TYPE}} PARENT_SCOPE)
@@ -46,8 +48,8 @@ function(cpp_type TYPE RESULT)
   endif()
 endfunction()
 
-# Appends the launcher of a kernel to CODE. ARGUMENTS: the text of the arguments, separated by commas.
-function(append_launcher NAME FORM ARGUMENTS)
+# Sets TYPES and NAMES to those of the members for arguments, whose text is separated by commas.
+function(read_arguments NAME ARGUMENTS)
   string(REGEX REPLACE "[ \n]+" " " ARGUMENTS "${ARGUMENTS}")
   string(REGEX REPLACE " ?COUNTERS" "" ARGUMENTS "${ARGUMENTS}")
   string(REGEX REPLACE " (restrict|volatile)" "" ARGUMENTS "${ARGUMENTS}")
@@ -62,6 +64,16 @@ function(append_launcher NAME FORM ARGUMENTS)
     elseif(ARGUMENT MATCHES "^global ([a-z_0-9]+)\\* ?([a-z_0-9]+)$")
       cpp_type(${CMAKE_MATCH_1} TYPE)
       list(APPEND TYPES "host::Out<${TYPE}>")
+    elseif(ARGUMENT MATCHES "^list ([A-Z_]+) ?([a-z_]*)$")
+      set(PREFIX "${CMAKE_MATCH_2}")
+      string(TOLOWER ${CMAKE_MATCH_1} TYPE)
+      list(APPEND TYPES "kernels::${TYPE}")
+      if(PREFIX STREQUAL "")
+        set(PREFIX ${TYPE})
+      endif()
+      string(REGEX REPLACE "_$" "" PREFIX ${PREFIX})
+      list(APPEND NAMES ${PREFIX})
+      continue()
     elseif(ARGUMENT MATCHES "^([a-z_0-9]+) ([a-z_0-9]+)$")
       cpp_type(${CMAKE_MATCH_1} TYPE)
       list(APPEND TYPES "host::Value<${TYPE}>")
@@ -70,6 +82,31 @@ function(append_launcher NAME FORM ARGUMENTS)
     endif()
     list(APPEND NAMES ${CMAKE_MATCH_2})
   endforeach()
+  set(TYPES "${TYPES}" PARENT_SCOPE)
+  set(NAMES "${NAMES}" PARENT_SCOPE)
+endfunction()
+
+# Appends a struct for a list of arguments to LISTS, unless another launcher header has it.
+function(append_list LIST ARGUMENTS)
+  read_arguments(${LIST} "${ARGUMENTS}")
+  string(TOLOWER ${LIST} STRUCT)
+  set(MEMBERS "")
+  set(VISITS "")
+  foreach(TYPE MEMBER IN ZIP_LISTS TYPES NAMES)
+    string(APPEND MEMBERS "  ${TYPE} ${MEMBER};\n")
+    string(APPEND VISITS "    visit(${MEMBER});\n")
+  endforeach()
+  string(CONCAT STRUCT
+    "\n#ifndef FLAUNAY_LIST_${LIST}\n#define FLAUNAY_LIST_${LIST}\n"
+    "struct ${STRUCT} {\n${MEMBERS}\n"
+    "  template <typename Visit>\n"
+    "  void for_each_argument(const Visit& visit) const {\n${VISITS}  }\n};\n#endif\n")
+  set(LISTS "${LISTS}${STRUCT}" PARENT_SCOPE)
+endfunction()
+
+# Appends the launcher of a kernel to CODE. ARGUMENTS: the text of the arguments, separated by commas.
+function(append_launcher NAME FORM ARGUMENTS)
+  read_arguments(${NAME} "${ARGUMENTS}")
   if(FORM STREQUAL "")
     set(FORM Plain)
     foreach(CANDIDATE PerElement PerChunk)
@@ -88,7 +125,9 @@ function(append_launcher NAME FORM ARGUMENTS)
   set(VISITS "")
   foreach(TYPE MEMBER IN ZIP_LISTS TYPES NAMES)
     string(APPEND MEMBERS "  ${TYPE} ${MEMBER};\n")
-    if(NOT FORM STREQUAL "ArgReduce" OR NOT MEMBER MATCHES "^(segment|result)$")
+    if(TYPE MATCHES "^kernels::")
+      string(APPEND VISITS "    ${MEMBER}.for_each_argument(visit);\n")
+    elseif(NOT FORM STREQUAL "ArgReduce" OR NOT MEMBER MATCHES "^(segment|result)$")
       string(APPEND VISITS "    visit(${MEMBER});\n")
     endif()
   endforeach()
@@ -119,6 +158,24 @@ string(REGEX REPLACE "//[^\n]*" "" TEXT "${TEXT}")
 # Semicolons separate the elements of CMake's lists, so they are replaced.
 string(REPLACE ";" " " TEXT "${TEXT}")
 string(REGEX REPLACE "[][]" " " TEXT "${TEXT}")
+set(LISTS "")
+file(STRINGS ${DIRECTORY}/${FILE} INCLUDES REGEX "^#include \".*/arguments.h\"")
+foreach(INCLUDE IN LISTS INCLUDES)
+  string(REGEX REPLACE "^#include \"(.*)\"$" "\\1" INCLUDE "${INCLUDE}")
+  file(READ ${DIRECTORY}/${INCLUDE} MACROS)
+  string(REGEX REPLACE "[\\]\n" " " MACROS "${MACROS}")
+  string(REPLACE "PREFIX##" "" MACROS "${MACROS}")
+  string(REGEX MATCHALL "#define [A-Z_]+\\(PREFIX\\)[^\n]*" MACROS "${MACROS}")
+  foreach(MACRO IN LISTS MACROS)
+    string(REGEX MATCH "#define ([A-Z_]+)\\(PREFIX\\)(.*)" MACRO "${MACRO}")
+    set(LIST ${CMAKE_MATCH_1})
+    set(ARGUMENTS "${CMAKE_MATCH_2}")
+    if(TEXT MATCHES "[^A-Z_]${LIST}\\(")
+      append_list(${LIST} "${ARGUMENTS}")
+      string(REGEX REPLACE "([^A-Z_])${LIST}\\(([a-z_]*)\\)" "\\1list ${LIST} \\2" TEXT "${TEXT}")
+    endif()
+  endforeach()
+endforeach()
 string(REGEX MATCHALL "(kernel void [a-z_0-9]+|\nSEGMENTED_ARG_REDUCE)\\([^)]*\\)" SIGNATURES "${TEXT}")
 set(CODE "")
 set(NATIVE_CODE "")
@@ -130,12 +187,14 @@ foreach(SIGNATURE IN LISTS SIGNATURES)
   endif()
 endforeach()
 
+file(STRINGS ${DIRECTORY}/${FILE} RECORDS REGEX "^#include \".*/records.h\"")
+list(JOIN RECORDS "\n" RECORDS)
+string(APPEND RECORDS "\n")
 string(CONCAT HEADER
   "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n"
   "#pragma once\n\n"
-  "#include \"host/launch/kernel_arguments.hpp\"\n"
-  "#include \"kernels/shared/records.h\"\n\n"
-  "namespace flaunay::kernels {\n${CODE}\n}  // namespace flaunay::kernels\n")
+  "#include \"host/launch/kernel_arguments.hpp\"\n${RECORDS}\n"
+  "namespace flaunay::kernels {\n${LISTS}${CODE}\n}  // namespace flaunay::kernels\n")
 # Written only if it has changed, so that files that include it are compiled again only if a signature changed.
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "${HEADER}" @ONLY)
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "shared/limits.h"
+#include "operations/limits.h"
 
 namespace flaunay::host {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "shared/limits.h"
+#include "operations/limits.h"
 
 namespace flaunay::host {
 

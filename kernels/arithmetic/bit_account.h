@@ -6,9 +6,12 @@
 
 #include "arithmetic/language.h"
 #include "arithmetic/numbers.h"
-#include "shared/codes.h"
 
 BEGIN_SHARED
+
+// The exponents of a largest and a lowest bit before any coordinate is seen.
+INTEGER_CONSTANT(NO_LARGEST, -10000);
+INTEGER_CONSTANT(NO_LOWEST, 10000);
 
 // What coordinates have in common: the largest magnitude, as its bits, and the exponent of the lowest set bit.
 typedef struct {

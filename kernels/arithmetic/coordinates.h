@@ -5,7 +5,7 @@
 #include "arithmetic/bit_account.h"
 #include "arithmetic/language.h"
 #include "arithmetic/numbers.h"
-#include "shared/records.h"
+#include "arithmetic/records.h"
 
 BEGIN_SHARED
 

@@ -6,8 +6,9 @@
 
 #include "arithmetic/language.h"
 #include "arithmetic/numbers.h"
+#include "arithmetic/records.h"
+#include "blocks/records.h"
 #include "predicates/bounds.h"
-#include "shared/records.h"
 
 BEGIN_SHARED
 

@@ -6,12 +6,16 @@
 // leaves, so what a merge touches lies together. merge_blocks merges the two triangulations on either side of the cut
 // of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
 
+#include "blocks/arguments.h"
 #include "blocks/halving.h"
 #include "blocks/rings_account.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/prefetch.h"
 #include "points/cut_tree.h"
-#include "shared/codes.h"
+#include "points/records.h"
+#include "predicates/records.h"
 
 #define MOST_DEPTH 32
 #define FETCHED_VERTICES_AHEAD 256
@@ -120,11 +124,9 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
 // Solves the blocks of more than `larger` and at most `capacity` points. Each work-item's part of the scratch arrays
 // has room for `capacity` points. next: the next block to be taken; 0 at first.
 kernel void solve_blocks(int workers, int blocks, int capacity, int larger, global const int* restrict offsets,
-                         filter_bounds bounds, global volatile int* next, global coordinate2* points,
-                         global int* source, global int* representatives, global ring_edge* edges,
-                         global int* vertex_edge, global solved_block* solved, global int* distinct_counts,
-                         global volatile uint* account, global coordinate2* scratch_points, global int* scratch_source,
-                         global int2* scratch_ranks, global uchar* scratch_axes COUNTERS) {
+                         filter_bounds bounds, global volatile int* next, BLOCK_POINTS(), global ring_edge* edges,
+                         global int* vertex_edge, global volatile uint* account, BLOCK_SCRATCH(),
+                         global uchar* scratch_axes COUNTERS) {
   const int w = get_global_id(0);
   if (w < workers) {
     const long base = (long)w * capacity;

@@ -11,9 +11,12 @@
 // 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes nothing but what lies
 //    inside of one polygon.
 
+#include "blocks/codes.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/prefetch.h"
-#include "shared/codes.h"
+#include "predicates/records.h"
 
 // The third corner of the triangle left of edge e; NO_VERTEX if there is no such triangle. (For a set whose hull has
 // three corners that is also the third of them, seen from outside.)

@@ -12,12 +12,15 @@
 // If most blocks are tiny, halve_tiny_blocks, per block, does those of at most TINY_BLOCK points; flag_larger_blocks
 // and a scan list the others for the groups of halve_blocks.
 
+#include "blocks/arguments.h"
 #include "blocks/halving.h"
+#include "blocks/limits.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
 #include "predicates/order.h"
-#include "shared/limits.h"
 
 // A block's own arrays, which begin at its place in those of all points.
 typedef struct {
@@ -357,9 +360,8 @@ static inline int axis_of_tiny(int count, global const coordinate2* points) {
 }
 
 // n blocks, of which those of at most TINY_BLOCK points become what halve_blocks would make of them.
-kernel void halve_tiny_blocks(int n, global const int* restrict offsets, global coordinate2* points, global int* source,
-                              global int* representatives, global solved_block* solved, global int* distinct_counts,
-                              global uchar* axes, global coordinate2* scratch_points, global int* scratch_source) {
+kernel void halve_tiny_blocks(int n, global const int* restrict offsets, BLOCK_POINTS(), global uchar* axes,
+                              global coordinate2* scratch_points, global int* scratch_source) {
   const int b = get_global_id(0);
   const int first = b < n ? offsets[b] : 0, count = b < n ? offsets[b + 1] - first : 0;
   if (b < n && count <= TINY_BLOCK) {
@@ -392,10 +394,7 @@ kernel void halve_tiny_blocks(int n, global const int* restrict offsets, global 
 // are_listed: the groups take the blocks that flag_larger_blocks has flagged; larger_blocks: the flags' prefix sums.
 kernel void halve_blocks(int blocks, int are_listed, global const uint* restrict larger_blocks, int capacity,
                          int largest, global const int* restrict offsets, global const uint* restrict scanned,
-                         global coordinate2* points, global int* source, global int* representatives,
-                         global solved_block* solved, global int* distinct_counts, global uchar* axes,
-                         global coordinate2* scratch_points, global int* scratch_source, global int2* scratch_ranks,
-                         global int* scratch_lows) {
+                         BLOCK_POINTS(), global uchar* axes, BLOCK_SCRATCH(), global int* scratch_lows) {
   local uint sums[LARGEST_GROUP];
   const int me = get_local_id(0), lanes = get_local_size(0);
   const int b = are_listed ? listed_block(get_group_id(0), blocks, larger_blocks) : (int)get_group_id(0);

@@ -8,7 +8,10 @@
 #define FLAUNAY_HALVES_H
 
 #include "blocks/halving.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
+#include "points/records.h"
 
 BEGIN_SHARED
 

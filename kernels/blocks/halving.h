@@ -5,7 +5,7 @@
 
 #include "arithmetic/language.h"
 #include "arithmetic/numbers.h"
-#include "shared/limits.h"
+#include "mesh/limits.h"
 
 BEGIN_SHARED
 

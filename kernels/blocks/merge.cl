@@ -8,13 +8,15 @@
 // that continue merges have the same arguments; the account is theirs alone.
 
 #define RINGS_STOP
+#include "blocks/arguments.h"
 #include "blocks/halves.h"
+#include "mesh/records.h"
 #include "operations/work_group.h"
 #include "points/cut_tree.h"
+#include "points/records.h"
+#include "predicates/records.h"
 
-kernel void merge_parts(int n, int spread, int height, int places, global const int* restrict offsets,
-                        global const int* restrict distinct, global const int* restrict block_of_place,
-                        global const uchar* restrict axes, filter_bounds bounds, global const coordinate2* points,
+kernel void merge_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                         global solved_block* solved, global int* restrict states,
                         global volatile uint* account COUNTERS) {

@@ -4,15 +4,18 @@
 
 // Compiled in half the time, and these are called rarely.
 #define OUT_OF_LINE __attribute__((noinline))
+#include "blocks/arguments.h"
 #include "blocks/halves.h"
+#include "blocks/records.h"
 #include "blocks/rings_account.h"
 #include "blocks/seams.h"
+#include "mesh/records.h"
 #include "operations/work_group.h"
 #include "points/cut_tree.h"
+#include "points/records.h"
+#include "predicates/records.h"
 
-kernel void finish_parts(int n, int spread, int height, int places, global const int* restrict offsets,
-                         global const int* restrict distinct, global const int* restrict block_of_place,
-                         global const uchar* restrict axes, filter_bounds bounds, global const coordinate2* points,
+kernel void finish_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                          global solved_block* solved, global int* restrict states,
                          global volatile uint* account COUNTERS) {
@@ -26,9 +29,7 @@ kernel void finish_parts(int n, int spread, int height, int places, global const
   }
 }
 
-kernel void finish_walks(int n, int spread, int height, int places, global const int* restrict offsets,
-                         global const int* restrict distinct, global const int* restrict block_of_place,
-                         global const uchar* restrict axes, filter_bounds bounds, global const coordinate2* points,
+kernel void finish_walks(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                          global solved_block* solved, global int2* restrict crossings, global uchar* restrict removed,
                          global seam_walk* restrict walks, global volatile uint* account COUNTERS) {

@@ -9,6 +9,8 @@
 
 #include "blocks/rows.h"
 #include "mesh/halfedges.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/prefetch.h"
 

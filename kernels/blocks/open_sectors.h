@@ -8,8 +8,8 @@
 #define FLAUNAY_OPEN_SECTORS_H
 
 #include "arithmetic/language.h"
+#include "blocks/records.h"
 #include "predicates/planar.h"
-#include "shared/records.h"
 
 BEGIN_SHARED
 

@@ -2,8 +2,8 @@
 #ifndef FLAUNAY_RINGS_ACCOUNT_H
 #define FLAUNAY_RINGS_ACCOUNT_H
 
+#include "blocks/codes.h"
 #include "mesh/rings.h"
-#include "shared/codes.h"
 
 BEGIN_SHARED
 

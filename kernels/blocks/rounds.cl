@@ -22,14 +22,20 @@
 // measure_open and measure_sets tell the host how large the sets' parts are.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
+#include "blocks/arguments.h"
 #include "blocks/certify.h"
+#include "blocks/limits.h"
 #include "blocks/open_sectors.h"
+#include "blocks/records.h"
 #include "blocks/rows.h"
 #include "mesh/halfedges.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/search.h"
 #include "points/cut_tree.h"
-#include "shared/limits.h"
+#include "points/records.h"
 
 static inline vertex_box joined_boxes(vertex_box a, vertex_box b) {
   vertex_box both;
@@ -91,12 +97,11 @@ static inline void find_outside(hull_ends ends, global const ring_edge* edges, g
 // n blocks: the leaves of each set's tree, whose nodes begin at set_nodes. is_merged: the first block of each set has
 // the set's triangulation. set_boxes: where each set has its box. The hull of a single vertex, which has no edges, is
 // written here.
-kernel void frame_blocks(int n, int sets, int is_merged, global const int* restrict set_blocks,
-                         global const int* restrict set_nodes, global const cut_node* restrict nodes, scaling scale,
-                         global const solved_block* restrict solved, global const int* restrict set_boxes,
-                         global const vertex_box* restrict boxes, global const ring_edge* restrict edges,
-                         global const int* restrict vertex_edge, global const int* restrict vertices,
-                         global int* restrict hull_next, global block_frame* restrict frames) {
+kernel void frame_blocks(int n, CUT_SETS(), int is_merged, scaling scale, global const solved_block* restrict solved,
+                         global const int* restrict set_boxes, global const vertex_box* restrict boxes,
+                         global const ring_edge* restrict edges, global const int* restrict vertex_edge,
+                         global const int* restrict vertices, global int* restrict hull_next,
+                         global block_frame* restrict frames) {
   const int b = get_global_id(0);
   if (b < n) {
     const int s = segment_of(b, sets, set_blocks);
@@ -240,11 +245,9 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
 }
 
 // n pairs of edges.
-kernel void emit_triangles(int n, int is_first, filter_bound bound, int blocks, global const int* restrict offsets,
+kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int blocks, global const int* restrict offsets,
                            global const block_frame* restrict frames, global const coordinate2* restrict points,
-                           global const ring_edge* restrict edges, global const int* restrict vertices,
-                           global const int* restrict listed, global const int* restrict open_offsets,
-                           global const open_edge* restrict open_edges, global const coordinate2* all_points,
+                           global const ring_edge* restrict edges, global const coordinate2* all_points,
                            global const int* restrict indices, global int* restrict places, global int* states,
                            global int* restrict hull_next, global int* restrict hull_previous) {
   const int k = get_global_id(0);
@@ -264,11 +267,9 @@ kernel void emit_triangles(int n, int is_first, filter_bound bound, int blocks, 
 }
 
 // n pairs of edges.
-kernel void emit_unsure(int n, int is_first, filter_bound bound, int blocks, global const int* restrict offsets,
+kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, int blocks, global const int* restrict offsets,
                         global const block_frame* restrict frames, global const coordinate2* restrict points,
-                        global const ring_edge* restrict edges, global const int* restrict vertices,
-                        global const int* restrict listed, global const int* restrict open_offsets,
-                        global const open_edge* restrict open_edges, global const coordinate2* all_points,
+                        global const ring_edge* restrict edges, global const coordinate2* all_points,
                         global const int* restrict indices, global int* restrict places, global int* states,
                         global int* restrict hull_next, global int* restrict hull_previous) {
   const int k = get_global_id(0);
@@ -286,9 +287,7 @@ kernel void emit_unsure(int n, int is_first, filter_bound bound, int blocks, glo
 }
 
 // n pairs of edges. links: the corner on the other side of the edge opposite to each corner.
-kernel void link_triangles(int n, int is_first, global const ring_edge* restrict edges,
-                           global const int* restrict vertices, global const int* restrict listed,
-                           global const int* restrict open_offsets, global const open_edge* restrict open_edges,
+kernel void link_triangles(int n, OPEN_VERTICES(), global const ring_edge* restrict edges,
                            global const int* restrict states, global int* restrict links) {
   const int k = get_global_id(0);
   if (k < n) {
@@ -383,11 +382,9 @@ static inline open_list open_list_of(int k, int is_first, global const int* list
 
 // Counts each vertex that goes on, and its open edges. n places; in the first round, the first `distinct` of each block
 // are vertices, later all, also those of blocks that were left unsolved. Nothing goes on of sets of one block.
-kernel void count_open(int n, int is_first, int sets, int blocks, global const int* restrict set_blocks,
+kernel void count_open(int n, OPEN_VERTICES(), int sets, int blocks, global const int* restrict set_blocks,
                        global const int* restrict offsets, global const int* restrict distinct,
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
-                       global const int* restrict vertices, global const int* restrict listed,
-                       global const int* restrict open_offsets, global const open_edge* restrict open_edges,
                        global const int* restrict states, global uint2* restrict counts) {
   const int k = get_global_id(0);
   if (k < n) {
@@ -405,10 +402,8 @@ kernel void count_open(int n, int is_first, int sets, int blocks, global const i
 }
 
 // Writes the points that go on, in their order, and their open edges. n places.
-kernel void write_open(int n, int is_first, global const coordinate2* restrict points,
+kernel void write_open(int n, OPEN_VERTICES(), global const coordinate2* restrict points,
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
-                       global const int* restrict vertices, global const int* restrict listed,
-                       global const int* restrict open_offsets, global const open_edge* restrict open_edges,
                        global const int* restrict states, global const uint2* restrict scanned,
                        global coordinate2* restrict next_points, global int* restrict next_vertices,
                        global int* restrict next_offsets, global open_edge* restrict next_edges) {

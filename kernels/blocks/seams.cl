@@ -11,15 +11,20 @@
 #ifndef FIXED_POINT
 #define RINGS_STOP
 #endif
+#include "blocks/arguments.h"
+#include "blocks/codes.h"
 #include "blocks/halves.h"
+#include "blocks/limits.h"
+#include "blocks/records.h"
 #include "blocks/rings_account.h"
 #include "blocks/seams.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
+#include "operations/limits.h"
 #include "operations/work_group.h"
-#include "shared/codes.h"
+#include "predicates/records.h"
 
-kernel void walk_seams(int n, int spread, int height, int places, global const int* restrict offsets,
-                       global const int* restrict distinct, global const int* restrict block_of_place,
-                       global const uchar* restrict axes, filter_bounds bounds,
+kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds,
                        global const coordinate2* restrict points, global ring_edge* restrict edges,
                        global int* restrict vertex_edge, global solved_block* restrict parts,
                        global solved_block* restrict solved, global int2* restrict crossings,
@@ -102,11 +107,10 @@ static inline void sew_crossing(const sewing* s, int i) {
   sew_half(s, i, ends.y, ends.x, 1, s->seam.up.right_edge, s->seam.down.left_edge, is_long && lowest.y == highest.y);
 }
 
-kernel void sew_seams(int height, int places, global const int* restrict offsets, global const int* restrict distinct,
-                      global const int* restrict block_of_place, global const uchar* restrict axes,
-                      global const coordinate2* restrict points, global const int2* restrict crossings,
-                      global const seam_walk* restrict walks, global ring_edge* edges, global int* vertex_edge,
-                      global solved_block* parts, global solved_block* solved, global uchar* removed, global int* slots,
+kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict points,
+                      global const int2* restrict crossings, global const seam_walk* restrict walks,
+                      global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
+                      global solved_block* solved, global uchar* removed, global int* slots,
                       global volatile uint* account) {
   local uint sums[LARGEST_TILE_GROUP];
   local int meets;  // the downward walk's edge that is the last one of the upward walk, or -1

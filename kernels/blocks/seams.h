@@ -12,6 +12,10 @@
 
 #include "arithmetic/language.h"
 #include "blocks/halves.h"
+#include "blocks/limits.h"
+#include "blocks/records.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 
 BEGIN_SHARED

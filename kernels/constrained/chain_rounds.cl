@@ -17,7 +17,9 @@
 // plus the number of ancestors whose left children lead to it. Vertex j is the apex of one triangle, so this number is
 // one more for k = j: link_apexes and jump_apexes find it by pointer jumping. write_chain_rows writes the triangles.
 
+#include "constrained/arguments.h"
 #include "constrained/chains.h"
+#include "constrained/records.h"
 #include "operations/counting.h"
 #include "operations/search.h"
 
@@ -187,12 +189,10 @@ static inline int is_missing(const polygon* g, int v) { return v > 0 && v < g->l
 
 // A vertex that takes no triangle away claims the one that it is joined to. hubs: those that are found in pass p become
 // p + 1.
-kernel void claim_triangles(int n, int round, int pass, int longest_walk, filter_bound bound,
-                            global const int* restrict offsets, global const int* restrict of,
-                            global const coordinate2* restrict places, global chain_vertex* restrict vertices,
-                            global chain_edge* restrict edges, global const uchar* restrict stages,
-                            global uchar* restrict hubs, global volatile uint* restrict owners,
-                            global uchar* restrict roles, global volatile uint* restrict state COUNTERS) {
+kernel void claim_triangles(int n, int round, int pass, int longest_walk, filter_bound bound, WORKED_CHAINS(),
+                            global const uchar* restrict stages, global uchar* restrict hubs,
+                            global volatile uint* restrict owners, global uchar* restrict roles,
+                            global volatile uint* restrict state COUNTERS) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
@@ -242,12 +242,9 @@ static inline int has_all(const polygon* g, int v, uint key, global const uint* 
 }
 
 // Vertices that lose wait. Clears the owners of the next round. state[0]: how many vertices are left, if counts.
-kernel void choose_vertices(int n, int round, int counts, global const int* restrict offsets,
-                            global const int* restrict of, global const coordinate2* restrict places,
-                            global chain_vertex* restrict vertices, global chain_edge* restrict edges,
-                            global const uchar* restrict stages, global const uint* restrict owners,
-                            global uint* restrict next_owners, global uchar* restrict roles,
-                            global volatile uint* restrict state) {
+kernel void choose_vertices(int n, int round, int counts, WORKED_CHAINS(), global const uchar* restrict stages,
+                            global const uint* restrict owners, global uint* restrict next_owners,
+                            global uchar* restrict roles, global volatile uint* restrict state) {
   const int i = get_global_id(0);
   if (i >= n) return;
   next_owners[i] = NO_OWNER;
@@ -261,9 +258,7 @@ kernel void choose_vertices(int n, int round, int counts, global const int* rest
   if (counts && role == WAITS && is_missing(&g, v)) atomic_inc(&state[0]);
 }
 
-kernel void insert_vertices(int n, int round, global const int* restrict offsets, global const int* restrict of,
-                            global const coordinate2* restrict places, global chain_vertex* restrict vertices,
-                            global chain_edge* restrict edges, global const uchar* restrict stages,
+kernel void insert_vertices(int n, int round, WORKED_CHAINS(), global const uchar* restrict stages,
                             global const uint* restrict owners, global const uchar* restrict roles) {
   const int i = get_global_id(0);
   if (i >= n || roles[i] == WAITS) return;
@@ -278,10 +273,7 @@ kernel void insert_vertices(int n, int round, global const int* restrict offsets
 // ---------------------------------------------------------------------------------------------------------------------
 // The result
 
-kernel void check_triangles(int n, filter_bound bound, global const int* restrict offsets,
-                            global const int* restrict of, global const coordinate2* restrict places,
-                            global chain_vertex* restrict vertices, global chain_edge* restrict edges,
-                            global volatile uint* restrict wrong) {
+kernel void check_triangles(int n, filter_bound bound, WORKED_CHAINS(), global volatile uint* restrict wrong) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
@@ -298,9 +290,7 @@ static inline int3 ascending(const polygon* g, int triangle) {
 }
 
 // jumps: per vertex, one whose number of ancestors is known to be so much less.
-kernel void link_apexes(int n, global const int* restrict offsets, global const int* restrict of,
-                        global const coordinate2* restrict places, global chain_vertex* restrict vertices,
-                        global chain_edge* restrict edges, global int2* restrict jumps) {
+kernel void link_apexes(int n, WORKED_CHAINS(), global int2* restrict jumps) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first;
@@ -321,12 +311,9 @@ kernel void jump_apexes(int n, global const int2* restrict jumps, global int2* r
 }
 
 // Chains that are wrong are gift-wrapped, by the work-items of their first vertices.
-kernel void write_chain_rows(int n, filter_bound bound, global const int* restrict chains,
-                             global const int* restrict offsets, global const int* restrict all,
-                             global const int* restrict of, global const coordinate2* restrict places,
-                             global chain_vertex* restrict vertices, global chain_edge* restrict edges,
-                             global const int2* restrict jumps, global const uint* restrict wrong,
-                             global int* restrict triangles) {
+kernel void write_chain_rows(int n, filter_bound bound, global const int* restrict chains, WORKED_CHAINS(),
+                             global const int* restrict all, global const int2* restrict jumps,
+                             global const uint* restrict wrong, global int* restrict triangles) {
   const int i = get_global_id(0);
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first, c = chains[of[i]];

@@ -11,6 +11,7 @@
 // work-item per chain. Short chains are gift-wrapped; of longer ones it inserts the vertices in random order.
 
 #include "constrained/chains.h"
+#include "constrained/records.h"
 
 kernel void gather_vertices(int n, int count, global const int* restrict offsets,
                             global const coordinate2* restrict points, global const int* restrict chain,

@@ -7,6 +7,7 @@
 #ifndef FLAUNAY_CHAINS_H
 #define FLAUNAY_CHAINS_H
 
+#include "constrained/records.h"
 #include "mesh/halfedges.h"
 #include "predicates/bounds.h"
 #include "predicates/planar.h"

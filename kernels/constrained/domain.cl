@@ -20,6 +20,7 @@
 
 #include "arithmetic/bit_account.h"
 #include "arithmetic/language.h"
+#include "constrained/arguments.h"
 #include "constrained/domains.h"
 #include "constrained/meanwhile.h"
 
@@ -229,8 +230,7 @@ kernel void count_borders(int n, global const int* restrict neighbors, global co
 
 // Each border has two regions, of which the first is -1 if it is the outside; steps: what is crossed from the first one
 // to the second one, if the rule is not nesting.
-kernel void write_borders(int n, int rule, int mask, global const int* restrict triangles,
-                          global const int* restrict neighbors, global const uchar* restrict constrained,
+kernel void write_borders(int n, int rule, int mask, TRIANGULATION(), global const uchar* restrict constrained,
                           global const int* restrict regions, global const uint* restrict places,
                           global const double_bits* restrict input, global const uint* restrict needed,
                           global const uint* restrict sums, global const int* restrict edges,
@@ -318,11 +318,11 @@ kernel void find_offsets(int n, global const int* restrict triangle_offsets, glo
 }
 
 // places: of triangles; numbers: of regions, both scans of what is left.
-kernel void write_left(int n, global const int* restrict triangles, global const int* restrict neighbors,
-                       global const uchar* restrict constrained, global const int* restrict regions,
-                       global const uint* restrict places, global const uint* restrict numbers,
-                       global int* restrict left_triangles, global int* restrict left_neighbors,
-                       global uchar* restrict left_constrained, global int* restrict left_regions) {
+kernel void write_left(int n, TRIANGULATION(), global const uchar* restrict constrained,
+                       global const int* restrict regions, global const uint* restrict places,
+                       global const uint* restrict numbers, global int* restrict left_triangles,
+                       global int* restrict left_neighbors, global uchar* restrict left_constrained,
+                       global int* restrict left_regions) {
   const int t = get_global_id(0);
   if (t < n && places[t] != places[t + 1]) {
     const uint to = places[t];

@@ -5,8 +5,8 @@
 #include "arithmetic/coordinates.h"
 #include "arithmetic/language.h"
 #include "operations/search.h"
+#include "points/records.h"
 #include "predicates/planar.h"
-#include "shared/records.h"
 
 #ifndef FIXED_POINT
 

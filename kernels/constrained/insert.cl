@@ -25,15 +25,16 @@
 #endif
 
 #include "arithmetic/language.h"
+#include "constrained/arguments.h"
+#include "constrained/codes.h"
+#include "constrained/limits.h"
 #include "constrained/meanwhile.h"
+#include "constrained/records.h"
 #include "constrained/segment_walks.h"
 #include "mesh/halfedges.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
 #include "predicates/planar.h"
-#include "shared/codes.h"
-#include "shared/limits.h"
-#include "shared/records.h"
 
 // A random number below RANK_WON for each number below that, each once.
 static inline uint rank_of(int constraint) {
@@ -172,8 +173,7 @@ FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walke
 // n keys of segments, see segments.cl. flags: bytes, four in each word. ends: of the first piece, the lexicographically
 // smaller one first. Stops at limits of pieces and of rows, of all segments together.
 kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound bound,
-                          global const coordinate* restrict points, global const int* restrict triangles,
-                          global const int* restrict neighbors, global const int* restrict hull,
+                          global const coordinate* restrict points, TRIANGULATION(), global const int* restrict hull,
                           global const ulong* restrict keys, global volatile uint* restrict claims,
                           global volatile uint* restrict flags, global constraint_walk* restrict walks,
                           global int* restrict ends, global uint* restrict pieces, global uint2* restrict sizes,
@@ -234,8 +234,7 @@ kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound 
 
 // The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
 // claims: of which nothing is used any more.
-kernel void write_pieces(int n, filter_bound bound, global const coordinate* restrict points,
-                         global const int* restrict triangles, global const int* restrict neighbors,
+kernel void write_pieces(int n, filter_bound bound, global const coordinate* restrict points, TRIANGULATION(),
                          global const int* restrict hull, global const ulong* restrict keys,
                          global const uint* restrict offsets, global volatile uint* restrict claims,
                          global int* restrict ends) {
@@ -356,8 +355,7 @@ static inline int hold_edge(int corner, uint rank, global const int* neighbors, 
 // offsets: of the entries. lefts: how many of these are on the left.
 kernel void choose_constraints(int n, filter_bound bound, global const int* restrict list,
                                global const uint* restrict offsets, global const coordinate* restrict points,
-                               global const int* restrict triangles, global const int* restrict neighbors,
-                               global const uint* restrict claims, global const uchar* restrict flags,
+                               TRIANGULATION(), global const uint* restrict claims, global const uchar* restrict flags,
                                global constraint_walk* restrict walks, global uchar* restrict outcomes,
                                global int* restrict lefts, global chain_entry* restrict entries,
                                global volatile uint* restrict status) {
@@ -486,10 +484,7 @@ static inline void fill_chain(int size, global chain_entry* chain, global const 
 kernel void fill_cavities(int n, uint mark, filter_bound bound, global const int* restrict list,
                           global const uint* restrict offsets, global const uchar* restrict outcomes,
                           global const int* restrict lefts, global const constraint_walk* restrict walks,
-                          global const coordinate* restrict points, global int* restrict triangles,
-                          global int* restrict neighbors, global uint* restrict claims, global uchar* restrict flags,
-                          global uchar* restrict changed, global int* restrict new_corners,
-                          global chain_entry* restrict entries) {
+                          global const coordinate* restrict points, REBUILT_ROWS()) {
   const int i = get_global_id(0);
 #if FETCH_AHEAD
   if (i + CAVITIES_AHEAD < n && outcomes[i + CAVITIES_AHEAD] == CONSTRAINT_FITS) {
@@ -578,8 +573,7 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
 // The constraints of the list that have not won walk and claim again. sizes: as those of walk_segments.
 kernel void walk_constraints(int n, filter_bound bound, global const int* restrict list,
                              global const uchar* restrict outcomes, global const coordinate* restrict points,
-                             global const int* restrict triangles, global const int* restrict neighbors,
-                             global const uint* restrict places, global volatile uint* restrict claims,
+                             TRIANGULATION(), global const uint* restrict places, global volatile uint* restrict claims,
                              global constraint_walk* restrict walks, global uint2* restrict sizes,
                              global volatile uint* restrict status) {
   const int i = get_global_id(0);
@@ -638,8 +632,7 @@ kernel void measure_long(int n, global const int* restrict winners, global const
 // offsets: the scanned counts. chain_offsets: where the chains begin, two per winner, and their end.
 kernel void gather_long(int n, filter_bound bound, global const int* restrict winners, global const int* restrict list,
                         global const uint* restrict offsets, global const constraint_walk* restrict walks,
-                        global const coordinate* restrict points, global const int* restrict triangles,
-                        global const int* restrict neighbors, global const uint* restrict claims,
+                        global const coordinate* restrict points, TRIANGULATION(), global const uint* restrict claims,
                         global const uchar* restrict flags, global chain_entry* restrict entries,
                         global int* restrict chain_offsets) {
   const int i = get_global_id(0);
@@ -663,10 +656,7 @@ kernel void chain_vertices(int n, global const chain_entry* restrict entries, gl
 
 // n triangles of all chains, three positions in the chain each.
 kernel void fill_long(int n, uint mark, int chains, global const int* restrict chain_offsets,
-                      global const int* restrict chain_triangles, global int* restrict triangles,
-                      global int* restrict neighbors, global uint* restrict claims, global uchar* restrict flags,
-                      global uchar* restrict changed, global int* restrict new_corners,
-                      global chain_entry* restrict entries) {
+                      global const int* restrict chain_triangles, REBUILT_ROWS()) {
   const int t = get_global_id(0);
   if (t < n) {
     // The last chain whose triangles begin here or before.

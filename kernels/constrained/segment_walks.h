@@ -5,9 +5,9 @@
 #define FLAUNAY_SEGMENT_WALKS_H
 
 #include "arithmetic/language.h"
+#include "constrained/limits.h"
 #include "mesh/halfedges.h"
 #include "predicates/planar.h"
-#include "shared/limits.h"
 
 BEGIN_SHARED
 

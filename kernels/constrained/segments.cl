@@ -16,11 +16,11 @@
 //   write_segments.
 
 #include "arithmetic/language.h"
+#include "constrained/codes.h"
 #include "constrained/meanwhile.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
 #include "predicates/planar.h"
-#include "shared/codes.h"
 
 #define NO_KEY 0xffffffffffffffffUL
 

@@ -6,10 +6,10 @@
 // upper side in descending order; the smallest and the largest id are on both sides. If a set is collinear, all its
 // points are on both sides. Each kernel is one pass, with one work-item per point, set or border vertex.
 
+#include "flattened/codes.h"
 #include "flattened/frame.h"
 #include "operations/counting.h"
 #include "operations/search.h"
-#include "shared/codes.h"
 
 // Elements [2 * offsets[s], 2 * offsets[s + 1]) of the doubled list: the set's ids up, then down.
 kernel void doubled_lists(int n, global const int* restrict set_of_id, global const int* restrict offsets,

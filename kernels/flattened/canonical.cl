@@ -8,9 +8,9 @@
 // logarithm of the longest cycle. fan_flags and fan_write replace the cells' triangles. The other kernels are one pass
 // each, with one work-item per half-edge.
 
+#include "flattened/codes.h"
 #include "mesh/halfedges.h"
 #include "predicates/planar.h"
-#include "shared/codes.h"
 
 // The in-circle test of the apexes beside half-edge h and its twin: 0 if they are cocircular, 1 if the edge is not
 // Delaunay, UNDECIDED.

@@ -20,12 +20,14 @@
 // The kernels but hull_chains and write_paths have one work-item per element, or share elements whose number only the
 // device knows.
 
+#include "flattened/arguments.h"
+#include "flattened/codes.h"
 #include "flattened/frame.h"
 #include "flattened/hull_height.h"
+#include "flattened/limits.h"
+#include "operations/limits.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
-#include "shared/codes.h"
-#include "shared/limits.h"
 
 // Where the list of region r begins that is made of lists with these offsets: a place for each BUCKET points and one
 // for the rest, so that no list is empty.
@@ -251,13 +253,9 @@ static inline int count_kept_before(double u, int with_equal, int low, int high,
 
 // Of one u, path vertices come first, then internal points, then corners.
 kernel void join_sequences(int regions_count, global const int2* restrict before, global const int* restrict begins,
-                           global const int* restrict positions, global const int* restrict regions,
-                           global const int* restrict x_list, global const int* restrict y_list,
-                           global const double2* restrict point_projections, global const int* restrict axis,
-                           global const int* restrict path_offsets, global const int* restrict path,
-                           global const int* restrict path_regions, global const double2* restrict path_projections,
-                           global const int* restrict corner_ids, global const int* restrict corner_owners,
-                           global const double2* restrict corner_projections, global int* restrict ids,
+                           global const int* restrict positions, global const int* restrict regions, LISTS(),
+                           global const double2* restrict point_projections, global const int* restrict axis, PATHS(),
+                           global const int* restrict path_regions, CORNERS_TO_JOIN(), global int* restrict ids,
                            global double2* restrict projections) {
   const int vertices = path_offsets[regions_count];
   const int kept = before[regions_count].x;

@@ -7,7 +7,7 @@
 
 #include "flattened/hull_height.h"
 #include "operations/counting.h"
-#include "shared/limits.h"
+#include "operations/limits.h"
 
 kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets,
                         global const int* restrict x_list, global const int* restrict y_list,

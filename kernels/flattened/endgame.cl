@@ -6,8 +6,9 @@
 // triangles dense, by the scanned counts. Each kernel is one pass, with one work-item per region.
 
 #define EXACT 0
+#include "flattened/codes.h"
 #include "flattened/region_triangles.h"
-#include "shared/codes.h"
+#include "predicates/records.h"
 
 // status: 0 done, FLAG_UNDECIDED or FLAG_TOO_LARGE. broken[0] gets BROKEN_BORDER if a border is broken.
 kernel void small_regions(int n, filter_bounds bounds, global const int* restrict offsets,

@@ -2,8 +2,9 @@
 // over a packed list, with one work-item per region.
 
 #define EXACT 1
+#include "flattened/codes.h"
 #include "flattened/region_triangles.h"
-#include "shared/codes.h"
+#include "predicates/records.h"
 
 kernel void small_regions_exact(global const uint* restrict count, global const int* restrict list,
                                 filter_bounds bounds, global const int* restrict offsets,

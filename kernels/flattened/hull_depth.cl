@@ -3,8 +3,8 @@
 // One pass, with one work-item per element. Few are undecided as a rule, so that a list of them would take more
 // launches than it would save work.
 
+#include "flattened/codes.h"
 #include "flattened/hull_height.h"
-#include "shared/codes.h"
 
 // Decides the elements with FLAG_UNDECIDED, and adds their number to undecided[0]: point ids[i] against the chord from
 // path vertex chord[i] to the next one; with own_path, path vertex i against the chord of its neighbours.

@@ -5,6 +5,7 @@
 // the set of each id. Each kernel is one pass over the points of all sets, with one work-item per point.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "operations/search.h"
 
 kernel void keys_y(int n, global const double2* restrict input, scaling scale, global ulong* restrict keys,

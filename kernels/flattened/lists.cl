@@ -5,9 +5,9 @@
 // work-item per point. list_counts, list_bounds and list_split then write the children's lists, stably. They are one
 // pass each, with one work-item per chunk, and a scan (scan.cl) follows the first.
 
+#include "flattened/codes.h"
 #include "flattened/frame.h"
 #include "operations/counting.h"
-#include "shared/codes.h"
 
 // broken[0] gets BROKEN_PATH if a point on the cut line is not on the path, which would be a bug.
 kernel void point_sides(int n, global const int* restrict list, global const int* restrict regions,

@@ -6,11 +6,12 @@
 // does the same for internal points on the path. children.cl lays out the children, and emit_corners and emit_path
 // write their corners. Each kernel is one pass, with one work-item per corner or path vertex.
 
+#include "flattened/arguments.h"
+#include "flattened/codes.h"
 #include "flattened/frame.h"
 #include "operations/counting.h"
 #include "operations/search.h"
 #include "predicates/planar.h"
-#include "shared/codes.h"
 
 // A corner's code: the child it goes to (0, 1), if its vertex is off the path; CODE_UNDECIDED; else CODE_ON_PATH and
 // how the path's two edges at the vertex lie in the corner's wedge. Angles are counter-clockwise from the edge to
@@ -112,10 +113,7 @@ static inline int code_on_path(path_vertex* v, int before_id, double2 before, in
 // place: the corner's vertex on its region's path, or -1.
 // kept[points_count + i]: 0 if prune found that corner i's vertex is not on the path.
 kernel void corner_codes(int n, int points_count, filter_bound bound, global const uchar* restrict kept,
-                         global const int* restrict corners, global const int* restrict regions,
-                         global const int* restrict axis, global const double* restrict cut,
-                         global const double2* restrict points, global const int* restrict path_offsets,
-                         global const int* restrict path, global const double2* restrict path_projections,
+                         global const int* restrict corners, global const int* restrict regions, CUTS(), PATHS(),
                          global int* restrict places, global uchar* restrict codes COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {

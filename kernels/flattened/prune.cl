@@ -13,11 +13,12 @@
 // together by their chords. Or it begins with the ends of the hull alone: begin_paths and gather_points bring flagged
 // elements together by region.
 
+#include "flattened/arguments.h"
+#include "flattened/codes.h"
 #include "flattened/hull_height.h"
+#include "flattened/limits.h"
 #include "operations/counting.h"
 #include "operations/search.h"
-#include "shared/codes.h"
-#include "shared/limits.h"
 
 kernel void candidate_flags(int n, int elements, global const int* restrict regions,
                             global const double2* restrict projections, global uchar* restrict flags COUNTERS) {
@@ -90,14 +91,8 @@ kernel void chord_bands(int n, int regions, global const int* restrict path_offs
 // that is not dropped, chord is the path vertex whose chord it is held against, and depth is its depth below that
 // chord. ids is written for undecided points only. rough: keeps undecided points, and writes nothing but flags.
 kernel void prune_points(int n, int elements, int keep_on, int rough, filter_bound bound,
-                         global const int* restrict regions, global const int* restrict x_list,
-                         global const int* restrict y_list, global const double2* restrict projections,
-                         global const int* restrict axis, global const double* restrict cut,
-                         global const double2* restrict points, global const double* restrict band,
-                         global const int* restrict path_offsets, global const int* restrict path,
-                         global const double2* restrict path_projections, global int* restrict ids,
-                         global int* restrict chord, global double* restrict depth,
-                         global uchar* restrict flags COUNTERS) {
+                         global const int* restrict regions, LISTS(), global const double2* restrict projections,
+                         CUTS(), global const double* restrict band, PATHS(), CANDIDATES() COUNTERS) {
   const int bucket = get_global_id(0);
   if (bucket < n) {
     const int end = min(elements, (bucket + 1) * BUCKET);
@@ -146,13 +141,8 @@ kernel void prune_points(int n, int elements, int keep_on, int rough, filter_bou
 
 // Corners' vertices: element points_count + i is corner i. rough: as in prune_points.
 kernel void prune_corners(int n, int points_count, int rough, filter_bound bound,
-                          global const int* restrict corner_regions, global const int* restrict corners,
-                          global const int* restrict axis, global const double* restrict cut,
-                          global const double2* restrict points, global const double* restrict band,
-                          global const int* restrict path_offsets, global const int* restrict path,
-                          global const double2* restrict path_projections, global int* restrict ids,
-                          global int* restrict chord, global double* restrict depth,
-                          global uchar* restrict flags COUNTERS) {
+                          global const int* restrict corner_regions, global const int* restrict corners, CUTS(),
+                          global const double* restrict band, PATHS(), CANDIDATES() COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int r = corner_regions[i];
@@ -183,11 +173,10 @@ kernel void prune_corners(int n, int points_count, int rough, filter_bound bound
 // r; internal points come first in each region. first: where the points below each path vertex's chord begin.
 kernel void begin_paths(int n, int points_count, int kept, global const int* restrict positions,
                         global const int* restrict point_offsets, global const int* restrict corner_offsets,
-                        global const int* restrict first_end, global const int* restrict last_end,
-                        global const int* restrict axis, global const double* restrict cut,
-                        global const double2* restrict points, global int* restrict path,
-                        global double2* restrict path_projections, global int* restrict path_region,
-                        global int* restrict first, global int2* restrict before COUNTERS) {
+                        global const int* restrict first_end, global const int* restrict last_end, CUTS(),
+                        global int* restrict path, global double2* restrict path_projections,
+                        global int* restrict path_region, global int* restrict first,
+                        global int2* restrict before COUNTERS) {
   const int r = get_global_id(0);
   if (r <= n) {
     const int point_count = positions_below(point_offsets[r], kept, positions);
@@ -214,10 +203,8 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
 // The kept elements as quickhull's points.
 kernel void gather_points(int n, int points_count, int regions_count, global const int* restrict positions,
                           global const int2* restrict before, global const int* restrict regions,
-                          global const double2* restrict point_projections, global const int* restrict x_list,
-                          global const int* restrict y_list, global const int* restrict corner_regions,
-                          global const int* restrict corners, global const int* restrict axis,
-                          global const double* restrict cut, global const double2* restrict points,
+                          global const double2* restrict point_projections, LISTS(),
+                          global const int* restrict corner_regions, global const int* restrict corners, CUTS(),
                           global int* restrict ids, global int* restrict segment,
                           global double2* restrict projections COUNTERS) {
   const int k = get_global_id(0);
@@ -253,10 +240,8 @@ kernel void chord_keys(int n, global const int* restrict positions, global const
 kernel void gather_below(int n, int points_count, global const ulong* restrict keys,
                          global const int* restrict elements, global const int* restrict path_region,
                          global const double* restrict element_depth, global const double2* restrict point_projections,
-                         global const int* restrict x_list, global const int* restrict y_list,
-                         global const int* restrict corners, global const int* restrict axis,
-                         global const double* restrict cut, global const double2* restrict points,
-                         global int* restrict ids, global int* restrict segment, global double2* restrict projections,
+                         LISTS(), global const int* restrict corners, CUTS(), global int* restrict ids,
+                         global int* restrict segment, global double2* restrict projections,
                          global double* restrict depth COUNTERS) {
   const int k = get_global_id(0);
   if (k < n) {

@@ -21,10 +21,11 @@
 // deepest_points takes the greatest. drop_pairs then finds, in each pair on one side of it, a point that is above a
 // chord, and drops that point.
 
+#include "flattened/arguments.h"
+#include "flattened/codes.h"
 #include "flattened/hull_height.h"
 #include "operations/counting.h"
 #include "operations/segmented_arg_reduce.h"
-#include "shared/codes.h"
 
 // projections[i]: of point i, as path_projections. flags: 1 strictly below the chord, 0 not, or FLAG_UNDECIDED.
 kernel void hull_depths(int n, filter_bound bound, global const int* restrict segment,
@@ -175,11 +176,9 @@ kernel void advance_points(int n, global const int* restrict ids, global const i
 kernel void advance_paths(int n, int points_count, global const int* restrict ids,
                           global const double2* restrict projections, global const int* restrict deepest,
                           global const int* restrict first, global const uint2* restrict sides,
-                          global const uint* restrict splits, global const int* restrict path,
-                          global const double2* restrict path_projections, global const int* restrict path_region,
-                          global int* restrict new_path, global double2* restrict new_projections,
-                          global int* restrict new_region, global int* restrict new_first,
-                          global uint* restrict sizes) {
+                          global const uint* restrict splits, PATH_VERTICES(), global int* restrict new_path,
+                          global double2* restrict new_projections, global int* restrict new_region,
+                          global int* restrict new_first, global uint* restrict sizes) {
   const int v = get_global_id(0);
   if (v < n) {
     const int to = v + splits[v];

@@ -4,10 +4,10 @@
 #define FLAUNAY_REGION_TRIANGLES_H
 
 #include "arithmetic/language.h"
+#include "flattened/limits.h"
 #include "operations/counting.h"
 #include "predicates/planar.h"
-#include "shared/limits.h"
-#include "shared/records.h"
+#include "predicates/records.h"
 
 BEGIN_SHARED
 

@@ -13,8 +13,9 @@
 //
 // Each kernel is one pass, with one work-item per region, point, corner or vertex.
 
+#include "flattened/codes.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
-#include "shared/codes.h"
 
 kernel void region_offsets(int n, global const int* restrict point_offsets, global const int* restrict corner_offsets,
                            global int* restrict offsets) {

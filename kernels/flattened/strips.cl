@@ -16,9 +16,13 @@
 // Borders are not canonical, and a merge of two canonical triangulations of one circle's points would change every
 // edge.
 #define RINGS_TIE(a, b, c, d, bounds) 0
+#include "flattened/arguments.h"
+#include "flattened/codes.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/search.h"
-#include "shared/codes.h"
+#include "predicates/records.h"
 
 kernel void large_sizes(int n, global const int* restrict large, global const int* restrict offsets,
                         global uint* restrict sizes) {
@@ -114,10 +118,9 @@ static inline int find_edge(global const ring_edge* restrict edges, global const
   return -1;
 }
 
-kernel void border_edges(int n, global const int* restrict corners, global const int* restrict corner_region,
-                         global const int* restrict corner_vertex, global const int* restrict vertices,
-                         global const int* restrict vertex_edge, global const ring_edge* restrict edges,
-                         global int* restrict border_edge, global volatile int* restrict missing) {
+kernel void border_edges(int n, STRIP_CORNERS(), global const int* restrict vertex_edge,
+                         global const ring_edge* restrict edges, global int* restrict border_edge,
+                         global volatile int* restrict missing) {
   const int c = get_global_id(0);
   if (c < n) {
     const int e = find_edge(edges, vertices, vertex_edge[corner_vertex[c]], corners[3 * c + 2]);
@@ -183,12 +186,11 @@ kernel void restore_border(int n, global const int* restrict missing, global con
 
 // The fan of corner c: triangles (m, e's end, next edge's end) from the border edge that leaves to the one that comes
 // in. Without `write` into counts[], which are scanned in place.
-kernel void count_fans(int n, int write, global const int* restrict corners, global const int* restrict corner_region,
-                       global const int* restrict corner_vertex, global const int* restrict vertices,
-                       global const ring_edge* restrict edges, global const int* restrict border_edge,
-                       global const int* restrict large, global const uint* restrict large_offsets,
-                       global const int* restrict offsets, global const uint* scanned, global uint* counts,
-                       global int* restrict triangles, global volatile int* restrict broken) {
+kernel void count_fans(int n, int write, STRIP_CORNERS(), global const ring_edge* restrict edges,
+                       global const int* restrict border_edge, global const int* restrict large,
+                       global const uint* restrict large_offsets, global const int* restrict offsets,
+                       global const uint* scanned, global uint* counts, global int* restrict triangles,
+                       global volatile int* restrict broken) {
   const int c = get_global_id(0);
   if (c < n) {
     const int m = corners[3 * c + 1];

@@ -8,10 +8,13 @@
 //
 // One pass, with one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
+#include "interpolate/arguments.h"
 #include "interpolate/queries_ahead.h"
+#include "locate/arguments.h"
 #include "mesh/barycentric.h"
+#include "mesh/records.h"
 #include "operations/search.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 // Where the direction across the edge opposite to corner k of the triangle leads, of which p are the corners: from the
 // centroid, c, to a point of the edge's line, which is a + g (a - b) with the edge from a to b. Beyond the edge is
@@ -63,14 +66,9 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. gradients: rows by vertex, in
 // the units of `points`.
-kernel void interpolate_clough_tocher(int n, int sets, int columns, double outside,
-                                      global const int* restrict query_offsets,
-                                      global const query_frame* restrict frames, global const int* restrict order,
-                                      global const double2* restrict placed, filter_bound bound,
-                                      global const double2* restrict points, global const int* restrict source,
-                                      global const face* restrict faces, global const int* restrict found,
-                                      global const double* restrict values, global const double2* restrict gradients,
-                                      global double* restrict results) {
+kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, double outside, filter_bound bound, FACES(),
+                                      global const int* restrict found, global const double* restrict values,
+                                      global const double2* restrict gradients, global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
     global double* result = results + (size_t)order[i] * columns;

@@ -17,11 +17,12 @@
 // Passes have one work-item per vertex, which walks through its edges.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "mesh/halfedges.h"
+#include "mesh/records.h"
 #include "mesh/stars.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
-#include "shared/records.h"
 
 // How many edges ahead of its use memory is fetched that is read by vertex.
 #define EDGES_AHEAD 192

@@ -1,19 +1,19 @@
 // Interpolation from the corners of the triangle that a query lies in, and from the nearest point. One pass each, with
 // one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
+#include "interpolate/arguments.h"
 #include "interpolate/queries_ahead.h"
+#include "locate/arguments.h"
 #include "mesh/barycentric.h"
+#include "mesh/records.h"
 #include "operations/search.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. A corner without weight does
 // not count, not even if its value is NaN.
-kernel void interpolate_linear(int n, int sets, int columns, double outside, global const int* restrict query_offsets,
-                               global const query_frame* restrict frames, global const int* restrict order,
-                               global const double2* restrict placed, filter_bound bound,
-                               global const double2* restrict points, global const int* restrict source,
-                               global const face* restrict faces, global const int* restrict found,
-                               global const double* restrict values, global double* restrict results) {
+kernel void interpolate_linear(int n, PLACED_QUERIES(), int columns, double outside, filter_bound bound, FACES(),
+                               global const int* restrict found, global const double* restrict values,
+                               global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
     global double* result = results + (size_t)order[i] * columns;

@@ -28,12 +28,16 @@
 // counts, list_neighbors. Each does both for its query, one after the other.
 
 #include "arithmetic/coordinates.h"
+#include "interpolate/arguments.h"
 #include "interpolate/determinants.h"
 #include "interpolate/natural.h"
+#include "locate/arguments.h"
+#include "locate/records.h"
 #include "mesh/halfedges.h"
+#include "mesh/records.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 // A triangulation, as locators have it, and how much more the queries of its set are scaled. source: the points that
 // vertices are.
@@ -580,13 +584,9 @@ kernel void place_values(int n, int sets, int columns, global const int* restric
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Values and results are rows of
 // so many columns, by point, or by vertex, and by query. left: whether a query, by place, is left to
 // interpolate_natural_exactly.
-kernel void interpolate_natural(int n, int sets, int columns, int is_by_vertex, int method, double outside,
-                                global const int* restrict query_offsets, global const query_frame* restrict frames,
-                                global const int* restrict order, global const double2* restrict placed,
-                                global const double2* restrict points, global const int* restrict source,
-                                global const face* restrict faces, global const int* restrict found,
-                                global const double* restrict values, global double* restrict results,
-                                global uchar* restrict left) {
+kernel void interpolate_natural(int n, PLACED_QUERIES(), int columns, int is_by_vertex, int method, double outside,
+                                FACES(), global const int* restrict found, global const double* restrict values,
+                                global double* restrict results, global uchar* restrict left) {
   const int i = get_global_id(0);
   if (i < n) {
     fetch_query(i, n, found, faces, points);
@@ -604,12 +604,8 @@ kernel void interpolate_natural(int n, int sets, int columns, int is_by_vertex, 
   }
 }
 
-kernel void interpolate_natural_exactly(int n, int sets, int columns, int is_by_vertex, int method, double outside,
-                                        global const int* restrict query_offsets,
-                                        global const mesh_set* restrict records,
-                                        global const query_frame* restrict frames, global const int* restrict order,
-                                        global const double2* restrict placed, global const double2* restrict points,
-                                        global const int* restrict source, global const face* restrict faces,
+kernel void interpolate_natural_exactly(int n, PLACED_QUERIES(), int columns, int is_by_vertex, int method,
+                                        double outside, global const mesh_set* restrict records, FACES(),
                                         global const int* restrict found, global const double* restrict values,
                                         global const uchar* restrict left, global double* restrict results) {
   const int i = get_global_id(0);
@@ -628,12 +624,8 @@ kernel void interpolate_natural_exactly(int n, int sets, int columns, int is_by_
 // Lists of neighbours
 
 // counts, by query: the neighbours; none outside of the hull.
-kernel void count_neighbors(int n, int sets, global const int* restrict query_offsets,
-                            global const mesh_set* restrict records, global const query_frame* restrict frames,
-                            global const int* restrict order, global const double2* restrict placed,
-                            global const double2* restrict points, global const int* restrict source,
-                            global const face* restrict faces, global const int* restrict found,
-                            global uint* restrict counts) {
+kernel void count_neighbors(int n, PLACED_QUERIES(), global const mesh_set* restrict records, FACES(),
+                            global const int* restrict found, global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) {
     const int s = set_of_query(i, sets, query_offsets);
@@ -651,13 +643,9 @@ kernel void count_neighbors(int n, int sets, global const int* restrict query_of
 }
 
 // offsets, by query: where its neighbours begin.
-kernel void list_neighbors(int n, int sets, int method, global const int* restrict query_offsets,
-                           global const mesh_set* restrict records, global const query_frame* restrict frames,
-                           global const int* restrict order, global const double2* restrict placed,
-                           global const double2* restrict points, global const int* restrict source,
-                           global const face* restrict faces, global const int* restrict found,
-                           global const uint* restrict offsets, global int* restrict neighbors,
-                           global double* restrict weights) {
+kernel void list_neighbors(int n, PLACED_QUERIES(), int method, global const mesh_set* restrict records, FACES(),
+                           global const int* restrict found, global const uint* restrict offsets,
+                           global int* restrict neighbors, global double* restrict weights) {
   const int i = get_global_id(0);
   if (i < n) {
     const uint first = offsets[order[i]];

@@ -3,8 +3,8 @@
 #ifndef FLAUNAY_QUERIES_AHEAD_H
 #define FLAUNAY_QUERIES_AHEAD_H
 
+#include "mesh/records.h"
 #include "operations/prefetch.h"
-#include "shared/records.h"
 
 BEGIN_SHARED
 

@@ -12,12 +12,15 @@
 // The programs of devices with double precision have these kernels too, which then do nothing, as every query is on the
 // grid.
 
+#include "locate/arguments.h"
 #include "locate/nearest_search.h"
 #include "locate/off_grid.h"
+#include "locate/records.h"
 #include "mesh/halfedges.h"
+#include "mesh/records.h"
 #include "mesh/stars.h"
 #include "operations/search.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 #ifdef FIXED_POINT
 
@@ -102,12 +105,9 @@ static inline int nearest_on_line_wide(wide2 q, int first, int end, coordinate u
 #endif
 
 // found: of find_triangles, by place. answers: by query.
-kernel void locate_off_grid(int n, int sets, global const int* restrict query_offsets,
-                            global const mesh_set* restrict records, global const query_frame* restrict frames,
-                            global const int* restrict order, global const coordinate2* restrict placed,
-                            global const coordinate* restrict queries, global const coordinate2* restrict points,
-                            global const face* restrict faces, global const int* restrict first_triangle,
-                            global const int* restrict found, global int* restrict answers) {
+kernel void locate_off_grid(int n, PLACED_QUERIES(), global const mesh_set* restrict records,
+                            global const coordinate* restrict queries, WALKED_MESH(), global const int* restrict found,
+                            global int* restrict answers) {
   const int i = get_global_id(0);
   if (i < n) {
     int answer = max(found[i], -1);
@@ -127,9 +127,7 @@ kernel void locate_off_grid(int n, int sets, global const int* restrict query_of
 
 // nearest: by query; of sets with triangles vertices, which become points. most: neighbours that are looked at; if
 // that does not suffice, unanswered[0] is set to 1.
-kernel void nearest_off_grid(int n, int sets, int most, global const int* restrict query_offsets,
-                             global const mesh_set* restrict records, global const query_frame* restrict frames,
-                             global const int* restrict order, global const coordinate2* restrict placed,
+kernel void nearest_off_grid(int n, PLACED_QUERIES(), int most, global const mesh_set* restrict records,
                              global const coordinate* restrict queries, global const coordinate2* restrict points,
                              global const int* restrict source, global const int* restrict clearances,
                              global const face* restrict faces, global const int* restrict first_triangle,

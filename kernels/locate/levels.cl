@@ -9,7 +9,10 @@
 //    cocircular polygon. reach_along_fans doubles how far links lead, until all lead to their fan's last triangle.
 // 5. box_vertices and box_boxes make the tree of boxes from below, with one work-item per box.
 
+#include "arithmetic/records.h"
 #include "locate/nearest_search.h"
+#include "locate/records.h"
+#include "mesh/records.h"
 #include "operations/search.h"
 
 // A number below ratio that looks like a random one (the finaliser of MurmurHash3, Appleby 2011).

@@ -23,12 +23,16 @@
 //    (interpolate/). Where a walk to the nearest vertex takes long, nearest_points searches through levels
 //    (locate/nearest_search.h), which are made when the first query needs them (locate/levels.cl).
 
+#include "arithmetic/records.h"
+#include "locate/arguments.h"
 #include "locate/nearest_search.h"
+#include "locate/records.h"
 #include "mesh/halfedges.h"
+#include "mesh/records.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
 #include "points/cut_tree.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Making
@@ -335,19 +339,13 @@ kernel void place_queries(int n, int sets, global const int* restrict query_offs
   if (i < n) placed[i] = placed_query(order[i], queries, frames[set_of(i, sets, query_offsets)]);
 }
 
-// are_placed: whether there are keys, in their order, and placed queries; else queries go down the trees here, and
-// their order and places are those that they have. is_answer: whether found is by query, with -1 outside of the hull;
-// else it is by place, with what walk() says. Without triangles it is -1. Walks in sets of long_from triangles or more
-// are given up after most_steps; others after as many as a Delaunay triangulation can need, which has no triangle
-// visited twice, and they then are where they began.
-kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_answer, int long_from, int most_steps,
-                           global const int* restrict query_offsets, global const mesh_set* restrict records,
-                           global const cut_node* restrict nodes, global const int* restrict starts,
-                           global const query_frame* restrict frames, global const coordinate* restrict queries,
-                           global const ulong* restrict keys, global int* restrict order,
-                           global coordinate2* restrict placed, filter_bound bound,
-                           global const coordinate2* restrict points, global const face* restrict faces,
-                           global const int* restrict first_triangle, global int* restrict found) {
+// found: without triangles -1. Walks that end without an answer in sets of fewer than options.long_from triangles,
+// after as many steps as a Delaunay triangulation can need, which has no triangle visited twice, are where they began.
+kernel void find_triangles(int n, int chunk, int sets, walk_options options, global const int* restrict query_offsets,
+                           QUERY_TREES(), global const query_frame* restrict frames,
+                           global const coordinate* restrict queries, global const ulong* restrict keys,
+                           global int* restrict order, global coordinate2* restrict placed, filter_bound bound,
+                           WALKED_MESH(), global int* restrict found) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -359,7 +357,7 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
       const mesh_set set = records[s];
       const query_frame frame = frames[s];
       int start[DESCENTS];
-      if (are_placed) {
+      if (options.are_placed) {
         for (int i = begin; i < end; ++i) start[i - begin] = (int)keys[i] - set.nodes - s;
       } else {
         leaves_of_queries(begin, end, queries, frame, nodes + set.nodes, set.depth, start);
@@ -379,12 +377,12 @@ kernel void find_triangles(int n, int chunk, int sets, int are_placed, int is_an
       for (int i = begin; i < end; ++i) {
         int at = -1;
         if (set.triangles > 0) {
-          const int is_long = set.triangles >= long_from;
-          at = walk(placed[i], start[i - begin], is_long ? most_steps : set.triangles, bound, frame.unit, points, faces,
-                    first_triangle);
+          const int is_long = set.triangles >= options.long_from;
+          at = walk(placed[i], start[i - begin], is_long ? options.most_steps : set.triangles, bound, frame.unit,
+                    points, faces, first_triangle);
           if (at == GIVEN_UP && !is_long) at = ~start[i - begin];
         }
-        found[is_answer ? order[i] : i] = is_answer ? max(at, -1) : at;
+        found[options.is_answer ? order[i] : i] = options.is_answer ? max(at, -1) : at;
       }
       begin = end;
     }
@@ -447,21 +445,10 @@ static inline int nearest_vertex(coordinate2 q, int t, int most, filter_bound bo
 // are looked at before the search goes through levels. If there are no levels, `levels` is 0, unanswered[0] is set to
 // 1, and the query has no answer. are_vertices: whether answers are numbers of vertices, for nearest_off_grid.
 // long_sets: of a set with levels, which of those it is. sample_...: the locator of samples.
-kernel void nearest_points(
-    int n, int sets, int long_from, int most_neighbors, int are_vertices, int levels, int sets_with_levels,
-    global const int* restrict query_offsets, global const mesh_set* restrict records,
-    global const query_frame* restrict frames, global const int* restrict order,
-    global const coordinate2* restrict placed, filter_bound bound, global const coordinate2* restrict points,
-    global const int* restrict source, global const int* restrict clearances, global const face* restrict faces,
-    global const coordinate2* restrict hull_points, global const int* restrict hull, global const int* restrict starts,
-    global const fan_part* restrict fans, global const int* restrict first_vertices,
-    global const vertex_box* restrict boxes, global const int* restrict long_sets,
-    global const mesh_set* restrict sample_records, global const coordinate2* restrict sample_points,
-    global const int* restrict sample_source, global const int* restrict sample_clearances,
-    global const face* restrict sample_faces, global const coordinate2* restrict sample_hull_points,
-    global const int* restrict sample_hull, global const int* restrict sample_starts,
-    global const fan_part* restrict sample_fans, global const int* restrict below, global const int* restrict found,
-    global int* restrict nearest, global volatile int* restrict unanswered) {
+kernel void nearest_points(int n, PLACED_QUERIES(), int long_from, int most_neighbors, int are_vertices, LEVELS(),
+                           SEARCHED_MESH(), filter_bound bound, SEARCHED_MESH(sample_),
+                           global const int* restrict found, global int* restrict nearest,
+                           global volatile int* restrict unanswered) {
   const int i = get_global_id(0);
   if (i < n) {
     const coordinate2 q = placed[i];

@@ -14,10 +14,12 @@
 #define FLAUNAY_NEAREST_SEARCH_H
 
 #include "arithmetic/language.h"
+#include "arithmetic/records.h"
 #include "locate/query_frames.h"
+#include "locate/records.h"
 #include "mesh/halfedges.h"
+#include "mesh/records.h"
 #include "predicates/nearness.h"
-#include "shared/records.h"
 
 BEGIN_SHARED
 

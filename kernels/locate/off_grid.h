@@ -11,7 +11,6 @@
 #include "arithmetic/numbers.h"
 #include "locate/query_frames.h"
 #include "predicates/planar.h"
-#include "shared/codes.h"
 
 BEGIN_SHARED
 

@@ -1,10 +1,10 @@
-// Queries and the points that they are held against, scaled for exact predicates: see query_frame in records.h.
+// Queries and the points that they are held against, scaled for exact predicates: see query_frame in points/records.h.
 #ifndef FLAUNAY_QUERY_FRAMES_H
 #define FLAUNAY_QUERY_FRAMES_H
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/language.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 BEGIN_SHARED
 

@@ -4,7 +4,7 @@
 #define FLAUNAY_HALFEDGES_H
 
 #include "arithmetic/language.h"
-#include "shared/records.h"
+#include "mesh/records.h"
 
 BEGIN_SHARED
 

@@ -5,11 +5,11 @@
 #define FLAUNAY_RINGS_H
 
 #include "arithmetic/language.h"
+#include "mesh/records.h"
 #include "operations/counting.h"
 #include "predicates/order.h"
 #include "predicates/planar.h"
-#include "shared/limits.h"
-#include "shared/records.h"
+#include "predicates/records.h"
 
 BEGIN_SHARED
 

@@ -4,7 +4,7 @@
 
 #include "arithmetic/language.h"
 #include "mesh/halfedges.h"
-#include "shared/records.h"
+#include "mesh/records.h"
 
 BEGIN_SHARED
 

@@ -5,6 +5,7 @@
 // the counts of the spans before, reads the flags again and writes. If there is a single span, pack_spans does it
 // alone.
 
+#include "operations/limits.h"
 #include "operations/work_group.h"
 
 SCAN_IN_GROUP(scan_counts, uint)

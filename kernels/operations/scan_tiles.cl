@@ -6,6 +6,7 @@
 // of scan_spans_T alone. The total goes to output[n]. Input and output may be the same array.
 
 #include "arithmetic/language.h"
+#include "operations/limits.h"
 #include "operations/work_group.h"
 
 SCAN_IN_GROUP(scan_in_group_uint, uint)

@@ -4,8 +4,6 @@
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
 
-#include "shared/limits.h"
-
 // For functions with barriers: PoCL 3.1 loses those of functions that are called twice and are not inlined.
 #define WITH_BARRIERS static inline __attribute__((always_inline))
 

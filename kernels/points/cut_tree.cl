@@ -13,9 +13,9 @@
 // below cost one pass each, all in two launches.
 
 #include "operations/search.h"
+#include "points/records.h"
 #include "points/sampled_cuts.h"
 #include "predicates/order.h"
-#include "shared/records.h"
 
 // A chunk's tree and its first sample.
 typedef struct {

@@ -4,7 +4,8 @@
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/language.h"
-#include "shared/records.h"
+#include "arithmetic/records.h"
+#include "points/records.h"
 
 BEGIN_SHARED
 

@@ -13,12 +13,13 @@
 // So each three levels of nodes larger than a tile cost one launch for sorting, and each level two for cutting. All
 // levels below cost two launches.
 
+#include "operations/limits.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
+#include "points/limits.h"
+#include "points/records.h"
 #include "points/sampled_cuts.h"
 #include "predicates/order.h"
-#include "shared/limits.h"
-#include "shared/records.h"
 
 SCAN_IN_GROUP(scan_samples, uint)
 

@@ -9,11 +9,12 @@
 // the same for devices with many lanes.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "operations/prefetch.h"
 #include "points/cut_tree.cl"
 #include "points/cut_tree.h"
 #include "points/inspect.cl"
-#include "shared/records.h"
+#include "points/records.h"
 
 kernel void count_blocks(int n, global const chunk_of_points* restrict chunks, global const coordinate* restrict input,
                          global const cut_node* restrict nodes, global int* restrict block_of_point,

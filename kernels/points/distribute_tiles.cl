@@ -14,13 +14,15 @@
 // That makes two passes over the points for each digit. Where no set has a tree, copy_points makes the only pass.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
+#include "operations/limits.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
 #include "points/cut_tree.h"
 #include "points/cut_tree_tiles.cl"
 #include "points/inspect_tiles.cl"
-#include "shared/limits.h"
-#include "shared/records.h"
+#include "points/limits.h"
+#include "points/records.h"
 
 SCAN_IN_GROUP(scan_fields, ulong)
 

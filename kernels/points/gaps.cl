@@ -10,11 +10,11 @@
 // writes the node, and splits the samples of the other order than the one along the axis. That makes one launch per
 // level.
 
+#include "operations/limits.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
+#include "points/records.h"
 #include "points/sampled_cuts.h"
-#include "shared/limits.h"
-#include "shared/records.h"
 
 SCAN_IN_GROUP(scan_low, uint)
 

@@ -9,7 +9,7 @@
 #include "arithmetic/coordinates.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
-#include "shared/codes.h"
+#include "points/codes.h"
 
 // Points of single precision from `first` on. The bits are those of doubles.
 kernel void widen_points(int n, ulong first, global const float_bits* restrict narrow,

@@ -2,6 +2,7 @@
 // neighbouring points, each work-group makes an account in local memory, and adds it to the whole.
 
 #include "arithmetic/bit_account.h"
+#include "points/codes.h"
 
 // workers: how many work-items share the points.
 kernel void inspect_tiles(int n, int workers, global const double_bits* restrict input,

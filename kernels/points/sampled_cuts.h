@@ -4,7 +4,7 @@
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/language.h"
-#include "shared/records.h"
+#include "points/records.h"
 
 BEGIN_SHARED
 

@@ -52,6 +52,13 @@ static inline int circle_middle(long ax, long ay, long bx, long by, long cx, lon
   return sign_of_128(difference_128(low_product(of.other_dot, of.cross), low_product(of.dot, of.other_cross)));
 }
 
+// The determinant, of differences that are below 2^63, as are those between any two of them: dot and cross products are
+// below 2^127.
+static inline integer256 circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
+  const integer_angles of = angles_of(ax, ay, bx, by, cx, cy);
+  return difference_256(product_256(of.other_dot, of.cross), product_256(of.dot, of.other_cross));
+}
+
 END_SHARED
 
 #endif

@@ -83,17 +83,6 @@ OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
   return cross_by_expansions(bx, by, cx, cy);
 }
 
-static inline integer128 sum_of_squares(long x, long y) { return sum_128(product_128(x, x), product_128(y, y)); }
-// The in-circle determinant of differences below 2^WIDE_BITS, of which both factors of a term are below 2^125.
-static inline integer256 circle_term(long ax, long ay, long bx, long by, long cx, long cy) {
-  return product_256(sum_of_squares(ax, ay), cross_product(bx, by, cx, cy));
-}
-
-static inline integer256 circle_wide(long ax, long ay, long bx, long by, long cx, long cy) {
-  return sum_256(sum_256(circle_term(ax, ay, bx, by, cx, cy), circle_term(bx, by, cx, cy, ax, ay)),
-                 circle_term(cx, cy, ax, ay, bx, by));
-}
-
 // The determinant, compressed.
 static inline void circle_by_expansions(const double2* dx, const double2* dy, expansion* sum) {
   sum->size = 0;

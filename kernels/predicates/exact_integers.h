@@ -44,10 +44,8 @@ static inline circle_differences differences_from(coordinate2 d, coordinate2 a, 
   return from;
 }
 
-// Angles are compared, whose products are below 2^127: the determinant is below 2^255.
-static inline int circle_wide(const circle_differences* from) {
-  const integer_angles of = angles_of(from->x[0], from->y[0], from->x[1], from->y[1], from->x[2], from->y[2]);
-  return sign_of_256(difference_256(product_256(of.other_dot, of.cross), product_256(of.dot, of.other_cross)));
+static inline int circle_sign_wide(const circle_differences* from) {
+  return sign_of_256(circle_wide(from->x[0], from->y[0], from->x[1], from->y[1], from->x[2], from->y[2]));
 }
 
 #define NOT_SHORT 2
@@ -67,7 +65,7 @@ static inline int circle_coarse(coordinate2 a, coordinate2 b, coordinate2 c, coo
 OUT_OF_LINE static inline int circle_exact(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
   const circle_differences from = differences_from(d, a, b, c);
   const int sign = circle_if_short(&from);
-  return sign != NOT_SHORT ? sign : circle_wide(&from);
+  return sign != NOT_SHORT ? sign : circle_sign_wide(&from);
 }
 
 // The largest differences of circle_middle where a filter could not decide: then the determinant is below 2^127, see
@@ -82,7 +80,7 @@ OUT_OF_LINE static inline int circle_undecided(coordinate2 a, coordinate2 b, coo
   const int sign = circle_if_short(&from);
   if (sign != NOT_SHORT) return sign;
   return bound > ANGLE_BOUND || from.bits > MIDDLE_BITS
-             ? circle_wide(&from)
+             ? circle_sign_wide(&from)
              : circle_middle(from.x[0], from.y[0], from.x[1], from.y[1], from.x[2], from.y[2]);
 }
 

@@ -50,6 +50,7 @@ static inline int centre_side_filtered(const centre_terms* of, double2 v, double
   return filtered_sign(side, magnitude, bound);
 }
 
+static inline integer128 sum_of_squares(long x, long y) { return dot_product(x, y, x, y); }
 static inline integer256 doubled(integer256 a) { return sum_256(a, a); }
 static inline integer128 negated(integer128 a) { return difference_128(widened(0), a); }
 

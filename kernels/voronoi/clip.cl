@@ -24,12 +24,14 @@
 // skipped.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "mesh/halfedges.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
 #include "predicates/bounds.h"
-#include "shared/codes.h"
+#include "voronoi/arguments.h"
 #include "voronoi/centre_side.h"
+#include "voronoi/codes.h"
 
 // As in voronoi.cl.
 #define TRIANGLES_AHEAD 32
@@ -348,10 +350,7 @@ static inline int is_whole(int t, int points, global const int* triangles) {
 }
 
 // n slots. codes: 0 where write_slots has not decided; get what is inside, and stay 0 where nothing is.
-kernel void clip_slots(int n, int points, int triangle_count, int hull_count, int clip, filter_bound side_bound,
-                       filter_bound nearness_bound, global const double* restrict corners,
-                       global const double* restrict input, global const int* restrict triangles,
-                       global const int* restrict ahead, global const int* restrict hull,
+kernel void clip_slots(int n, CLIPPED_DIAGRAM(), filter_bound side_bound, filter_bound nearness_bound,
                        global const int* restrict witnesses, global const int* restrict slots,
                        global uint* restrict codes) {
   const int i = get_global_id(0);
@@ -551,10 +550,7 @@ static inline double2 unscaled(double2 p, scaling scale) {
 }
 
 // n slots. box: around the polygon. unscale: to the coordinates of the caller.
-kernel void write_corners(int n, int points, int triangle_count, int hull_count, int clip, filter_bound nearness_bound,
-                          vertex_box box, scaling unscale, global const double* restrict corners,
-                          global const double* restrict input, global const int* restrict triangles,
-                          global const int* restrict ahead, global const int* restrict hull,
+kernel void write_corners(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound, vertex_box box, scaling unscale,
                           global const double* restrict centres, global const uint* restrict offsets,
                           global const int* restrict slots, global const uint* restrict codes,
                           global const uint* restrict places, global double* restrict vertices) {

@@ -8,6 +8,7 @@
 // unbounded. Indices that are out of range are skipped.
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "mesh/halfedges.h"
 #include "operations/prefetch.h"
 #include "predicates/bounds.h"

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "blocks/codes.h"
 #include "blocks/stages.hpp"
 #include "launchers/blocks/divide.cl.hpp"
-#include "shared/codes.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -36,26 +38,26 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
   for (std::size_t first = 0; first < blocks.count; first += per_launch) {
     const std::size_t last = std::min(first + per_launch, blocks.count);
     runtime.fill(next, 1, static_cast<cl_int>(first));
-    runtime.launch(workers, tuning_of(runtime).block_group,
-                   kernels::solve_blocks{.workers = workers,
-                                         .blocks = last,
-                                         .capacity = capacity,
-                                         .larger = larger,
-                                         .offsets = blocks.device_offsets,
-                                         .bounds = work.bounds,
-                                         .next = next,
-                                         .points = blocks.vertices,
-                                         .source = blocks.source,
-                                         .representatives = representatives,
-                                         .edges = rings.edges,
-                                         .vertex_edge = rings.vertex_edge,
-                                         .solved = rings.solved,
-                                         .distinct_counts = rings.device_distinct,
-                                         .account = rings.device_account,
-                                         .scratch_points = points,
-                                         .scratch_source = source,
-                                         .scratch_ranks = ranks,
-                                         .scratch_axes = axes});
+    runtime.launch(
+        workers, tuning_of(runtime).block_group,
+        kernels::solve_blocks{
+            .workers = workers,
+            .blocks = last,
+            .capacity = capacity,
+            .larger = larger,
+            .offsets = blocks.device_offsets,
+            .bounds = work.bounds,
+            .next = next,
+            .block_points = {.points = blocks.vertices,
+                             .source = blocks.source,
+                             .representatives = representatives,
+                             .solved = rings.solved,
+                             .distinct_counts = rings.device_distinct},
+            .edges = rings.edges,
+            .vertex_edge = rings.vertex_edge,
+            .account = rings.device_account,
+            .block_scratch = {.scratch_points = points, .scratch_source = source, .scratch_ranks = ranks},
+            .scratch_axes = axes});
     if (is_watched) {
       milestones->set("triangulate", kBlocksMade + (kBlocksSolved - kBlocksMade) * static_cast<double>(last) /
                                                        static_cast<double>(blocks.count));

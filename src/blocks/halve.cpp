@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "blocks/limits.h"
 #include "blocks/stages.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/halve.cl.hpp"
-#include "shared/limits.h"
+#include "mesh/limits.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -89,15 +90,16 @@ std::size_t halve_tiny(Workspace& work, const PointBlocks& blocks, const HalvedB
                        const Buffer<cl_int>& representatives, const Rings& rings, const SortedPoints& sorted,
                        const Buffer<cl_uint>& larger_blocks) {
   host::Runtime& runtime = work.runtime;
-  runtime.map(blocks.count, kernels::halve_tiny_blocks{.offsets = blocks.offsets,
-                                                       .points = blocks.vertices,
-                                                       .source = blocks.source,
-                                                       .representatives = representatives,
-                                                       .solved = rings.solved,
-                                                       .distinct_counts = rings.device_distinct,
-                                                       .axes = halved.axes,
-                                                       .scratch_points = sorted.points,
-                                                       .scratch_source = sorted.source});
+  runtime.map(blocks.count,
+              kernels::halve_tiny_blocks{.offsets = blocks.offsets,
+                                         .block_points = {.points = blocks.vertices,
+                                                          .source = blocks.source,
+                                                          .representatives = representatives,
+                                                          .solved = rings.solved,
+                                                          .distinct_counts = rings.device_distinct},
+                                         .axes = halved.axes,
+                                         .scratch_points = sorted.points,
+                                         .scratch_source = sorted.source});
   if (blocks.largest <= kernel::TINY_BLOCK) return 0;
   runtime.map(blocks.count, kernels::flag_larger_blocks{.offsets = blocks.offsets, .flags = larger_blocks});
   host::exclusive_scan(runtime, larger_blocks, blocks.count, larger_blocks);
@@ -131,24 +133,25 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   if (groups == 0) return halved;
   const std::size_t group = group_for(tuning, blocks, groups);
   runtime.note_elements((std::min(blocks.largest, capacity) + group - 1) / group);
-  runtime.launch(group * groups, group,
-                 kernels::halve_blocks{.blocks = blocks.count,
-                                       .are_listed = with_tiny,
-                                       .larger_blocks = larger_blocks,
-                                       .capacity = capacity,
-                                       .largest = blocks.largest,
-                                       .offsets = blocks.offsets,
-                                       .scanned = sorted.scanned,
-                                       .points = blocks.vertices,
-                                       .source = blocks.source,
-                                       .representatives = representatives,
-                                       .solved = rings.solved,
-                                       .distinct_counts = rings.device_distinct,
-                                       .axes = halved.axes,
-                                       .scratch_points = sorted.points,
-                                       .scratch_source = sorted.source,
-                                       .scratch_ranks = scratch.allocate<cl_int2>(3 * blocks.points),
-                                       .scratch_lows = scratch.allocate<cl_int>(blocks.points)});
+  runtime.launch(
+      group * groups, group,
+      kernels::halve_blocks{.blocks = blocks.count,
+                            .are_listed = with_tiny,
+                            .larger_blocks = larger_blocks,
+                            .capacity = capacity,
+                            .largest = blocks.largest,
+                            .offsets = blocks.offsets,
+                            .scanned = sorted.scanned,
+                            .block_points = {.points = blocks.vertices,
+                                             .source = blocks.source,
+                                             .representatives = representatives,
+                                             .solved = rings.solved,
+                                             .distinct_counts = rings.device_distinct},
+                            .axes = halved.axes,
+                            .block_scratch = {.scratch_points = sorted.points,
+                                              .scratch_source = sorted.source,
+                                              .scratch_ranks = scratch.allocate<cl_int2>(3 * blocks.points)},
+                            .scratch_lows = scratch.allocate<cl_int>(blocks.points)});
   return halved;
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "blocks/records.h"
 #include "blocks/stages.hpp"
+#include "mesh/limits.h"
 #include "points/cut_tree.hpp"
 #include "tuning/tuning.hpp"
 

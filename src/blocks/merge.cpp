@@ -1,11 +1,14 @@
 #include <algorithm>
 
 #include "blocks/halving.h"
+#include "blocks/limits.h"
+#include "blocks/records.h"
 #include "blocks/stages.hpp"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/merge_exact.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"
-#include "shared/limits.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -87,6 +90,15 @@ void launch_spread(Workspace& work, std::size_t spread, std::size_t merges, cons
   work.runtime.launch(spread * merges, tuning_of(work.runtime).block_group, merges, kernel);
 }
 
+kernels::places_of_parts places_of_parts(const Halves& halves, int height) {
+  return {.height = height,
+          .places = halves.blocks.points,
+          .offsets = halves.blocks.offsets,
+          .distinct = halves.rings.device_distinct,
+          .block_of_place = halves.halved.block_of_place,
+          .axes = halves.halved.axes};
+}
+
 // kernels::merge_parts or kernels::finish_parts.
 template <typename Kernel>
 void launch_on_parts(const Halves& halves, int height) {
@@ -95,12 +107,7 @@ void launch_on_parts(const Halves& halves, int height) {
   const std::size_t spread = spread_of(tuning_of(work.runtime), cells);
   launch_spread(work, spread, cells,
                 Kernel{.spread = spread,
-                       .height = height,
-                       .places = blocks.points,
-                       .offsets = blocks.offsets,
-                       .distinct = rings.device_distinct,
-                       .block_of_place = halved.block_of_place,
-                       .axes = halved.axes,
+                       .places_of_parts = places_of_parts(halves, height),
                        .bounds = work.bounds,
                        .points = blocks.vertices,
                        .edges = rings.edges,
@@ -119,12 +126,7 @@ void launch_on_walks(const Halves& halves, int height) {
   const std::size_t spread = spread_of(tuning_of(work.runtime), walks);
   launch_spread(work, spread, walks,
                 Kernel{.spread = spread,
-                       .height = height,
-                       .places = blocks.points,
-                       .offsets = blocks.offsets,
-                       .distinct = rings.device_distinct,
-                       .block_of_place = halved.block_of_place,
-                       .axes = halved.axes,
+                       .places_of_parts = places_of_parts(halves, height),
                        .bounds = work.bounds,
                        .points = blocks.vertices,
                        .edges = rings.edges,
@@ -164,12 +166,7 @@ void sew_seams(const Halves& halves, int height) {
       kernel::PAIRS_PER_VERTEX * std::min(blocks.largest, 2 * least_vertices(height));
   runtime.note_elements((most_pairs + group - 1) / group);
   runtime.launch(group * cells_of(blocks, height), group,
-                 kernels::sew_seams{.height = height,
-                                    .places = blocks.points,
-                                    .offsets = blocks.offsets,
-                                    .distinct = rings.device_distinct,
-                                    .block_of_place = halved.block_of_place,
-                                    .axes = halved.axes,
+                 kernels::sew_seams{.places_of_parts = places_of_parts(halves, height),
                                     .points = blocks.vertices,
                                     .crossings = seams.crossings,
                                     .walks = seams.walks,

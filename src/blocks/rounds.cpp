@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "blocks/codes.h"
+#include "blocks/limits.h"
 #include "blocks/open_sectors.h"
 #include "geometry/euler.hpp"
 #include "host/launch/vector_operations.hpp"
@@ -120,11 +122,11 @@ void frame(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& 
   round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
   Arena::Scope scope(work.scratch());
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
-  work.runtime.map(blocks.count, kernels::frame_blocks{.sets = blocks.sets,
+  work.runtime.map(blocks.count, kernels::frame_blocks{.cut_sets = {.sets = blocks.sets,
+                                                                    .set_blocks = blocks.device_set_blocks,
+                                                                    .set_nodes = set_nodes,
+                                                                    .nodes = blocks.device_nodes},
                                                        .is_merged = round.is_merged,
-                                                       .set_blocks = blocks.device_set_blocks,
-                                                       .set_nodes = set_nodes,
-                                                       .nodes = blocks.device_nodes,
                                                        .scale = blocks.scale,
                                                        .solved = round.rings.solved,
                                                        .set_boxes = boxes.places,
@@ -136,21 +138,25 @@ void frame(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& 
                                                        .frames = round.frames});
 }
 
+kernels::open_vertices open_vertices(const Round& round) {
+  return {.is_first = round.is_first,
+          .vertices = round.vertices,
+          .listed = round.blocks.source,
+          .open_offsets = round.open.offsets_of_edges,
+          .open_edges = round.open.edges};
+}
+
 // kernels::emit_triangles or kernels::emit_unsure.
 template <typename Kernel>
 void launch_emission(Workspace& work, const Round& round, const Emitted& emitted) {
   const Blocks& blocks = round.blocks;
-  work.runtime.map(round.states.size() / 2, Kernel{.is_first = round.is_first,
+  work.runtime.map(round.states.size() / 2, Kernel{.open_vertices = open_vertices(round),
                                                    .bound = work.bounds.orient,
                                                    .blocks = blocks.count,
                                                    .offsets = blocks.device_offsets,
                                                    .frames = round.frames,
                                                    .points = blocks.vertices,
                                                    .edges = round.rings.edges,
-                                                   .vertices = round.vertices,
-                                                   .listed = blocks.source,
-                                                   .open_offsets = round.open.offsets_of_edges,
-                                                   .open_edges = round.open.edges,
                                                    .all_points = emitted.points,
                                                    .indices = emitted.indices,
                                                    .places = emitted.places,
@@ -173,12 +179,8 @@ void emit(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& e
   launch_emission<kernels::emit_triangles>(work, round, emitted);
   launch_emission<kernels::emit_unsure>(work, round, emitted);
   if (emitted.links.memory() == nullptr) return;
-  runtime.map(round.states.size() / 2, kernels::link_triangles{.is_first = round.is_first,
+  runtime.map(round.states.size() / 2, kernels::link_triangles{.open_vertices = open_vertices(round),
                                                                .edges = round.rings.edges,
-                                                               .vertices = round.vertices,
-                                                               .listed = blocks.source,
-                                                               .open_offsets = round.open.offsets_of_edges,
-                                                               .open_edges = round.open.edges,
                                                                .states = round.states,
                                                                .links = emitted.links});
 }
@@ -192,7 +194,7 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, const Num
   std::vector<cl_uint2> sizes(blocks.sets + 1);
   const host::Runtime::Settled settled(runtime);
   const auto counts = work.scratch().allocate<cl_uint2>(blocks.points + 1);
-  runtime.map(blocks.points, kernels::count_open{.is_first = round.is_first,
+  runtime.map(blocks.points, kernels::count_open{.open_vertices = open_vertices(round),
                                                  .sets = blocks.sets,
                                                  .blocks = blocks.count,
                                                  .set_blocks = blocks.device_set_blocks,
@@ -200,10 +202,6 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, const Num
                                                  .distinct = round.rings.device_distinct,
                                                  .edges = round.rings.edges,
                                                  .vertex_edge = round.rings.vertex_edge,
-                                                 .vertices = round.vertices,
-                                                 .listed = blocks.source,
-                                                 .open_offsets = round.open.offsets_of_edges,
-                                                 .open_edges = round.open.edges,
                                                  .states = round.states,
                                                  .counts = counts});
   host::exclusive_scan(runtime, counts, blocks.points, counts);
@@ -217,14 +215,10 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, const Num
   for (const cl_uint2& size : sizes) next.offsets.push_back(size.s[0]);
   if (next.count() == 0) return;
   next.reserve(persistent, std::max(1u, sizes.back().s[1]));
-  runtime.map(blocks.points, kernels::write_open{.is_first = round.is_first,
+  runtime.map(blocks.points, kernels::write_open{.open_vertices = open_vertices(round),
                                                  .points = blocks.vertices,
                                                  .edges = round.rings.edges,
                                                  .vertex_edge = round.rings.vertex_edge,
-                                                 .vertices = round.vertices,
-                                                 .listed = blocks.source,
-                                                 .open_offsets = round.open.offsets_of_edges,
-                                                 .open_edges = round.open.edges,
                                                  .states = round.states,
                                                  .scanned = counts,
                                                  .next_points = next.points,

@@ -9,6 +9,8 @@
 
 #include "arithmetic/bit_account.h"
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
+#include "blocks/codes.h"
 #include "blocks/halving.h"
 #include "blocks/rings_account.h"
 #include "blocks/rows.h"
@@ -17,11 +19,12 @@
 #include "geometry/magnitudes.hpp"
 #include "host/of_thread.hpp"
 #include "mesh/halfedges.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "mesh/rings.h"
 #include "operations/prefetch.h"
 #include "operations/search.h"
 #include "points/cut_tree.h"
-#include "shared/codes.h"
 
 namespace flaunay::kernel {
 #include "host/native/words.h"
@@ -123,9 +126,9 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   kernel::uint account[kernel::RINGS_NUMBERS] = {};
   for_each_item(1, [&] {
     kernel::solve_blocks(1, set_count, static_cast<int>(largest), -1, s.offsets.data(), scalings.bounds,
-                         &next, vertices, source, result.representatives.data(), edges, vertex_edge, solved,
-                         s.distinct.data(), account, sized(s.points, largest), sized(s.point_source, largest),
-                         sized(s.ranks, 3 * largest), sized(s.axes, largest));
+                         &next, vertices, source, result.representatives.data(), solved, s.distinct.data(),
+                         edges, vertex_edge, account, sized(s.points, largest),
+                         sized(s.point_source, largest), sized(s.ranks, 3 * largest), sized(s.axes, largest));
   });
 
   const int pairs = kernel::PAIRS_PER_VERTEX * point_count;

@@ -13,8 +13,6 @@
 #include "host/runtime.hpp"
 #include "points/distribute.hpp"
 #include "points/rings.hpp"
-#include "shared/limits.h"
-#include "shared/records.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {

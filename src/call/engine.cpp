@@ -13,8 +13,8 @@
 #include "host/note.hpp"
 #include "host/opencl/device.hpp"
 #include "host/opencl/program_cache.hpp"
-#include "shared/limits.h"
-#include "shared/records.h"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {

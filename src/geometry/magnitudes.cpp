@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
+#include "arithmetic/bit_account.h"
 #include "arithmetic/numbers.h"
 #include "flaunay/flaunay.hpp"
 #include "predicates/bounds.h"
@@ -14,15 +14,8 @@
 namespace flaunay::geometry {
 namespace {
 
-constexpr int kMantissaBits = 52;
-constexpr std::uint64_t kMantissa = (std::uint64_t{1} << kMantissaBits) - 1;
-constexpr int kExponentMask = 0x7ff;
-constexpr int kExponentBias = 1023;
-
 // Doubles of larger exponents may have differences that overflow, where integers in fixed point would not.
-constexpr int kLargestOfFiniteDifferences = kExponentBias - 2;
-
-int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
+constexpr int kLargestOfFiniteDifferences = 1021;
 
 [[noreturn]] void throw_range(const double* coordinates, std::size_t first, std::size_t last,
                               const Magnitudes& magnitudes) {
@@ -33,37 +26,23 @@ int trailing_zeros(std::uint64_t bits) { return __builtin_ctzll(bits); }
 }  // namespace
 
 int lowest_bit(double x) {
-  int exponent = 0;
-  const double fraction = std::frexp(x, &exponent);
-  auto mantissa = static_cast<std::uint64_t>(std::ldexp(std::fabs(fraction), 53));
-  int low = exponent - 53;
-  while ((mantissa & 1) == 0) {
-    mantissa >>= 1;
-    ++low;
-  }
-  return low;
+  kernel::bit_account bits = kernel::no_bits();
+  kernel::account_for(kernel::as_ulong(x) & MAGNITUDE_BITS, &bits);
+  return bits.lowest;
 }
 
 Magnitudes inspect(const double* coordinates, std::size_t first, std::size_t last) {
-  Magnitudes magnitudes;
-  for (std::size_t i = 2 * first; i < 2 * last; ++i) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &coordinates[i], sizeof bits);
-    const int exponent = static_cast<int>(bits >> kMantissaBits) & kExponentMask;
-    if (exponent == 0) {
-      if (coordinates[i] == 0) continue;
-      magnitudes.largest = std::max(magnitudes.largest, std::ilogb(coordinates[i]));
-      magnitudes.lowest = std::min(magnitudes.lowest, lowest_bit(coordinates[i]));
-    } else if (exponent == kExponentMask) {
-      magnitudes.bad = static_cast<int>(i / 2);
-      return magnitudes;
+  kernel::bit_account bits = kernel::no_bits();
+  int bad = kernel::NO_BAD;
+  for (std::size_t i = 2 * first; i < 2 * last && bad == kernel::NO_BAD; ++i) {
+    const kernel::ulong magnitude = kernel::as_ulong(coordinates[i]) & MAGNITUDE_BITS;
+    if (magnitude < INFINITE_BITS) {
+      kernel::account_for(magnitude, &bits);
     } else {
-      const int lowest = trailing_zeros((bits & kMantissa) | (kMantissa + 1)) - kMantissaBits;
-      magnitudes.largest = std::max(magnitudes.largest, exponent - kExponentBias);
-      magnitudes.lowest = std::min(magnitudes.lowest, exponent - kExponentBias + lowest);
+      bad = static_cast<int>(i / 2);
     }
   }
-  return magnitudes;
+  return {kernel::largest_exponent(bits), bits.lowest, bad};
 }
 
 Magnitudes joined(const Magnitudes& a, const Magnitudes& b) {

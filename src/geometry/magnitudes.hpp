@@ -9,16 +9,17 @@
 #include <vector>
 
 #include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "flaunay/flaunay.hpp"
-#include "shared/codes.h"
-#include "shared/records.h"
+#include "points/codes.h"
+#include "predicates/records.h"
 
 namespace flaunay::geometry {
 
 /// The error bounds of the filters; 0 if the coordinates have so few bits that floating point is exact.
 using Bounds = kernel::filter_bounds;
 
-/// The magnitudes of all coordinates, in the order of the codes INSPECT_ of kernels/shared/codes.h.
+/// The magnitudes of all coordinates, in the order of the codes INSPECT_ of kernels/points/codes.h.
 struct Magnitudes {
   int largest = kernel::NO_LARGEST;  ///< the largest exponent of a coordinate, as ilogb returns it
   int lowest = kernel::NO_LOWEST;    ///< the lowest exponent of a set bit of a coordinate

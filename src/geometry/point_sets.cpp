@@ -9,7 +9,7 @@
 
 #include "flaunay/flaunay.hpp"
 #include "geometry/sort.hpp"
-#include "shared/limits.h"
+#include "mesh/limits.h"
 
 namespace flaunay::geometry {
 namespace {

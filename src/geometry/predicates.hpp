@@ -1,4 +1,4 @@
-// The kernels' predicates on the host: the same files (kernels/shared), compiled as C++.
+// The kernels' predicates on the host: the same files (kernels/predicates), compiled as C++.
 #pragma once
 
 #include "flattened/hull_height.h"

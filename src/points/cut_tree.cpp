@@ -4,7 +4,8 @@
 
 #include "host/launch/vector_operations.hpp"
 #include "launchers/points/cut_tree.cl.hpp"
-#include "shared/limits.h"
+#include "points/limits.h"
+#include "points/records.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {

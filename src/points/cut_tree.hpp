@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/runtime.hpp"
-#include "shared/records.h"
+#include "points/records.h"
 
 namespace flaunay::points {
 

@@ -4,8 +4,9 @@
 #include "host/runtime.hpp"
 #include "launchers/points/cut_tree_tiles.cl.hpp"
 #include "launchers/points/gaps.cl.hpp"
+#include "operations/limits.h"
 #include "points/cut_tree.hpp"
-#include "shared/limits.h"
+#include "points/records.h"
 
 namespace flaunay::points {
 

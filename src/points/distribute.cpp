@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "arithmetic/records.h"
+#include "mesh/limits.h"
 #include "points/cut_tree.hpp"
 #include "points/inspect.hpp"
 #include "points/move.hpp"
-#include "shared/limits.h"
+#include "points/records.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "arithmetic/records.h"
 #include "geometry/magnitudes.hpp"
 #include "host/runtime.hpp"
 #include "points/cut_tree.hpp"
-#include "shared/records.h"
+#include "points/records.h"
 
 namespace flaunay::points {
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "arithmetic/records.h"
 #include "launchers/points/inspect.cl.hpp"
 #include "launchers/points/inspect_tiles.cl.hpp"
+#include "points/codes.h"
 #include "points/device_mesh.hpp"
 #include "points/download.hpp"
-#include "shared/codes.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {

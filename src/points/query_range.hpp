@@ -7,8 +7,8 @@
 
 #include "geometry/magnitudes.hpp"
 #include "points/device_mesh.hpp"
+#include "points/records.h"
 #include "predicates/bounds.h"
-#include "shared/records.h"
 
 namespace flaunay::points {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/runtime.hpp"
-#include "shared/records.h"
+#include "mesh/records.h"
 
 namespace flaunay::points {
 

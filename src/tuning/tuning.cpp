@@ -7,11 +7,14 @@
 #include <optional>
 #include <vector>
 
+#include "blocks/limits.h"
+#include "flattened/limits.h"
 #include "host/error.hpp"
 #include "host/native/threads.hpp"
 #include "host/opencl/device.hpp"
+#include "operations/limits.h"
 #include "operations/prefetch.h"
-#include "shared/limits.h"
+#include "points/limits.h"
 
 namespace flaunay {
 namespace {

@@ -13,8 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "arithmetic/records.h"
 #include "blocks/open_sectors.h"
-#include "shared/limits.h"
+#include "blocks/records.h"
 #include "tests/support/fixtures.hpp"
 
 namespace flaunay::blocks {

@@ -9,7 +9,9 @@
 #include <numeric>
 #include <vector>
 
+#include "blocks/codes.h"
 #include "blocks/halving.h"
+#include "blocks/limits.h"
 #include "launchers/blocks/halve.cl.hpp"
 #include "tests/blocks/support.hpp"
 

@@ -8,12 +8,16 @@
 #include <set>
 #include <vector>
 
+#include "blocks/codes.h"
 #include "blocks/halving.h"
+#include "blocks/limits.h"
+#include "blocks/records.h"
 #include "blocks/seams.h"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "predicates/bounds.h"
-#include "shared/codes.h"
 #include "tests/blocks/support.hpp"
 #include "tests/support/exact_points.hpp"
 
@@ -228,12 +232,12 @@ struct WalkedSeam {
     for (int height = 0; height < kHeight; ++height) {
       const std::size_t cells = (kPoints + (2u << height) - 1) / (2u << height);
       runtime.map(cells, kernels::merge_parts{.spread = 1,
-                                              .height = height,
-                                              .places = kPoints,
-                                              .offsets = blocks.offsets,
-                                              .distinct = rings.device_distinct,
-                                              .block_of_place = halved.block_of_place,
-                                              .axes = halved.axes,
+                                              .places_of_parts = {.height = height,
+                                                                  .places = kPoints,
+                                                                  .offsets = blocks.offsets,
+                                                                  .distinct = rings.device_distinct,
+                                                                  .block_of_place = halved.block_of_place,
+                                                                  .axes = halved.axes},
                                               .bounds = call.work.bounds,
                                               .points = blocks.vertices,
                                               .edges = rings.edges,
@@ -247,12 +251,12 @@ struct WalkedSeam {
     removed = testing::upload(runtime, std::vector<cl_uchar>(2 * kPairs, 0));
     walks = testing::guarded<kernel::seam_walk>(runtime, 2);
     runtime.map(2, kernels::walk_seams{.spread = 1,
-                                       .height = kHeight,
-                                       .places = kPoints,
-                                       .offsets = blocks.offsets,
-                                       .distinct = rings.device_distinct,
-                                       .block_of_place = halved.block_of_place,
-                                       .axes = halved.axes,
+                                       .places_of_parts = {.height = kHeight,
+                                                           .places = kPoints,
+                                                           .offsets = blocks.offsets,
+                                                           .distinct = rings.device_distinct,
+                                                           .block_of_place = halved.block_of_place,
+                                                           .axes = halved.axes},
                                        .bounds = call.work.bounds,
                                        .points = blocks.vertices,
                                        .edges = rings.edges,
@@ -283,12 +287,12 @@ struct WalkedSeam {
     both[0] = up;
     const std::size_t group = tuning_of(runtime).sewing_group;
     runtime.launch(group, group,
-                   kernels::sew_seams{.height = kHeight,
-                                      .places = kPoints,
-                                      .offsets = blocks.offsets,
-                                      .distinct = rings.device_distinct,
-                                      .block_of_place = halved.block_of_place,
-                                      .axes = halved.axes,
+                   kernels::sew_seams{.places_of_parts = {.height = kHeight,
+                                                          .places = kPoints,
+                                                          .offsets = blocks.offsets,
+                                                          .distinct = rings.device_distinct,
+                                                          .block_of_place = halved.block_of_place,
+                                                          .axes = halved.axes},
                                       .points = blocks.vertices,
                                       .crossings = crossings,
                                       .walks = testing::upload(runtime, both),

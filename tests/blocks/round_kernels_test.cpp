@@ -15,6 +15,7 @@
 
 #include "blocks/open_sectors.h"
 #include "launchers/blocks/rounds.cl.hpp"
+#include "mesh/limits.h"
 #include "points/sampled_cuts.h"
 #include "predicates/bounds.h"
 #include "tests/blocks/support.hpp"
@@ -198,20 +199,21 @@ void check_frames(Runtime& runtime, bool is_merged, std::uint64_t seed) {
   for (std::size_t i = 0; i < n; ++i) vertices.push_back(static_cast<cl_int>(n - 1 - i));
   const auto frames = guarded<kernel::block_frame>(runtime, all.points.count());
   const auto hull_next = upload(runtime, std::vector<cl_int>(n, -7));
-  runtime.map(all.points.count(), kernels::frame_blocks{.sets = all.sets(),
-                                                        .is_merged = is_merged,
-                                                        .set_blocks = all.blocks.device_set_blocks,
-                                                        .set_nodes = upload(runtime, set_nodes),
-                                                        .nodes = upload(runtime, nodes),
-                                                        .scale = kernel::scaling{0.5, 8, 1},
-                                                        .solved = all.rings.solved,
-                                                        .set_boxes = upload(runtime, set_boxes),
-                                                        .boxes = upload(runtime, boxes),
-                                                        .edges = all.rings.edges,
-                                                        .vertex_edge = all.rings.vertex_edge,
-                                                        .vertices = upload(runtime, vertices),
-                                                        .hull_next = hull_next,
-                                                        .frames = frames});
+  runtime.map(all.points.count(),
+              kernels::frame_blocks{.cut_sets = {.sets = all.sets(),
+                                                 .set_blocks = all.blocks.device_set_blocks,
+                                                 .set_nodes = upload(runtime, set_nodes),
+                                                 .nodes = upload(runtime, nodes)},
+                                    .is_merged = is_merged,
+                                    .scale = kernel::scaling{0.5, 8, 1},
+                                    .solved = all.rings.solved,
+                                    .set_boxes = upload(runtime, set_boxes),
+                                    .boxes = upload(runtime, boxes),
+                                    .edges = all.rings.edges,
+                                    .vertex_edge = all.rings.vertex_edge,
+                                    .vertices = upload(runtime, vertices),
+                                    .hull_next = hull_next,
+                                    .frames = frames});
   const auto found = download(runtime, frames, all.points.count());
   std::vector<cl_int> expected_next(n, -7);
   for (std::size_t s = 0; s < all.sets(); ++s) {
@@ -379,7 +381,11 @@ void check_open(Runtime& runtime, SolvedSets all, bool is_first, std::size_t lar
   const auto device_states = upload(runtime, states);
   const auto device_names = upload(runtime, half.name);
   const auto counts = guarded<cl_uint2>(runtime, n);
-  runtime.map(n, kernels::count_open{.is_first = is_first,
+  runtime.map(n, kernels::count_open{.open_vertices = {.is_first = is_first,
+                                                       .vertices = device_names,
+                                                       .listed = device_listed,
+                                                       .open_offsets = device_offsets,
+                                                       .open_edges = device_before},
                                      .sets = all.sets(),
                                      .blocks = all.points.count(),
                                      .set_blocks = all.blocks.device_set_blocks,
@@ -387,10 +393,6 @@ void check_open(Runtime& runtime, SolvedSets all, bool is_first, std::size_t lar
                                      .distinct = all.rings.device_distinct,
                                      .edges = all.rings.edges,
                                      .vertex_edge = all.rings.vertex_edge,
-                                     .vertices = device_names,
-                                     .listed = device_listed,
-                                     .open_offsets = device_offsets,
-                                     .open_edges = device_before,
                                      .states = device_states,
                                      .counts = counts});
   const std::vector<cl_uint2> counted = download(runtime, counts, n);
@@ -428,14 +430,14 @@ void check_open(Runtime& runtime, SolvedSets all, bool is_first, std::size_t lar
   const auto next_vertices = guarded<cl_int>(runtime, points),
              next_offsets = guarded<cl_int>(runtime, points + 1);
   const auto next_edges = guarded<kernel::open_edge>(runtime, edges);
-  runtime.map(n, kernels::write_open{.is_first = is_first,
+  runtime.map(n, kernels::write_open{.open_vertices = {.is_first = is_first,
+                                                       .vertices = device_names,
+                                                       .listed = device_listed,
+                                                       .open_offsets = device_offsets,
+                                                       .open_edges = device_before},
                                      .points = all.blocks.vertices,
                                      .edges = all.rings.edges,
                                      .vertex_edge = all.rings.vertex_edge,
-                                     .vertices = device_names,
-                                     .listed = device_listed,
-                                     .open_offsets = device_offsets,
-                                     .open_edges = device_before,
                                      .states = device_states,
                                      .scanned = upload(runtime, scanned),
                                      .next_points = next_points,

@@ -14,6 +14,8 @@
 
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
+#include "mesh/limits.h"
+#include "mesh/rings.h"
 #include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"

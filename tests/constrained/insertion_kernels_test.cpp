@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
+#include "constrained/codes.h"
 #include "constrained/insertion/insert.hpp"
+#include "constrained/records.h"
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"
-#include "shared/codes.h"
-#include "shared/limits.h"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/integer_points.hpp"
@@ -195,8 +195,8 @@ TEST(SmallInsertionKernels, WalksOfSegments) {
                                         .most_rows = 1000,
                                         .bound = scaled.bounds.orient,
                                         .points = scaled.coordinates,
-                                        .triangles = upload(runtime, mesh.triangles),
-                                        .neighbors = upload(runtime, mesh.neighbors),
+                                        .triangulation = {.triangles = upload(runtime, mesh.triangles),
+                                                          .neighbors = upload(runtime, mesh.neighbors)},
                                         .hull = upload(runtime, mesh.hull),
                                         .keys = upload(runtime, Ulongs{cl_ulong{at_v} << 32 | at_w}),
                                         .claims = claims,

@@ -10,10 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "flattened/codes.h"
 #include "flattened/frame.h"
+#include "flattened/limits.h"
 #include "launchers/flattened/chains.cl.hpp"
-#include "shared/codes.h"
-#include "shared/limits.h"
+#include "operations/limits.h"
 #include "tests/flattened/support.hpp"
 
 namespace flaunay::flattened {
@@ -538,25 +539,26 @@ void check_joined(Runtime& runtime, const KeptElements& kept, FixtureRandom& ran
     const auto found_ids = testing::guarded<cl_int>(runtime, ids.size());
     const auto found_projections = testing::guarded<cl_double2>(runtime, ids.size());
     // Fewer work-items than elements, or more.
-    runtime.launch(3 * group, group,
-                   kernels::join_sequences{.regions_count = kept.regions,
-                                           .before = testing::upload(runtime, kept.before),
-                                           .begins = testing::upload(runtime, kept.begins),
-                                           .positions = testing::upload(runtime, kept.positions),
-                                           .regions = testing::upload(runtime, kept.point_regions),
-                                           .x_list = testing::upload(runtime, x_list),
-                                           .y_list = testing::upload(runtime, y_list),
-                                           .point_projections = testing::upload(runtime, point_projections),
-                                           .axis = testing::upload(runtime, axis),
-                                           .path_offsets = testing::upload(runtime, kept.path_offsets),
-                                           .path = testing::upload(runtime, path),
-                                           .path_regions = testing::upload(runtime, path_regions),
-                                           .path_projections = testing::upload(runtime, path_projections),
-                                           .corner_ids = testing::upload(runtime, corner_ids),
-                                           .corner_owners = testing::upload(runtime, corner_owners),
-                                           .corner_projections = testing::upload(runtime, corner_projections),
-                                           .ids = found_ids,
-                                           .projections = found_projections});
+    runtime.launch(
+        3 * group, group,
+        kernels::join_sequences{
+            .regions_count = kept.regions,
+            .before = testing::upload(runtime, kept.before),
+            .begins = testing::upload(runtime, kept.begins),
+            .positions = testing::upload(runtime, kept.positions),
+            .regions = testing::upload(runtime, kept.point_regions),
+            .lists = {.x_list = testing::upload(runtime, x_list), .y_list = testing::upload(runtime, y_list)},
+            .point_projections = testing::upload(runtime, point_projections),
+            .axis = testing::upload(runtime, axis),
+            .paths = {.path_offsets = testing::upload(runtime, kept.path_offsets),
+                      .path = testing::upload(runtime, path),
+                      .path_projections = testing::upload(runtime, path_projections)},
+            .path_regions = testing::upload(runtime, path_regions),
+            .corners_to_join = {.corner_ids = testing::upload(runtime, corner_ids),
+                                .corner_owners = testing::upload(runtime, corner_owners),
+                                .corner_projections = testing::upload(runtime, corner_projections)},
+            .ids = found_ids,
+            .projections = found_projections});
     ASSERT_TRUE(same(testing::download(runtime, found_ids, ids.size()), ids));
     ASSERT_TRUE(same(testing::download(runtime, found_projections, ids.size()), projections));
   }

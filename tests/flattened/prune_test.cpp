@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "flattened/limits.h"
 #include "launchers/flattened/prune.cl.hpp"
-#include "shared/limits.h"
 #include "tests/flattened/support.hpp"
 
 namespace flaunay::flattened {

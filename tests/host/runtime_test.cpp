@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -185,6 +186,32 @@ TEST(KernelPath, IncludesArePutInPlaceOnce) {
   EXPECT_EQ(kernel_source("a"),
             "#line 1 \"a.cl\"\n#line 1 \"shared/b.h\"\nin b\n#line 1 \"shared/c.h\"\nin c\n"
             "#line 3 \"shared/b.h\"\n#line 2 \"a.cl\"\n#line 3 \"a.cl\"\nlast\n");
+}
+
+// Programs that were compiled before are used again as long as their text is the same.
+TEST(KernelPath, OneMoreCodeOfARoomChangesNoOtherRoomsPrograms) {
+  namespace fs = std::filesystem;
+  const fs::path kernels = fs::absolute(fs::path(test_data()).parent_path().parent_path() / "kernels");
+  const auto sources = [&kernels] {
+    std::map<std::string, std::string> all;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kernels)) {
+      const fs::path file = fs::relative(entry.path(), kernels).replace_extension();
+      if (entry.path().extension() == ".cl") all[file.string()] = kernel_source(file.string());
+    }
+    return all;
+  };
+  const auto before = sources();
+  for (const std::string room : {"blocks", "constrained", "flattened", "points", "voronoi"}) {
+    const testing::ChangedKernels changed(
+        room + "/codes.h", [](const std::string& text) { return text + "INTEGER_CONSTANT(ONE_MORE, 1);\n"; });
+    std::size_t changes = 0;
+    for (const auto& [file, source] : sources()) {
+      if (source == before.at(file)) continue;
+      EXPECT_EQ(file.substr(0, file.find('/')), room) << file;
+      ++changes;
+    }
+    EXPECT_GT(changes, 0u) << room;
+  }
 }
 
 TEST(KernelPath, WithoutItTheKernelsAreEmbedded) {

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "host/launch/vector_operations.hpp"
-#include "shared/limits.h"
+#include "operations/limits.h"
+#include "points/limits.h"
 #include "tests/host/support.hpp"
 
 namespace flaunay::host {

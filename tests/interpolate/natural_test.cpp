@@ -217,23 +217,23 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   std::vector<cl_uchar> left;
   for (const cl_int triangle : found) left.push_back(triangle >= 0);
   runtime.copy(results, 0, exact, 0, kColumns * m);
-  runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.sets = located.sets,
-                                                                      .columns = kColumns,
-                                                                      .is_by_vertex = 0,
-                                                                      .method = static_cast<cl_int>(method),
-                                                                      .outside = kOutside,
-                                                                      .query_offsets = located.query_offsets,
-                                                                      .records = locator.records,
-                                                                      .frames = located.frames,
-                                                                      .order = located.order,
-                                                                      .placed = located.placed,
-                                                                      .points = locator.points,
-                                                                      .source = locator.source,
-                                                                      .faces = locator.faces,
-                                                                      .found = located.found,
-                                                                      .values = values,
-                                                                      .left = upload(runtime, left),
-                                                                      .results = exact});
+  runtime.map_in_small_groups(
+      m, kernels::interpolate_natural_exactly{
+             .placed_queries = {.sets = located.sets,
+                                .query_offsets = located.query_offsets,
+                                .frames = located.frames,
+                                .order = located.order,
+                                .placed = located.placed},
+             .columns = kColumns,
+             .is_by_vertex = 0,
+             .method = static_cast<cl_int>(method),
+             .outside = kOutside,
+             .records = locator.records,
+             .faces = {.points = locator.points, .source = locator.source, .faces = locator.faces},
+             .found = located.found,
+             .values = values,
+             .left = upload(runtime, left),
+             .results = exact});
   const auto offsets = guarded<cl_uint>(runtime, m + 1);
   NaturalLists lists;
   std::size_t count = 0;

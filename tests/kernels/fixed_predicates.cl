@@ -6,6 +6,7 @@
 
 #include "arithmetic/bit_account.h"
 #include "blocks/certify.h"
+#include "blocks/records.h"
 #include "blocks/seams.h"
 #include "predicates/planar.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "flattened/limits.h"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
-#include "shared/limits.h"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"

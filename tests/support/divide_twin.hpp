@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/records.h"
 #include "tests/support/distribute_twin.hpp"
 #include "tests/support/exact_points.hpp"
 

@@ -1,5 +1,6 @@
-// The predicates of kernels/shared as devices without double precision have them (FIXED_POINT), read as C++:
-// in namespaces of their own, beside those in double precision. Points are arrays of coordinates, x0 y0 x1 y1
+// The predicates of kernels/predicates as devices without double precision have them (FIXED_POINT), read as
+// C++: in namespaces of their own, beside those in double precision. Points are arrays of coordinates, x0 y0
+// x1 y1
 // ....
 #pragma once
 

@@ -1,4 +1,6 @@
-// Exact signs of the two geometric predicates on the host, for any finite doubles.
+// Exact signs of the two geometric predicates on the host, for any finite doubles. On purpose they share no
+// text with the kernels' (kernels/arithmetic, kernels/predicates), so that an error there cannot hide itself
+// from the check.
 #pragma once
 
 #include <cmath>

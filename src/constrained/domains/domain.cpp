@@ -117,20 +117,20 @@ Borders find_borders(host::Runtime& runtime, const DomainMesh& mesh, const Depth
   borders.regions = runtime.arena().allocate<cl_int>(2 * borders.count);
   borders.steps = runtime.arena().allocate<cl_int>(borders.count);
   if (borders.count == 0) return borders;
-  runtime.map(triangles, kernels::write_borders{.rule = rules.fill,
-                                                .mask = weights.mask,
-                                                .triangles = mesh.triangles,
-                                                .neighbors = mesh.neighbors,
-                                                .constrained = mesh.constrained,
-                                                .regions = regions.of_triangles,
-                                                .places = places,
-                                                .input = mesh.coordinates.as<cl_ulong>(),
-                                                .needed = weights.needed,
-                                                .sums = weights.sums,
-                                                .edges = mesh.constraint_edges,
-                                                .slots = weights.slots,
-                                                .borders = borders.regions,
-                                                .steps = borders.steps});
+  runtime.map(triangles, kernels::write_borders{
+                             .rule = rules.fill,
+                             .mask = weights.mask,
+                             .triangulation = {.triangles = mesh.triangles, .neighbors = mesh.neighbors},
+                             .constrained = mesh.constrained,
+                             .regions = regions.of_triangles,
+                             .places = places,
+                             .input = mesh.coordinates.as<cl_ulong>(),
+                             .needed = weights.needed,
+                             .sums = weights.sums,
+                             .edges = mesh.constraint_edges,
+                             .slots = weights.slots,
+                             .borders = borders.regions,
+                             .steps = borders.steps});
   return borders;
 }
 
@@ -366,16 +366,16 @@ LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regi
 
 void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces& places,
                 const LeftBuffers& left, Regions& regions) {
-  runtime.map(mesh.triangle_count(), kernels::write_left{.triangles = mesh.triangles,
-                                                         .neighbors = mesh.neighbors,
-                                                         .constrained = mesh.constrained,
-                                                         .regions = regions.of_triangles,
-                                                         .places = places.triangles,
-                                                         .numbers = places.numbers,
-                                                         .left_triangles = left.triangles,
-                                                         .left_neighbors = left.neighbors,
-                                                         .left_constrained = left.constrained,
-                                                         .left_regions = left.regions});
+  runtime.map(mesh.triangle_count(),
+              kernels::write_left{.triangulation = {.triangles = mesh.triangles, .neighbors = mesh.neighbors},
+                                  .constrained = mesh.constrained,
+                                  .regions = regions.of_triangles,
+                                  .places = places.triangles,
+                                  .numbers = places.numbers,
+                                  .left_triangles = left.triangles,
+                                  .left_neighbors = left.neighbors,
+                                  .left_constrained = left.constrained,
+                                  .left_regions = left.regions});
   if (regions.depths.size() == 0) return;
   const auto depths = runtime.arena().allocate<cl_int>(places.regions);
   runtime.map(regions.count, kernels::number_depths{

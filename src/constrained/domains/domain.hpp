@@ -9,7 +9,7 @@
 #include "flaunay/constrained.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/runtime.hpp"
-#include "shared/records.h"
+#include "points/records.h"
 
 namespace flaunay::constrained {
 

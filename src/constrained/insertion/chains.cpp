@@ -82,37 +82,31 @@ class LongChains {
 
   void write(const Buffer<cl_int>& triangles) {
     runtime_.fill(wrong_, count_, cl_uint{0});
-    runtime_.map_in_small_groups(vertices_, kernels::check_triangles{.bound = all_.circle_bound,
-                                                                     .offsets = offsets_,
-                                                                     .of = of_,
-                                                                     .places = scratch_.places,
-                                                                     .vertices = scratch_.vertices,
-                                                                     .edges = scratch_.edges,
-                                                                     .wrong = wrong_});
-    runtime_.map(vertices_, kernels::link_apexes{.offsets = offsets_,
-                                                 .of = of_,
-                                                 .places = scratch_.places,
-                                                 .vertices = scratch_.vertices,
-                                                 .edges = scratch_.edges,
-                                                 .jumps = lists_[0]});
+    runtime_.map_in_small_groups(
+        vertices_, kernels::check_triangles{
+                       .bound = all_.circle_bound, .worked_chains = worked_chains(), .wrong = wrong_});
+    runtime_.map(vertices_, kernels::link_apexes{.worked_chains = worked_chains(), .jumps = lists_[0]});
     for (int k = bits_of(vertices_); k > 0; --k) {
       runtime_.map(vertices_, kernels::jump_apexes{.jumps = lists_[0], .result = lists_[1]});
       std::swap(lists_[0], lists_[1]);
     }
     runtime_.map_in_small_groups(vertices_, kernels::write_chain_rows{.bound = all_.circle_bound,
                                                                       .chains = chains_,
-                                                                      .offsets = offsets_,
+                                                                      .worked_chains = worked_chains(),
                                                                       .all = all_.offsets,
-                                                                      .of = of_,
-                                                                      .places = scratch_.places,
-                                                                      .vertices = scratch_.vertices,
-                                                                      .edges = scratch_.edges,
                                                                       .jumps = lists_[0],
                                                                       .wrong = wrong_,
                                                                       .triangles = triangles});
   }
 
  private:
+  kernels::worked_chains worked_chains() const {
+    return {.offsets = offsets_,
+            .of = of_,
+            .places = scratch_.places,
+            .vertices = scratch_.vertices,
+            .edges = scratch_.edges};
+  }
   void thin(bool has_hubs) {
     runtime_.map(vertices_, kernels::start_lists{.offsets = offsets_,
                                                  .of = of_,
@@ -166,11 +160,7 @@ class LongChains {
                                                                      .pass = pass,
                                                                      .longest_walk = longest_walk,
                                                                      .bound = all_.circle_bound,
-                                                                     .offsets = offsets_,
-                                                                     .of = of_,
-                                                                     .places = scratch_.places,
-                                                                     .vertices = scratch_.vertices,
-                                                                     .edges = scratch_.edges,
+                                                                     .worked_chains = worked_chains(),
                                                                      .stages = stages_,
                                                                      .hubs = hubs_,
                                                                      .owners = owners_[0],
@@ -178,22 +168,14 @@ class LongChains {
                                                                      .state = state_});
     runtime_.map(vertices_, kernels::choose_vertices{.round = round,
                                                      .counts = counts,
-                                                     .offsets = offsets_,
-                                                     .of = of_,
-                                                     .places = scratch_.places,
-                                                     .vertices = scratch_.vertices,
-                                                     .edges = scratch_.edges,
+                                                     .worked_chains = worked_chains(),
                                                      .stages = stages_,
                                                      .owners = owners_[0],
                                                      .next_owners = owners_[1],
                                                      .roles = roles_,
                                                      .state = state_});
     runtime_.map(vertices_, kernels::insert_vertices{.round = round,
-                                                     .offsets = offsets_,
-                                                     .of = of_,
-                                                     .places = scratch_.places,
-                                                     .vertices = scratch_.vertices,
-                                                     .edges = scratch_.edges,
+                                                     .worked_chains = worked_chains(),
                                                      .stages = stages_,
                                                      .owners = owners_[0],
                                                      .roles = roles_});

@@ -1,3 +1,4 @@
+#include "derived/interpolate/arguments.hpp"
 #include "derived/interpolate/gradients.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "launchers/interpolate/clough_tocher.cl.hpp"
@@ -11,17 +12,11 @@ void clough_tocher(host::Runtime& runtime, const Locator& locator, const Table& 
   const locate::LocatedQueries located = locate_by_place(runtime, locator, queries, m, query_offsets);
   if (m == 0) return;
   const auto at_vertices = at_vertices_of(runtime, locator, table, gradients);
-  runtime.map_in_small_groups(m, kernels::interpolate_clough_tocher{.sets = located.sets,
+  runtime.map_in_small_groups(m, kernels::interpolate_clough_tocher{.placed_queries = placed_queries(located),
                                                                     .columns = table.columns,
                                                                     .outside = table.outside,
-                                                                    .query_offsets = located.query_offsets,
-                                                                    .frames = located.frames,
-                                                                    .order = located.order,
-                                                                    .placed = located.placed,
                                                                     .bound = located.orient_bound,
-                                                                    .points = locator.points,
-                                                                    .source = locator.source,
-                                                                    .faces = locator.faces,
+                                                                    .faces = faces_of(locator),
                                                                     .found = located.found,
                                                                     .values = table.values,
                                                                     .gradients = at_vertices,

@@ -1,3 +1,4 @@
+#include "derived/interpolate/arguments.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "launchers/interpolate/linear.cl.hpp"
 
@@ -8,17 +9,11 @@ void linear(host::Runtime& runtime, const Locator& locator, const Table& table,
             const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located = locate_by_place(runtime, locator, queries, m, query_offsets);
-  runtime.map_in_small_groups(m, kernels::interpolate_linear{.sets = located.sets,
+  runtime.map_in_small_groups(m, kernels::interpolate_linear{.placed_queries = placed_queries(located),
                                                              .columns = table.columns,
                                                              .outside = table.outside,
-                                                             .query_offsets = located.query_offsets,
-                                                             .frames = located.frames,
-                                                             .order = located.order,
-                                                             .placed = located.placed,
                                                              .bound = located.orient_bound,
-                                                             .points = locator.points,
-                                                             .source = locator.source,
-                                                             .faces = locator.faces,
+                                                             .faces = faces_of(locator),
                                                              .found = located.found,
                                                              .values = table.values,
                                                              .results = results});

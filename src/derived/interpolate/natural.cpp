@@ -1,5 +1,6 @@
 #include "derived/interpolate/natural.hpp"
 
+#include "derived/interpolate/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/interpolate/natural.cl.hpp"
 
@@ -25,39 +26,28 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                          .values = table.values,
                                          .placed = values});
   }
-  runtime.map_in_small_groups(m, kernels::interpolate_natural{.sets = located.sets,
+  runtime.map_in_small_groups(m, kernels::interpolate_natural{.placed_queries = placed_queries(located),
                                                               .columns = table.columns,
                                                               .is_by_vertex = is_by_vertex,
                                                               .method = static_cast<cl_int>(method),
                                                               .outside = table.outside,
-                                                              .query_offsets = located.query_offsets,
-                                                              .frames = located.frames,
-                                                              .order = located.order,
-                                                              .placed = located.placed,
-                                                              .points = locator.points,
-                                                              .source = locator.source,
-                                                              .faces = locator.faces,
+                                                              .faces = faces_of(locator),
                                                               .found = located.found,
                                                               .values = values,
                                                               .results = results,
                                                               .left = left});
-  runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.sets = located.sets,
-                                                                      .columns = table.columns,
-                                                                      .is_by_vertex = is_by_vertex,
-                                                                      .method = static_cast<cl_int>(method),
-                                                                      .outside = table.outside,
-                                                                      .query_offsets = located.query_offsets,
-                                                                      .records = locator.records,
-                                                                      .frames = located.frames,
-                                                                      .order = located.order,
-                                                                      .placed = located.placed,
-                                                                      .points = locator.points,
-                                                                      .source = locator.source,
-                                                                      .faces = locator.faces,
-                                                                      .found = located.found,
-                                                                      .values = values,
-                                                                      .left = left,
-                                                                      .results = results});
+  runtime.map_in_small_groups(m,
+                              kernels::interpolate_natural_exactly{.placed_queries = placed_queries(located),
+                                                                   .columns = table.columns,
+                                                                   .is_by_vertex = is_by_vertex,
+                                                                   .method = static_cast<cl_int>(method),
+                                                                   .outside = table.outside,
+                                                                   .records = locator.records,
+                                                                   .faces = faces_of(locator),
+                                                                   .found = located.found,
+                                                                   .values = values,
+                                                                   .left = left,
+                                                                   .results = results});
 }
 
 void natural_neighbors(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
@@ -67,30 +57,18 @@ void natural_neighbors(host::Runtime& runtime, const Locator& locator, NaturalWe
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located =
       locate::locate_by_place(runtime, locator, queries, m, query_offsets, points::kCircleLimits);
-  runtime.map_in_small_groups(m, kernels::count_neighbors{.sets = located.sets,
-                                                          .query_offsets = located.query_offsets,
+  runtime.map_in_small_groups(m, kernels::count_neighbors{.placed_queries = placed_queries(located),
                                                           .records = locator.records,
-                                                          .frames = located.frames,
-                                                          .order = located.order,
-                                                          .placed = located.placed,
-                                                          .points = locator.points,
-                                                          .source = locator.source,
-                                                          .faces = locator.faces,
+                                                          .faces = faces_of(locator),
                                                           .found = located.found,
                                                           .counts = offsets});
   host::exclusive_scan(runtime, offsets, m, offsets);
   const std::size_t total = runtime.read_one(offsets, m);
   const NaturalLists lists = allocate(total);
-  runtime.map_in_small_groups(m, kernels::list_neighbors{.sets = located.sets,
+  runtime.map_in_small_groups(m, kernels::list_neighbors{.placed_queries = placed_queries(located),
                                                          .method = static_cast<cl_int>(method),
-                                                         .query_offsets = located.query_offsets,
                                                          .records = locator.records,
-                                                         .frames = located.frames,
-                                                         .order = located.order,
-                                                         .placed = located.placed,
-                                                         .points = locator.points,
-                                                         .source = locator.source,
-                                                         .faces = locator.faces,
+                                                         .faces = faces_of(locator),
                                                          .found = located.found,
                                                          .offsets = offsets,
                                                          .neighbors = lists.points,

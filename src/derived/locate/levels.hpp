@@ -6,8 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "arithmetic/records.h"
+#include "locate/records.h"
 #include "points/device_mesh.hpp"
-#include "shared/records.h"
 
 namespace flaunay::locate {
 

@@ -175,6 +175,26 @@ struct Pass {
   Buffer<cl_double2> placed;     // the scaled queries
 };
 
+kernels::placed_queries placed_queries(const Pass& pass) {
+  return {.sets = pass.sets,
+          .query_offsets = pass.query_offsets,
+          .frames = pass.frames,
+          .order = pass.order,
+          .placed = pass.placed};
+}
+
+kernels::searched_mesh searched_mesh(const Locator& locator, const Stars& stars) {
+  return {.records = locator.records,
+          .points = locator.points,
+          .source = locator.source,
+          .clearances = locator.clearances,
+          .faces = locator.faces,
+          .hull_points = locator.hull_points,
+          .hull = locator.hull,
+          .starts = stars.starts,
+          .fans = stars.fans};
+}
+
 // How far queries walk in large sets before they give up.
 struct WalkLimits {
   std::size_t long_from, most;  // in sets with so many triangles; so many steps
@@ -242,42 +262,36 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
 void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& pass, bool is_answer,
                     WalkLimits limits, const Buffer<cl_double>& queries, std::size_t m,
                     const Buffer<cl_int>& found) {
-  runtime.chunks(m, runtime.sizes().chunk(m),
-                 kernels::find_triangles{.sets = pass.sets,
-                                         .are_placed = pass.are_placed,
-                                         .is_answer = is_answer,
-                                         .long_from = limits.long_from,
-                                         .most_steps = limits.most,
-                                         .query_offsets = pass.query_offsets,
-                                         .records = locator.records,
-                                         .nodes = locator.nodes,
-                                         .starts = locator.starts,
-                                         .frames = pass.frames,
-                                         .queries = queries,
-                                         .keys = pass.keys,
-                                         .order = pass.order,
-                                         .placed = pass.placed,
-                                         .bound = pass.orient_bound,
-                                         .points = locator.points,
-                                         .faces = locator.faces,
-                                         .first_triangle = locator.first_triangle,
-                                         .found = found});
+  runtime.chunks(
+      m, runtime.sizes().chunk(m),
+      kernels::find_triangles{
+          .sets = pass.sets,
+          .options = kernel::walk_options{pass.are_placed, is_answer, static_cast<cl_int>(limits.long_from),
+                                          static_cast<cl_int>(limits.most)},
+          .query_offsets = pass.query_offsets,
+          .query_trees = {.records = locator.records, .nodes = locator.nodes, .starts = locator.starts},
+          .frames = pass.frames,
+          .queries = queries,
+          .keys = pass.keys,
+          .order = pass.order,
+          .placed = pass.placed,
+          .bound = pass.orient_bound,
+          .walked_mesh = {.points = locator.points,
+                          .faces = locator.faces,
+                          .first_triangle = locator.first_triangle},
+          .found = found});
 }
 
 // Goes on from triangles, by place, to those of queries off the grid. answers: by query.
 void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
                      const Buffer<cl_int>& answers) {
-  runtime.map(m, kernels::locate_off_grid{.sets = pass.sets,
-                                          .query_offsets = pass.query_offsets,
+  runtime.map(m, kernels::locate_off_grid{.placed_queries = placed_queries(pass),
                                           .records = locator.records,
-                                          .frames = pass.frames,
-                                          .order = pass.order,
-                                          .placed = pass.placed,
                                           .queries = queries,
-                                          .points = locator.points,
-                                          .faces = locator.faces,
-                                          .first_triangle = locator.first_triangle,
+                                          .walked_mesh = {.points = locator.points,
+                                                          .faces = locator.faces,
+                                                          .first_triangle = locator.first_triangle},
                                           .found = found,
                                           .answers = answers});
 }
@@ -288,13 +302,9 @@ void nearest_off_grid(host::Runtime& runtime, const Locator& locator, const Pass
                       const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& points) {
   const auto unanswered = runtime.arena().allocate<cl_int>(1);
   runtime.fill(unanswered, 1, cl_int{0});
-  runtime.map(m, kernels::nearest_off_grid{.sets = pass.sets,
+  runtime.map(m, kernels::nearest_off_grid{.placed_queries = placed_queries(pass),
                                            .most = tuning_of(runtime).off_grid_most,
-                                           .query_offsets = pass.query_offsets,
                                            .records = locator.records,
-                                           .frames = pass.frames,
-                                           .order = pass.order,
-                                           .placed = pass.placed,
                                            .queries = queries,
                                            .points = locator.points,
                                            .source = locator.source,
@@ -361,39 +371,19 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
   const Levels& levels = locator.levels;
   const Locator none;
   const Locator& samples = locator.samples ? *locator.samples : none;
-  runtime.map(m, kernels::nearest_points{.sets = pass.sets,
+  runtime.map(m, kernels::nearest_points{.placed_queries = placed_queries(pass),
                                          .long_from = limits.long_from,
                                          .most_neighbors = limits.most,
                                          .are_vertices = pass.is_off_grid,
-                                         .levels = levels.count,
-                                         .sets_with_levels = levels.sets,
-                                         .query_offsets = pass.query_offsets,
-                                         .records = locator.records,
-                                         .frames = pass.frames,
-                                         .order = pass.order,
-                                         .placed = pass.placed,
+                                         .levels = {.levels = levels.count,
+                                                    .sets_with_levels = levels.sets,
+                                                    .first_vertices = locator.first_vertices,
+                                                    .boxes = levels.boxes,
+                                                    .long_sets = levels.long_sets,
+                                                    .below = levels.below},
+                                         .searched_mesh = searched_mesh(locator, levels.stars),
                                          .bound = pass.nearness_bound,
-                                         .points = locator.points,
-                                         .source = locator.source,
-                                         .clearances = locator.clearances,
-                                         .faces = locator.faces,
-                                         .hull_points = locator.hull_points,
-                                         .hull = locator.hull,
-                                         .starts = levels.stars.starts,
-                                         .fans = levels.stars.fans,
-                                         .first_vertices = locator.first_vertices,
-                                         .boxes = levels.boxes,
-                                         .long_sets = levels.long_sets,
-                                         .sample_records = samples.records,
-                                         .sample_points = samples.points,
-                                         .sample_source = samples.source,
-                                         .sample_clearances = samples.clearances,
-                                         .sample_faces = samples.faces,
-                                         .sample_hull_points = samples.hull_points,
-                                         .sample_hull = samples.hull,
-                                         .sample_starts = levels.sample_stars.starts,
-                                         .sample_fans = levels.sample_stars.fans,
-                                         .below = levels.below,
+                                         .sample = searched_mesh(samples, levels.sample_stars),
                                          .found = found,
                                          .nearest = points,
                                          .unanswered = unanswered});

@@ -4,10 +4,12 @@
 #include <memory>
 
 #include "derived/locate/levels.hpp"
+#include "locate/records.h"
+#include "mesh/records.h"
 #include "points/cut_tree.hpp"
 #include "points/device_mesh.hpp"
 #include "points/query_range.hpp"
-#include "shared/records.h"
+#include "points/records.h"
 
 namespace flaunay::locate {
 

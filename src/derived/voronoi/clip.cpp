@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "arithmetic/records.h"
 #include "derived/voronoi/voronoi.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/voronoi/clip.cl.hpp"
 #include "points/inspect.hpp"
 #include "predicates/bounds.h"
-#include "shared/codes.h"
+#include "voronoi/codes.h"
 
 namespace flaunay::voronoi {
 using namespace points;
@@ -135,17 +136,18 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
                                                             .flats = flats});
   const Slots slots = make_slots(runtime, mesh, flats, witnesses);
   const auto places = runtime.arena().allocate<cl_uint>(slots.most + 1);
-  runtime.map_in_small_groups(slots.most, kernels::clip_slots{.points = n,
-                                                              .triangle_count = triangles,
-                                                              .hull_count = hull,
-                                                              .clip = clip.size,
+  const kernels::clipped_diagram diagram{.points = n,
+                                         .triangle_count = triangles,
+                                         .hull_count = hull,
+                                         .clip = clip.size,
+                                         .corners = clip.corners,
+                                         .input = mesh.coordinates,
+                                         .triangles = mesh.triangles,
+                                         .ahead = slots.ahead,
+                                         .hull = mesh.hull};
+  runtime.map_in_small_groups(slots.most, kernels::clip_slots{.clipped_diagram = diagram,
                                                               .side_bound = clip.side_bound,
                                                               .nearness_bound = clip.nearness_bound,
-                                                              .corners = clip.corners,
-                                                              .input = mesh.coordinates,
-                                                              .triangles = mesh.triangles,
-                                                              .ahead = slots.ahead,
-                                                              .hull = mesh.hull,
                                                               .witnesses = witnesses,
                                                               .slots = slots.slots,
                                                               .codes = slots.codes});
@@ -183,18 +185,10 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
   host::exclusive_scan(runtime, places, slots.most, places);
   runtime.map(n, kernels::find_cells{.offsets = slots.offsets, .places = places, .cells = result.offsets});
   const Buffer<cl_double> vertices = provide(runtime.read_one(places, slots.most));
-  runtime.map_in_small_groups(slots.most, kernels::write_corners{.points = n,
-                                                                 .triangle_count = triangles,
-                                                                 .hull_count = hull,
-                                                                 .clip = clip.size,
+  runtime.map_in_small_groups(slots.most, kernels::write_corners{.clipped_diagram = diagram,
                                                                  .nearness_bound = clip.nearness_bound,
                                                                  .box = clip.box,
                                                                  .unscale = clip.unscale,
-                                                                 .corners = clip.corners,
-                                                                 .input = mesh.coordinates,
-                                                                 .triangles = mesh.triangles,
-                                                                 .ahead = slots.ahead,
-                                                                 .hull = mesh.hull,
                                                                  .centres = centres,
                                                                  .offsets = slots.offsets,
                                                                  .slots = slots.slots,

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "arithmetic/records.h"
 #include "geometry/predicates.hpp"
-#include "shared/codes.h"
+#include "points/codes.h"
+#include "voronoi/codes.h"
 
 namespace flaunay::voronoi {
 using namespace points;

@@ -6,11 +6,12 @@
 #include <optional>
 #include <utility>
 
+#include "arithmetic/records.h"
 #include "large/chunks/point_account.hpp"
 #include "large/chunks/runs.hpp"
+#include "points/codes.h"
 #include "points/cut_tree.h"
 #include "points/sampled_cuts.h"
-#include "shared/codes.h"
 
 namespace flaunay::chunks {
 namespace {

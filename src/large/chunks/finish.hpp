@@ -8,12 +8,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "arithmetic/records.h"
+#include "blocks/records.h"
 #include "flaunay/chunks.hpp"
 #include "flaunay/flaunay.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/native/threads.hpp"
 #include "large/chunks/points.hpp"
-#include "shared/records.h"
 
 namespace flaunay::chunks {
 

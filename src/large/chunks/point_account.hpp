@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
+#include "arithmetic/records.h"
 #include "geometry/magnitudes.hpp"
 #include "host/native/threads.hpp"
-#include "shared/records.h"
 
 namespace flaunay::chunks {
 

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "shared/records.h"
-
 namespace flaunay::chunks {
 
 /// kernel::open_edge beyond one device: an edge out of a chunk's point of which the triangles on one side are

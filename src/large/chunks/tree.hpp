@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "shared/records.h"
+#include "arithmetic/records.h"
+#include "points/records.h"
 
 namespace flaunay::chunks {
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "arithmetic/records.h"
 #include "geometry/euler.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
@@ -18,7 +19,7 @@
 #include "large/chunks/tree.hpp"
 #include "large/mpi/move.hpp"
 #include "large/mpi/sink.hpp"
-#include "shared/codes.h"
+#include "points/codes.h"
 
 namespace flaunay::mpi {
 namespace {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "geometry/sort.hpp"
+#include "mesh/limits.h"
 #include "statistics/counter.hpp"
 
 // Among edges of cocircular points, the merge keeps those that it meets first. geometry::finish makes the

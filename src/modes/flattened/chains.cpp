@@ -2,9 +2,11 @@
 #include <utility>
 #include <vector>
 
+#include "flattened/codes.h"
+#include "flattened/limits.h"
 #include "launchers/flattened/chains.cl.hpp"
 #include "modes/flattened/stages.hpp"
-#include "shared/limits.h"
+#include "operations/limits.h"
 
 namespace flaunay::flattened {
 using namespace geometry;
@@ -155,17 +157,16 @@ void join(Workspace& work, const Level& level, const Paths& paths, const Kept& k
                                          .begins = joined.begins,
                                          .positions = kept.positions,
                                          .regions = level.point_regions,
-                                         .x_list = level.x_list,
-                                         .y_list = level.y_list,
+                                         .lists = {.x_list = level.x_list, .y_list = level.y_list},
                                          .point_projections = level.projections,
                                          .axis = level.axis,
-                                         .path_offsets = paths.offsets,
-                                         .path = paths.vertices,
+                                         .paths = {.path_offsets = paths.offsets,
+                                                   .path = paths.vertices,
+                                                   .path_projections = paths.projections},
                                          .path_regions = paths.regions,
-                                         .path_projections = paths.projections,
-                                         .corner_ids = corners.ids,
-                                         .corner_owners = corners.owners,
-                                         .corner_projections = corners.projections,
+                                         .corners_to_join = {.corner_ids = corners.ids,
+                                                             .corner_owners = corners.owners,
+                                                             .corner_projections = corners.projections},
                                          .ids = joined.ids,
                                          .projections = joined.projections});
 }

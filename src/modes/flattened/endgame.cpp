@@ -1,7 +1,7 @@
+#include "flattened/codes.h"
 #include "launchers/flattened/endgame.cl.hpp"
 #include "launchers/flattened/endgame_exact.cl.hpp"
 #include "modes/flattened/stages.hpp"
-#include "shared/codes.h"
 
 namespace flaunay::flattened {
 

@@ -1,7 +1,7 @@
 // The dividing paths of a level: runs the stages that compute them, by the hull variant. Launches no kernel
 // itself.
+#include "flattened/limits.h"
 #include "modes/flattened/stages.hpp"
-#include "shared/limits.h"
 
 namespace flaunay::flattened {
 using namespace statistics;

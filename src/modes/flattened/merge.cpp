@@ -17,19 +17,18 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   work.add_depth(Component::split, 1 + scan_depth(level.points));
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
-  runtime.map(level.corners, kernels::corner_codes{.points_count = level.points,
-                                                   .bound = work.bounds.orient,
-                                                   .kept = paths.flags,
-                                                   .corners = level.corner_ids,
-                                                   .regions = level.corner_regions,
-                                                   .axis = level.axis,
-                                                   .cut = level.cut,
-                                                   .points = table.points,
-                                                   .path_offsets = paths.offsets,
-                                                   .path = paths.vertices,
-                                                   .path_projections = paths.projections,
-                                                   .places = places,
-                                                   .codes = codes});
+  runtime.map(level.corners,
+              kernels::corner_codes{.points_count = level.points,
+                                    .bound = work.bounds.orient,
+                                    .kept = paths.flags,
+                                    .corners = level.corner_ids,
+                                    .regions = level.corner_regions,
+                                    .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
+                                    .paths = {.path_offsets = paths.offsets,
+                                              .path = paths.vertices,
+                                              .path_projections = paths.projections},
+                                    .places = places,
+                                    .codes = codes});
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, codes, level.corners);

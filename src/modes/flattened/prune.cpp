@@ -1,6 +1,6 @@
+#include "flattened/limits.h"
 #include "launchers/flattened/prune.cl.hpp"
 #include "modes/flattened/stages.hpp"
-#include "shared/limits.h"
 
 namespace flaunay::flattened {
 using namespace statistics;
@@ -42,30 +42,26 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
                                       .corner_offsets = level.corner_offsets,
                                       .first_end = level.first_end,
                                       .last_end = level.last_end,
-                                      .axis = level.axis,
-                                      .cut = level.cut,
-                                      .points = table.points,
+                                      .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
                                       .path = points.ends.vertices,
                                       .path_projections = points.ends.projections,
                                       .path_region = points.ends.regions,
                                       .first = points.first,
                                       .before = before});
-  runtime.map(kept, kernels::gather_points{.points_count = points_count,
-                                           .regions_count = regions,
-                                           .positions = positions,
-                                           .before = before,
-                                           .regions = level.point_regions,
-                                           .point_projections = level.projections,
-                                           .x_list = level.x_list,
-                                           .y_list = level.y_list,
-                                           .corner_regions = level.corner_regions,
-                                           .corners = level.corner_ids,
-                                           .axis = level.axis,
-                                           .cut = level.cut,
-                                           .points = table.points,
-                                           .ids = points.ids,
-                                           .segment = points.segments,
-                                           .projections = points.projections});
+  runtime.map(kept,
+              kernels::gather_points{.points_count = points_count,
+                                     .regions_count = regions,
+                                     .positions = positions,
+                                     .before = before,
+                                     .regions = level.point_regions,
+                                     .point_projections = level.projections,
+                                     .lists = {.x_list = level.x_list, .y_list = level.y_list},
+                                     .corner_regions = level.corner_regions,
+                                     .corners = level.corner_ids,
+                                     .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
+                                     .ids = points.ids,
+                                     .segment = points.segments,
+                                     .projections = points.projections});
   return points;
 }
 
@@ -84,42 +80,36 @@ void hold_against(Workspace& work, const PointTable& table, const Level& level, 
                   const Pruned& pruned) {
   host::Runtime& runtime = work.runtime;
   runtime.note_elements(kernel::BUCKET);
-  runtime.map((level.points + kernel::BUCKET - 1) / kernel::BUCKET,
-              kernels::prune_points{.elements = level.points,
-                                    .keep_on = keep_on,
-                                    .rough = rough,
-                                    .bound = work.bounds.hull,
-                                    .regions = level.point_regions,
-                                    .x_list = level.x_list,
-                                    .y_list = level.y_list,
-                                    .projections = level.projections,
-                                    .axis = level.axis,
-                                    .cut = level.cut,
-                                    .points = table.points,
-                                    .band = band,
-                                    .path_offsets = paths.offsets,
-                                    .path = paths.vertices,
-                                    .path_projections = paths.projections,
-                                    .ids = ids,
-                                    .chord = pruned.chord,
-                                    .depth = pruned.depth,
-                                    .flags = pruned.flags});
-  runtime.map(level.corners, kernels::prune_corners{.points_count = level.points,
-                                                    .rough = rough,
-                                                    .bound = work.bounds.hull,
-                                                    .corner_regions = level.corner_regions,
-                                                    .corners = level.corner_ids,
-                                                    .axis = level.axis,
-                                                    .cut = level.cut,
-                                                    .points = table.points,
-                                                    .band = band,
-                                                    .path_offsets = paths.offsets,
-                                                    .path = paths.vertices,
-                                                    .path_projections = paths.projections,
-                                                    .ids = ids,
-                                                    .chord = pruned.chord,
-                                                    .depth = pruned.depth,
-                                                    .flags = pruned.flags});
+  runtime.map(
+      (level.points + kernel::BUCKET - 1) / kernel::BUCKET,
+      kernels::prune_points{
+          .elements = level.points,
+          .keep_on = keep_on,
+          .rough = rough,
+          .bound = work.bounds.hull,
+          .regions = level.point_regions,
+          .lists = {.x_list = level.x_list, .y_list = level.y_list},
+          .projections = level.projections,
+          .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
+          .band = band,
+          .paths = {.path_offsets = paths.offsets,
+                    .path = paths.vertices,
+                    .path_projections = paths.projections},
+          .candidates = {.ids = ids, .chord = pruned.chord, .depth = pruned.depth, .flags = pruned.flags}});
+  runtime.map(
+      level.corners,
+      kernels::prune_corners{
+          .points_count = level.points,
+          .rough = rough,
+          .bound = work.bounds.hull,
+          .corner_regions = level.corner_regions,
+          .corners = level.corner_ids,
+          .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
+          .band = band,
+          .paths = {.path_offsets = paths.offsets,
+                    .path = paths.vertices,
+                    .path_projections = paths.projections},
+          .candidates = {.ids = ids, .chord = pruned.chord, .depth = pruned.depth, .flags = pruned.flags}});
 }
 
 }  // namespace
@@ -177,22 +167,20 @@ HullPoints gather_below(Workspace& work, const PointTable& table, const Level& l
     runtime.map(kept, kernels::chord_keys{.positions = positions, .chord = pruned.chord, .keys = keys});
     host::sort_by_key(runtime, keys, positions, kept);
     work.add_depth(Component::hull, log2_ceiling(paths.size) * scan_depth(kept));
-    runtime.map(kept, kernels::gather_below{.points_count = level.points,
-                                            .keys = keys,
-                                            .elements = positions,
-                                            .path_region = paths.regions,
-                                            .element_depth = pruned.depth,
-                                            .point_projections = level.projections,
-                                            .x_list = level.x_list,
-                                            .y_list = level.y_list,
-                                            .corners = level.corner_ids,
-                                            .axis = level.axis,
-                                            .cut = level.cut,
-                                            .points = table.points,
-                                            .ids = points.ids,
-                                            .segment = points.segments,
-                                            .projections = points.projections,
-                                            .depth = points.depths});
+    runtime.map(kept,
+                kernels::gather_below{.points_count = level.points,
+                                      .keys = keys,
+                                      .elements = positions,
+                                      .path_region = paths.regions,
+                                      .element_depth = pruned.depth,
+                                      .point_projections = level.projections,
+                                      .lists = {.x_list = level.x_list, .y_list = level.y_list},
+                                      .corners = level.corner_ids,
+                                      .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
+                                      .ids = points.ids,
+                                      .segment = points.segments,
+                                      .projections = points.projections,
+                                      .depth = points.depths});
   }
   runtime.launch(paths.size + 1, runtime.sizes().map_group, paths.size,
                  kernels::chord_begins{.kept = kept, .segment = points.segments, .first = points.first});

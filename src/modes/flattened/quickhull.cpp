@@ -1,8 +1,8 @@
 #include <utility>
 
+#include "flattened/limits.h"
 #include "launchers/flattened/quickhull.cl.hpp"
 #include "modes/flattened/stages.hpp"
-#include "shared/limits.h"
 
 namespace flaunay::flattened {
 using namespace statistics;
@@ -134,9 +134,9 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
                                                  .first = now.first,
                                                  .sides = sides,
                                                  .splits = splits,
-                                                 .path = paths.vertices,
-                                                 .path_projections = paths.projections,
-                                                 .path_region = paths.regions,
+                                                 .path_vertices = {.path = paths.vertices,
+                                                                   .path_projections = paths.projections,
+                                                                   .path_region = paths.regions},
                                                  .new_path = next.ends.vertices,
                                                  .new_projections = next.ends.projections,
                                                  .new_region = next.ends.regions,

@@ -3,7 +3,6 @@
 #include "launchers/flattened/regions.cl.hpp"
 #include "launchers/flattened/strips.cl.hpp"
 #include "modes/flattened/stages.hpp"
-#include "shared/limits.h"
 
 namespace flaunay::flattened {
 namespace {
@@ -58,10 +57,10 @@ Buffer<cl_int> find_borders(Workspace& work, const PointTable& table, const Leve
   const auto border_edge = work.scratch().allocate<cl_int>(level.corners);
   const auto missing = work.scratch().allocate<cl_int>(level.regions);
   runtime.fill(missing, level.regions, cl_int{0});
-  runtime.map(level.corners, kernels::border_edges{.corners = level.corner_ids,
-                                                   .corner_region = level.corner_regions,
-                                                   .corner_vertex = corner_vertex,
-                                                   .vertices = blocks.source,
+  runtime.map(level.corners, kernels::border_edges{.strip_corners = {.corners = level.corner_ids,
+                                                                     .corner_region = level.corner_regions,
+                                                                     .corner_vertex = corner_vertex,
+                                                                     .vertices = blocks.source},
                                                    .vertex_edge = rings.vertex_edge,
                                                    .edges = rings.edges,
                                                    .border_edge = border_edge,

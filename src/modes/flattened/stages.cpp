@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "shared/codes.h"
+#include "flattened/codes.h"
 
 namespace flaunay::flattened {
 

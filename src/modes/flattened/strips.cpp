@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "launchers/flattened/strips.cl.hpp"
+#include "mesh/limits.h"
+#include "mesh/records.h"
 #include "modes/flattened/stages.hpp"
-#include "shared/limits.h"
-#include "shared/records.h"
 
 namespace flaunay::flattened {
 
@@ -80,10 +80,10 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
   const auto border_edge = scratch.allocate<cl_int>(corners);
   const auto missing = scratch.allocate<cl_int>(large_count);
   runtime.fill(missing, large_count, cl_int{0});
-  runtime.map(corners, kernels::border_edges{.corners = large_corners,
-                                             .corner_region = corner_region,
-                                             .corner_vertex = corner_vertex,
-                                             .vertices = vertices,
+  runtime.map(corners, kernels::border_edges{.strip_corners = {.corners = large_corners,
+                                                               .corner_region = corner_region,
+                                                               .corner_vertex = corner_vertex,
+                                                               .vertices = vertices},
                                              .vertex_edge = vertex_edge,
                                              .edges = edges,
                                              .border_edge = border_edge,
@@ -102,10 +102,10 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
                                                    .broken = work.broken});
   for (const cl_int write : {0, 1}) {
     runtime.map(corners, kernels::count_fans{.write = write,
-                                             .corners = large_corners,
-                                             .corner_region = corner_region,
-                                             .corner_vertex = corner_vertex,
-                                             .vertices = vertices,
+                                             .strip_corners = {.corners = large_corners,
+                                                               .corner_region = corner_region,
+                                                               .corner_vertex = corner_vertex,
+                                                               .vertices = vertices},
                                              .edges = edges,
                                              .border_edge = border_edge,
                                              .large = large,

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "shared/limits.h"
+#include "flattened/limits.h"
 
 namespace flaunay::recursive {
 using namespace geometry;

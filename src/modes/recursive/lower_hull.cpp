@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "flattened/limits.h"
 #include "geometry/sort.hpp"
 #include "modes/recursive/quickhull.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "flattened/limits.h"
 #include "modes/recursive/quickhull.hpp"
 
 namespace flaunay::recursive {

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "flattened/limits.h"
+
 namespace flaunay::recursive {
 using namespace geometry;
 using namespace statistics;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "modes/recursive/line.hpp"
-#include "shared/limits.h"
 #include "statistics/counter.hpp"
 
 namespace flaunay::recursive {

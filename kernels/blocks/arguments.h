@@ -1,0 +1,35 @@
+// Lists of arguments that kernels of blocks have in common, or that belong together; PREFIX is put before their
+// names. In launchers each list is a struct.
+#ifndef FLAUNAY_BLOCKS_ARGUMENTS_H
+#define FLAUNAY_BLOCKS_ARGUMENTS_H
+
+// clang-format off
+
+// Where parts of a height are: how many places there are, where blocks begin, how many vertices they have, the block
+// of each place, and the axes of cuts.
+#define PLACES_OF_PARTS(PREFIX) \
+  int PREFIX##height, int PREFIX##places, global const int* restrict PREFIX##offsets, \
+  global const int* restrict PREFIX##distinct, global const int* restrict PREFIX##block_of_place, \
+  global const uchar* restrict PREFIX##axes
+
+// The points of blocks, which are brought into order, and what is known of them then.
+#define BLOCK_POINTS(PREFIX) \
+  global coordinate2* PREFIX##points, global int* PREFIX##source, global int* PREFIX##representatives, \
+  global solved_block* PREFIX##solved, global int* PREFIX##distinct_counts
+
+// Room for sorting the points of blocks.
+#define BLOCK_SCRATCH(PREFIX) \
+  global coordinate2* PREFIX##scratch_points, global int* PREFIX##scratch_source, global int2* PREFIX##scratch_ranks
+
+// The vertices of a round: whether it is the first one, in which all are open; their numbers among all points; those
+// that are listed; and what is open at them.
+#define OPEN_VERTICES(PREFIX) \
+  int PREFIX##is_first, global const int* restrict PREFIX##vertices, global const int* restrict PREFIX##listed, \
+  global const int* restrict PREFIX##open_offsets, global const open_edge* restrict PREFIX##open_edges
+
+// Sets whose blocks were cut from each other by trees.
+#define CUT_SETS(PREFIX) \
+  int PREFIX##sets, global const int* restrict PREFIX##set_blocks, global const int* restrict PREFIX##set_nodes, \
+  global const cut_node* restrict PREFIX##nodes
+
+#endif

@@ -1,0 +1,17 @@
+// Codes that kernels write for each other and for the host.
+#ifndef FLAUNAY_BLOCKS_CODES_H
+#define FLAUNAY_BLOCKS_CODES_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+// The account of divide: the places of its numbers.
+INTEGER_CONSTANT(RINGS_UNDECIDED, 0);  // predicates that were evaluated exactly
+INTEGER_CONSTANT(RINGS_TIES, 1);       // how many of them found cocircular points
+INTEGER_CONSTANT(RINGS_BROKEN, 2);     // seams that could not be sewn, which is an error of the program
+INTEGER_CONSTANT(RINGS_NUMBERS, 3);
+
+END_SHARED
+
+#endif

@@ -1,0 +1,38 @@
+// Records of merges and rounds, in arrays that kernels and the host share.
+#ifndef FLAUNAY_BLOCKS_RECORDS_H
+#define FLAUNAY_BLOCKS_RECORDS_H
+
+#include "arithmetic/language.h"
+#include "arithmetic/records.h"
+
+BEGIN_SHARED
+
+// A walk along the seam of a merge: the vertices of its first crossing edge, of which a downward walk has the high
+// side's as its left one, and the hull edges out of them that it saw there; how many crossing edges it has, and how it
+// ended.
+typedef struct {
+  int left, right, left_edge, right_edge;
+  int crossings, outcome;
+} seam_walk;
+ASSERT_SIZE(seam_walk, 24);
+
+// Where a block of points lies in its set. All other points of the round are on or beyond the sides of its rectangle,
+// which are infinite where there are none beyond; `all` is the box around the set. outside: if the block's hull has
+// three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
+typedef struct {
+  vertex_box rectangle, all;
+  int outside[3];
+} block_frame;
+ASSERT_SIZE(block_frame, 80);
+
+// An edge of which the triangles on one side are emitted and those on the other are not, seen from one of its
+// vertices: the other vertex, or NO_VERTEX for the ray to infinity from a vertex of the hull; the place of the emitted
+// corner opposite to it, or GHOST; and whether the side that is open begins at it, counter-clockwise.
+typedef struct {
+  int to, corner, begins;
+} open_edge;
+ASSERT_SIZE(open_edge, 12);
+
+END_SHARED
+
+#endif

@@ -1,0 +1,42 @@
+// Lists of arguments that kernels of flattened have in common, or that belong together; PREFIX is put before their
+// names. In launchers each list is a struct.
+#ifndef FLAUNAY_FLATTENED_ARGUMENTS_H
+#define FLAUNAY_FLATTENED_ARGUMENTS_H
+
+// clang-format off
+
+// The points of all regions, in the orders of x and of y.
+#define LISTS(PREFIX) \
+  global const int* restrict PREFIX##x_list, global const int* restrict PREFIX##y_list
+
+// The lines that cut regions, through points of all.
+#define CUTS(PREFIX) \
+  global const int* restrict PREFIX##axis, global const double* restrict PREFIX##cut, \
+  global const double2* restrict PREFIX##points
+
+// The paths of all regions.
+#define PATHS(PREFIX) \
+  global const int* restrict PREFIX##path_offsets, global const int* restrict PREFIX##path, \
+  global const double2* restrict PREFIX##path_projections
+
+// The vertices of all paths, and their regions.
+#define PATH_VERTICES(PREFIX) \
+  global const int* restrict PREFIX##path, global const double2* restrict PREFIX##path_projections, \
+  global const int* restrict PREFIX##path_region
+
+// What becomes of elements that may be on a path.
+#define CANDIDATES(PREFIX) \
+  global int* restrict PREFIX##ids, global int* restrict PREFIX##chord, global double* restrict PREFIX##depth, \
+  global uchar* restrict PREFIX##flags
+
+// Corners that are joined to sequences.
+#define CORNERS_TO_JOIN(PREFIX) \
+  global const int* restrict PREFIX##corner_ids, global const int* restrict PREFIX##corner_owners, \
+  global const double2* restrict PREFIX##corner_projections
+
+// The corners of large regions, and the vertices that they are.
+#define STRIP_CORNERS(PREFIX) \
+  global const int* restrict PREFIX##corners, global const int* restrict PREFIX##corner_region, \
+  global const int* restrict PREFIX##corner_vertex, global const int* restrict PREFIX##vertices
+
+#endif

@@ -1,0 +1,17 @@
+// Codes that kernels write for each other and for the host.
+#ifndef FLAUNAY_VORONOI_CODES_H
+#define FLAUNAY_VORONOI_CODES_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+// An edge of a clip polygon, in so many bits; all bits: strictly inside of all edges.
+INTEGER_CONSTANT(CLIP_BITS, 14);
+INTEGER_CONSTANT(STRICTLY_INSIDE, (1 << CLIP_BITS) - 1);
+// An edge that stands in no cell's list.
+INTEGER_CONSTANT(NO_SLOT, -0x7fffffff);
+
+END_SHARED
+
+#endif
