@@ -86,7 +86,7 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
 
 // Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
 #define BLOCKED -1
-// What became of a constraint that stays blocked; see shared/codes.h for other outcomes.
+// What became of a constraint that stays blocked; see constrained/codes.h for other outcomes.
 #define CONSTRAINT_BLOCKED 3
 
 // What a constraint adds to the scanned sizes: its entries, and 1 if it is left.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "arithmetic/language.h"
+
 namespace flaunay::chunks {
 
 /// kernel::open_edge beyond one device: an edge out of a chunk's point of which the triangles on one side are
