@@ -202,6 +202,7 @@ static void test_square(void) {
 static void test_neighbors_and_halfedges(void) {
   flaunay_triangulation* mesh =
       on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  CHECK(flaunay_triangulation_areas(mesh) == NULL);
   const size_t triangles = flaunay_triangulation_triangle_count(mesh);
   CHECK(triangles == 2 * kPoints - 2 - flaunay_triangulation_hull_count(mesh));
   const int32_t* neighbors = flaunay_triangulation_neighbors(mesh);
@@ -412,6 +413,27 @@ static void test_tables_of_triangles(void) {
   CHECK(fails(flaunay_vertex_neighbors(NULL, 1, kTriangle, 3, 3, starts, neighbors), usage, "triangles"));
 }
 
+static void test_areas(void) {
+  flaunay_triangulation* mesh = on_host(points, kPoints, NULL, 0, FLAUNAY_PART_AREAS);
+  CHECK(flaunay_triangulation_neighbors(mesh) == NULL);
+  const size_t triangles = flaunay_triangulation_triangle_count(mesh);
+  const double* areas = flaunay_triangulation_areas(mesh);
+  REQUIRE(areas != NULL && areas == flaunay_triangulation_mesh(mesh)->areas);
+  double* measured = malloc(triangles * sizeof *measured);
+  REQUIRE(flaunay_triangle_areas(points, kPoints, flaunay_triangulation_triangles(mesh), triangles,
+                                 measured) == FLAUNAY_SUCCESS);
+  CHECK(memcmp(areas, measured, triangles * sizeof *measured) == 0);
+  free(measured);
+  flaunay_triangulation_destroy(mesh);
+
+  const double square[] = {0, 0, 2, 0, 2, 2, 0, 2};
+  mesh = on_host(square, 4, NULL, 0, FLAUNAY_PART_AREAS);
+  areas = flaunay_triangulation_areas(mesh);
+  REQUIRE(areas != NULL && flaunay_triangulation_triangle_count(mesh) == 2);
+  CHECK(areas[0] == 2 && areas[1] == 2);
+  flaunay_triangulation_destroy(mesh);
+}
+
 static void test_measures_of_triangles(void) {
   // A square with its diagonal, and a point far off.
   const double places[] = {0, 0, 6, 0, 6, 6, 0, 6, 100, 90};
@@ -433,6 +455,8 @@ static void test_measures_of_triangles(void) {
   CHECK(flaunay_triangle_turns(places, 5, others, 2, turns) == FLAUNAY_SUCCESS);
   CHECK(turns[0] == -1 && turns[1] == 0);
   CHECK(flaunay_circumradii(places, 5, others, 2, radii) == FLAUNAY_SUCCESS && isinf(radii[1]));
+  CHECK(flaunay_triangle_areas(places, 5, others, 2, radii) == FLAUNAY_SUCCESS);
+  CHECK(radii[0] == -18 && radii[1] == 0);
 
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   CHECK(flaunay_circumradii(NULL, 0, NULL, 0, NULL) == FLAUNAY_SUCCESS);
@@ -547,7 +571,7 @@ static int device_has(const flaunay_device_triangulation* mesh, flaunay_part par
 }
 
 static const unsigned kAllParts = FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES |
-                                  FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+                                  FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES | FLAUNAY_PART_AREAS;
 
 // The result of a call that is complete on the test's queue, with all parts.
 static void check_same(const flaunay_device_triangulation* mesh, flaunay_triangulation* expected) {
@@ -570,6 +594,9 @@ static void check_same(const flaunay_device_triangulation* mesh, flaunay_triangu
   CHECK(device_has(mesh, FLAUNAY_PART_HALFEDGES, flaunay_triangulation_halfedges(expected), 3 * triangles));
   CHECK(device_has(mesh, FLAUNAY_PART_HULL, flaunay_triangulation_hull(expected), hull));
   CHECK(device_has(mesh, FLAUNAY_PART_REPRESENTATIVES, flaunay_triangulation_representatives(expected), n));
+  // Doubles are compared as pairs of numbers.
+  const int32_t* areas = (const int32_t*)(const void*)flaunay_triangulation_areas(expected);
+  CHECK(device_has(mesh, FLAUNAY_PART_AREAS, areas, 2 * triangles));
 }
 
 static flaunay_device_triangulation* make_device_triangulation(void) {
@@ -584,13 +611,16 @@ static flaunay_device_triangulation* make_device_triangulation(void) {
 
 // The caller's context, queue and buffers, an upload to wait for, and an event to wait for.
 static void test_device_to_device(void) {
-  const flaunay_part parts[] = {FLAUNAY_PART_TRIANGLES, FLAUNAY_PART_NEIGHBORS, FLAUNAY_PART_HALFEDGES,
-                                FLAUNAY_PART_HULL, FLAUNAY_PART_REPRESENTATIVES};
+  const struct {
+    flaunay_part part;
+    size_t bytes;
+  } parts[] = {{FLAUNAY_PART_TRIANGLES, 24}, {FLAUNAY_PART_NEIGHBORS, 24},      {FLAUNAY_PART_HALFEDGES, 24},
+               {FLAUNAY_PART_HULL, 4},       {FLAUNAY_PART_REPRESENTATIVES, 4}, {FLAUNAY_PART_AREAS, 16}};
   flaunay_device_triangulation* mesh = make_device_triangulation();
-  for (int p = 0; p < 5; ++p) {
-    cl_mem memory = make_buffer(context, (p < 3 ? 24 : 4) * kPoints, NULL);
-    CHECK(flaunay_device_triangulation_set_buffer(mesh, parts[p], memory) == FLAUNAY_SUCCESS);
-    CHECK(flaunay_device_triangulation_buffer(mesh, parts[p]) == memory);
+  for (size_t p = 0; p < sizeof parts / sizeof parts[0]; ++p) {
+    cl_mem memory = make_buffer(context, parts[p].bytes * kPoints, NULL);
+    CHECK(flaunay_device_triangulation_set_buffer(mesh, parts[p].part, memory) == FLAUNAY_SUCCESS);
+    CHECK(flaunay_device_triangulation_buffer(mesh, parts[p].part) == memory);
     clReleaseMemObject(memory);  // the handle retains it
   }
   const flaunay_device_points given = {.memory = make_buffer(context, sizeof points, NULL), .count = kPoints};
@@ -603,8 +633,7 @@ static void test_device_to_device(void) {
   REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   REQUIRE(done != NULL);
   CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
-  flaunay_triangulation* expected =
-      on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, kAllParts);
   check_same(mesh, expected);
   const flaunay_statistics* statistics = flaunay_device_triangulation_statistics(mesh);
   CHECK(statistics->points == kPoints && statistics->host_waits > 0 && statistics->host_waits < 20);
@@ -633,8 +662,7 @@ static void test_own_buffers(void) {
     CHECK(clFinish(queue) == CL_SUCCESS);
   }
   CHECK(flaunay_device_triangulation_statistics(mesh)->device_allocations == 0);
-  flaunay_triangulation* expected =
-      on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, kAllParts);
   check_same(mesh, expected);
   flaunay_triangulation_destroy(expected);
   flaunay_device_triangulation_destroy(mesh);
@@ -653,8 +681,7 @@ static void test_device_sets(void) {
                                  .first = 3,
                                  .offsets = kSetOffsets,
                                  .sets = 4};
-  flaunay_triangulation* expected =
-      on_host(kSets, 10, kSetOffsets, 4, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
+  flaunay_triangulation* expected = on_host(kSets, 10, kSetOffsets, 4, kAllParts);
   flaunay_device_triangulation* mesh = make_device_triangulation();
   const flaunay_enqueue enqueue = {.queue = queue};
   REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
@@ -910,7 +937,7 @@ static void test_bad_device_points(void) {
   given.reserved[3] = 1;
   CHECK(fails(triangulate_square(given, 0, NULL), usage, "flaunay_device_points"));
   CHECK(fails(triangulate_square(square, FLAUNAY_PART_NEIGHBORS, NULL), usage, "with triangles only"));
-  CHECK(fails(triangulate_square(square, 32, NULL), usage, "0x20"));
+  CHECK(fails(triangulate_square(square, 64, NULL), usage, "0x40"));
   const flaunay_enqueue unknown = {.reserved = {1}};
   CHECK(fails(triangulate_square(square, 0, &unknown), usage, "flaunay_enqueue"));
   clReleaseMemObject(square.memory);
@@ -2078,6 +2105,7 @@ static void test_all(void) {
   test_devices_that_are_none();
   test_square();
   test_neighbors_and_halfedges();
+  test_areas();
   test_float();
   test_batches();
   test_modes();

@@ -43,13 +43,13 @@ def _arrays(table: dict[str, tuple[str, str, int, str]]) -> _Arrays:
     return {name: (np.dtype(kind), *others) for name, (kind, *others) in table.items()}  # type: ignore[misc]
 
 
-_TRIANGULATION = _arrays(_declarations.TRIANGULATION_ARRAYS)
+TRIANGULATION = _arrays(_declarations.TRIANGULATION_ARRAYS)
 # In place of who asks for an array its bit, 0 if it is there always.
 _PARTS = [
     (name, dtype, row, columns, 0 if asked == "always" else PART[name])
-    for name, (dtype, row, columns, asked) in _TRIANGULATION.items()
+    for name, (dtype, row, columns, asked) in TRIANGULATION.items()
 ]
-_ADDRESSES = operator.attrgetter(*_TRIANGULATION)
+_ADDRESSES = operator.attrgetter(*TRIANGULATION)
 _CONSTRAINED = _arrays(_declarations.CONSTRAINED_ARRAYS)
 _VORONOI = _arrays(_declarations.VORONOI_ARRAYS)
 _CLIPPED_VORONOI = _arrays(_declarations.CLIPPED_VORONOI_ARRAYS)
@@ -516,6 +516,13 @@ def turns(points: FloatArray, triangles: _Indices) -> npt.NDArray[np.int8]:
     return results
 
 
+def areas(points: FloatArray, triangles: _Indices) -> _Doubles:
+    """The areas of triangles, rounded; negative if their corners turn right."""
+    results = np.empty(len(triangles))
+    _of_triangles(library.triangle_areas, points, triangles, results)
+    return results
+
+
 def angles(points: FloatArray, triangles: _Indices) -> npt.NDArray[np.int8]:
     """Whether the angle at each corner is acute, 1, right, 0, or obtuse, -1: exactly."""
     results = np.empty((len(triangles), 3), np.int8)
@@ -622,7 +629,7 @@ class DeviceTriangulation(DeviceHandle):
                 if computed & PART[name]
                 else None
             )
-            for name, (dtype, row, columns, _) in _TRIANGULATION.items()
+            for name, (dtype, row, columns, _) in TRIANGULATION.items()
         }
 
     def _offsets(self, address: Optional[int]) -> _Offsets:

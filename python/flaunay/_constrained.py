@@ -37,6 +37,8 @@ class ConstrainedTriangulation(Triangulation):
     ----------
     triangles, neighbors, halfedges, hull, representatives, triangle_offsets, hull_offsets, statistics
         As of `Triangulation`, for all of `points`.
+    areas : ndarray of float64, shape (m,)
+        The area of each triangle, the float64 next to the exact one.
     points : ndarray of float64, shape (n + a, 2)
         A copy of the points, and after them those that splitting added.
     added_offsets : ndarray of int64, shape (sets + 1,)
@@ -69,6 +71,7 @@ class ConstrainedTriangulation(Triangulation):
     `matplotlib.tri.LinearTriInterpolator`.
     """
 
+    areas: Doubles
     points: Doubles
     added_offsets: npt.NDArray[np.int64]
     constraint_edges: Indices
@@ -116,14 +119,6 @@ class ConstrainedTriangulation(Triangulation):
         """
         first, second = (np.roll(self.triangles, -k, axis=1).ravel() for k in (1, 2))
         return _unique_pairs(first, second, len(self.points))
-
-    @cached_property
-    def areas(self) -> Doubles:
-        """The area of each triangle, float64, shape (m,), rounded."""
-        a, b, c = (self.points[self.triangles[:, k]] for k in range(3))
-        u, v = b - a, c - a
-        areas: Doubles = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
-        return areas
 
     def edges_of(self, segment: int) -> Indices:
         """The edges of a segment, int32, shape (k, 2), from its lexicographically smaller end to the other one.
@@ -310,7 +305,7 @@ def arrays_of_constrained(
         raise UsageError("holes of several sets need hole_offsets")
     triangulator = _triangulators.of_device(device)
     result = _calls.triangulate_constrained(
-        triangulator, coordinates, offsets, pairs, places, sets_of_holes, rules, wanted
+        triangulator, coordinates, offsets, pairs, places, sets_of_holes, rules, wanted | {"areas"}
     )
     del result["polygons"]
     return with_points(result, coordinates)

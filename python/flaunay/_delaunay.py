@@ -160,6 +160,7 @@ class Delaunay:
     is_gabriel = cached_property(_graphs.is_gabriel)
     vertex_neighbor_vertices = cached_property(_graphs.vertex_neighbor_vertices)
     spanning_tree = cached_property(_graphs.spanning_tree)
+    areas = cached_property(_graphs.areas)
     circumradii = cached_property(_graphs.circumradii)
 
     # For other packages.

@@ -287,6 +287,20 @@ def spanning_tree(tri: Mesh) -> Indices:
     return frozen(tri.edges[rows])
 
 
+def areas(tri: Mesh) -> Doubles:
+    """The area of each simplex, the float64 next to the exact one, shape (nsimplex,).
+
+    It is positive, unless it is below 2**-1075.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).areas
+    array([6.])
+    """
+    return frozen(_calls.areas(tri.points, tri.simplices))
+
+
 def circumradii(tri: Mesh) -> Doubles:
     """The radius of each simplex's circumcircle, float64, shape (nsimplex,).
 

@@ -39,6 +39,8 @@ class DeviceTriangulation:
         The points that were given.
     triangles, neighbors, halfedges, hull, representatives : pyopencl.array.Array or None
         As those of `Triangulation`, with its shapes, int32; None if not asked for.
+    areas : pyopencl.array.Array or None
+        As of `Triangulation`, float64; None if not asked for.
     triangle_offsets, hull_offsets : ndarray of int64, shape (sets + 1,)
         As those of `Triangulation`, in host memory. Without `hull`, the latter are known all the same.
     statistics : dict
@@ -53,6 +55,7 @@ class DeviceTriangulation:
     halfedges: Optional[pyopencl.array.Array]
     hull: Optional[pyopencl.array.Array]
     representatives: Optional[pyopencl.array.Array]
+    areas: Optional[pyopencl.array.Array]
     triangle_offsets: npt.NDArray[np.int64]
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
@@ -254,6 +257,7 @@ def triangulate_device(
     hull: bool = False,
     representatives: bool = False,
     wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    areas: bool = False,
 ) -> DeviceTriangulation:
     """Triangulates points in device memory into device memory.
 
@@ -270,7 +274,7 @@ def triangulate_device(
         Of the points' context, in order or not. Without it, the points' own.
     offsets : array_like of int or pyopencl.array.Array of int32, shape (sets + 1,), optional
         As of `triangulate`. From device memory, they cross to the host.
-    neighbors, halfedges, hull, representatives : bool
+    neighbors, halfedges, hull, representatives, areas : bool
         Which of these to compute beside the triangles.
     wait_for : sequence of pyopencl.Event, optional
         What must be done before; what the arrays have in their own ``events`` is waited for anyway.
@@ -315,6 +319,7 @@ def triangulate_device(
         halfedges=halfedges,
         hull=hull,
         representatives=representatives,
+        areas=areas,
     )
     triangulator = _triangulators.of_queue(call.queue)
     result, event = call.run(_calls.DeviceTriangulation, triangulator, device_points, wanted)

@@ -410,7 +410,9 @@ def polygons(
             ) from None
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     triangulator = _triangulators.of_device(device)
-    result = _calls.triangulate_polygons(triangulator, points, rings, outer, parts, rules, wanted)
+    result = _calls.triangulate_polygons(
+        triangulator, points, rings, outer, parts, rules, wanted | {"areas"}
+    )
     return PolygonTriangulation(
         **with_points(result, points), ring_offsets=frozen(rings), polygon_offsets=frozen(outer)
     )

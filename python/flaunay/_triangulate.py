@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
+from flaunay._calls import TRIANGULATION
 from flaunay._constrained import ConstrainedTriangulation, arrays_of_constrained, rules_of
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation, arrays_of_mesh
@@ -16,18 +17,9 @@ from flaunay._triangulation import Triangulation, arrays_of_mesh
 Indices = npt.NDArray[np.int32]
 Out = Union[Mapping[str, Indices], Triangulation, None]
 
-# The shapes of the arrays that `out` can have; None is the number of rows.
-_SHAPES: dict[str, tuple[Optional[int], ...]] = {
-    "triangles": (None, 3),
-    "neighbors": (None, 3),
-    "halfedges": (None,),
-    "hull": (None,),
-    "representatives": (None,),
-}
-
 
 def _attributes(out: object) -> dict[str, Any]:
-    return {name: getattr(out, name, None) for name in _SHAPES}
+    return {name: getattr(out, name, None) for name in TRIANGULATION}
 
 
 def _arrays_of(
@@ -37,11 +29,12 @@ def _arrays_of(
     given: Mapping[str, Any] = out if isinstance(out, Mapping) else _attributes(out)
     arrays = {name: array for name, array in given.items() if array is not None}
     for name, array in arrays.items():
-        if name not in _SHAPES:
-            raise UsageError(f"out has {name!r}; there are {', '.join(_SHAPES)}")
-        if name in ("neighbors", "halfedges") and name not in wanted:
+        if name not in TRIANGULATION:
+            raise UsageError(f"out has {name!r}; there are {', '.join(TRIANGULATION)}")
+        dtype, _, columns, asked = TRIANGULATION[name]
+        if asked != "always" and name not in wanted:
             raise UsageError(f"out has {name}, but {name}=False")
-        check_out(array, np.int32, _SHAPES[name], f"out[{name!r}]")
+        check_out(array, dtype, (None,) if columns == 1 else (None, columns), f"out[{name!r}]")
     return arrays
 
 
@@ -67,6 +60,7 @@ def triangulate(
     device: Optional[str] = None,
     neighbors: bool = True,
     halfedges: bool = False,
+    areas: bool = False,
     mode: str = "blocks",
     out: Out = None,
 ) -> Triangulation: ...
@@ -87,6 +81,7 @@ def triangulate(
     device: Optional[str] = None,
     neighbors: bool = True,
     halfedges: bool = False,
+    areas: bool = False,
     mode: str = "blocks",
     out: Out = None,
 ) -> ConstrainedTriangulation: ...
@@ -106,6 +101,7 @@ def triangulate(
     device: Optional[str] = None,
     neighbors: bool = True,
     halfedges: bool = False,
+    areas: bool = False,
     mode: str = "blocks",
     out: Out = None,
 ) -> Triangulation:
@@ -147,15 +143,15 @@ def triangulate(
         A part of a device's or platform's name, ``"#k"``, the k-th of `devices`, or ``"host"`` for the
         host's cores without OpenCL. Without it, the one that the environment variable FLAUNAY_DEVICE
         names, else the first GPU with fp64, else the first GPU, else the host. The results are the same.
-    neighbors, halfedges : bool
-        Which of these to compute.
+    neighbors, halfedges, areas : bool
+        Which of these to compute. With segments, there always are areas.
     mode : str
         How to divide and conquer, by a name in `modes`. The triangles are the same in each mode; the
         order of the rows differs. Some modes run on the host and need no device. With segments,
         ``"blocks"`` alone.
     out : mapping of str to ndarray of int32, or an object with such attributes, optional
-        Arrays for ``triangles``, ``neighbors``, ``halfedges``, ``hull`` and ``representatives``, or some of
-        them, with as many rows as there are results or more. n points have fewer than 2 n triangles. The
+        Arrays for ``triangles``, ``neighbors``, ``halfedges``, ``hull``, ``representatives`` and ``areas``
+        (float64), or some of them, with as many rows as there are results or more. n points have fewer than 2 n triangles. The
         result has views of their first rows; it costs one copy.
 
     Returns
@@ -213,7 +209,7 @@ def triangulate(
     >>> flaunay.triangulate(frame, segments=rings, outside="holes")
     <flaunay.ConstrainedTriangulation: 8 points, 8 triangles, 8 constraint edges>
     """
-    wanted = names_of(neighbors=neighbors, halfedges=halfedges)
+    wanted = names_of(neighbors=neighbors, halfedges=halfedges, areas=areas)
     places = None if out is None else _arrays_of(out, wanted)
     sets = None if offsets is None else as_offsets(offsets)
     rules = rules_of(crossings, outside, fill_rule, labels)

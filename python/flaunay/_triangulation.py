@@ -37,6 +37,9 @@ class Triangulation:
         smallest point. Of collinear points all distinct ones, in lexicographic order.
     representatives : ndarray of int32, shape (n,)
         For each point the smallest index of an equal point of its set. Only those are in triangles.
+    areas : ndarray of float64, shape (m,), or None
+        The area of each triangle, the float64 next to the exact one: positive, unless it is below
+        2**-1075. None if not asked for.
     triangle_offsets, hull_offsets : ndarray of int64, shape (sets + 1,)
         Set s has the triangles ``triangle_offsets[s]`` to ``triangle_offsets[s + 1]``, and likewise
         hull vertices.
@@ -50,6 +53,7 @@ class Triangulation:
     halfedges: Optional[npt.NDArray[np.int32]]
     hull: npt.NDArray[np.int32]
     representatives: npt.NDArray[np.int32]
+    areas: Optional[npt.NDArray[np.float64]]
     triangle_offsets: npt.NDArray[np.int64]
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]

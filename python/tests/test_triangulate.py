@@ -1,6 +1,7 @@
 """flaunay.triangulate: types, layouts, sets and modes."""
 
 import gc
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -102,7 +103,34 @@ def test_all_results(random):
 
 def test_what_is_not_asked_for_is_none(random):
     mesh = flaunay.triangulate(random.random((10, 2)), neighbors=False)
-    assert mesh.neighbors is None and mesh.halfedges is None
+    assert mesh.neighbors is None and mesh.halfedges is None and mesh.areas is None
+
+
+def exact_areas(points, triangles):
+    """The nearest floats: Python rounds a quotient of integers correctly."""
+    exact = [[Fraction(float(x)) for x in point] for point in points]
+    areas = []
+    for a, b, c in ([exact[i] for i in row] for row in triangles):
+        areas.append(((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2)
+    return [float(area) for area in areas]
+
+
+@pytest.mark.parametrize("scale", [1, 1e-150, 1e150, 3e-161])
+def test_areas_are_rounded_correctly(random, scale):
+    points = np.concatenate([random.random((200, 2)), random.integers(0, 9, (100, 2)) / 8]) * scale
+    mesh = flaunay.triangulate(points, areas=True)
+    assert mesh.areas.dtype == np.float64
+    expected = exact_areas(points, mesh.triangles)
+    assert mesh.areas.tolist() == expected
+    tri = flaunay.Delaunay(points)
+    assert tri.areas.tolist() == exact_areas(points, tri.simplices)
+    out = np.empty(2 * len(points))
+    written = flaunay.triangulate(points, areas=True, out={"areas": out})
+    assert written.areas.base is out and written.areas.tolist() == expected
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * scale
+    crossing = flaunay.triangulate(square, segments=[[0, 2], [1, 3]], crossings="split")
+    assert crossing.areas.tolist() == exact_areas(crossing.points, crossing.triangles)
+    assert len(crossing.areas) == 4
 
 
 def test_results_are_plain_arrays_that_keep_their_memory(random):
@@ -131,7 +159,8 @@ def test_the_same_input_gives_the_same_bytes(random):
 def test_every_mode_gives_the_same_triangles(random, mode, dtype):
     points = random.random((400, 2)).astype(dtype)
     expected = flaunay.triangulate(points)
-    mesh = flaunay.triangulate(points, mode=mode, halfedges=True)
+    mesh = flaunay.triangulate(points, mode=mode, halfedges=True, areas=True)
+    assert mesh.areas.tolist() == exact_areas(points, mesh.triangles)
     assert as_set(mesh.triangles) == as_set(expected.triangles)
     assert np.array_equal(mesh.hull, expected.hull)
     check_neighbors(mesh.triangles, mesh.neighbors)

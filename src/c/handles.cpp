@@ -67,7 +67,7 @@ Finish to_finish(int finish) {
 // Bit k of flaunay_part stands for the k-th array.
 constexpr unsigned bit_of(std::size_t k) { return 1u << k; }
 static_assert(FLAUNAY_PART_TRIANGLES == bit_of(0) &&
-              FLAUNAY_PART_REPRESENTATIVES == bit_of(kTriangulationArrayCount - 1));
+              FLAUNAY_PART_AREAS == bit_of(kTriangulationArrayCount - 1));
 
 void check_parts(unsigned parts) {
   constexpr unsigned kAll = bit_of(kTriangulationArrayCount) - 1;

@@ -126,6 +126,13 @@ flaunay_status flaunay_triangle_turns(const double* coordinates, size_t n, const
   });
 }
 
+flaunay_status flaunay_triangle_areas(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
+                                      double* areas) {
+  return measure(coordinates, n, triangles, t, areas, [](const auto& of, double* results) {
+    for (std::size_t i = 0; i < of.size(); ++i) results[i] = of.area(i);
+  });
+}
+
 flaunay_status flaunay_triangle_angles(const double* coordinates, size_t n, const int32_t* triangles,
                                        size_t t, int8_t* angles) {
   return measure(coordinates, n, triangles, t, angles, [](const auto& of, int8_t* results) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "call/areas.hpp"
 #include "call/domains.hpp"
 #include "call/insert_segments.hpp"
 #include "call/triangulate.hpp"
@@ -66,7 +67,7 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
   const Ids segments = checked_segments(constraints);
   Options plain = options;
   plain.neighbors = true;
-  plain.halfedges = false;
+  plain.halfedges = plain.areas = false;
   ConstrainedTriangulation result;
   static_cast<Triangulation&>(result) =
       call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain);
@@ -140,10 +141,16 @@ void call::end_phase(const char* name, double begin, Statistics& statistics) {
   statistics.phases.push_back({name, seconds});
 }
 
-void call::finish(const Options& options, ConstrainedTriangulation& result) {
+void call::finish(const double* coordinates, std::size_t n, const Options& options,
+                  ConstrainedTriangulation& result) {
   // Otherwise all triangles were kept.
   if (result.halfedges.size() != result.triangles.size()) geometry::write_halfedges(options, result);
   if (!options.neighbors) result.neighbors.clear();
+  if (options.areas) {
+    const std::vector<double> all = with_added(coordinates, n, result.added_points);
+    write_areas({all.empty() ? coordinates : all.data(), nullptr, result.representatives.size()}, options,
+                result);
+  }
   result.statistics.triangles = result.triangles.size() / 3;
 }
 
@@ -184,7 +191,7 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
     const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
     apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints, request, result);
   }
-  finish(options, result);
+  finish(coordinates, offsets.back(), options, result);
   end_phase("domains", begin, result.statistics);
   return result;
 }

@@ -37,8 +37,10 @@ ConstrainedTriangulation constrain_and_leave(Implementation& self, const double*
 /// The coordinates of n points and of those that splitting added. Empty if there are none of these.
 std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added);
 
-/// Makes half-edges, or leaves out neighbours, as the options say, and counts the triangles.
-void finish(const Options& options, ConstrainedTriangulation& result);
+/// Makes half-edges and areas, or leaves out neighbours, as the options say, and counts the triangles of n
+/// points and those that splitting added.
+void finish(const double* coordinates, std::size_t n, const Options& options,
+            ConstrainedTriangulation& result);
 
 /// Adds a phase that began at this time to the statistics.
 void end_phase(const char* name, double begin, Statistics& statistics);

@@ -1,6 +1,7 @@
 // The functions of flaunay/research.hpp that triangulate.
 #include <fmt/format.h>
 
+#include "call/areas.hpp"
 #include "call/errors.hpp"
 #include "call/implementation.hpp"
 #include "call/modes.hpp"
@@ -32,14 +33,19 @@ Triangulation checked_call(Triangulator& triangulator, const double* wide, const
     const call::HostPoints points = call::checked_points(wide, narrow, offsets);
     const call::ModeRow& row = call::row_of(options.mode);
     const call::Request request{points, offsets, options};
-    if (row.on_host != nullptr) {
-      const std::vector<double> doubles = call::widened(points);
-      return row.on_host(narrow != nullptr ? doubles.data() : wide, request);
-    }
-    check_options(options);
-    call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-    const call::Turn turn(self);
-    return row.with_engine(self, request);
+    const auto run = [&] {
+      if (row.on_host != nullptr) {
+        const std::vector<double> doubles = call::widened(points);
+        return row.on_host(narrow != nullptr ? doubles.data() : wide, request);
+      }
+      check_options(options);
+      call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+      const call::Turn turn(self);
+      return row.with_engine(self, request);
+    };
+    Triangulation result = run();
+    if (options.mode != Mode::blocks) call::write_areas(points, options, result);
+    return result;
   });
 }
 
@@ -75,7 +81,9 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
     }
     throw Error(ErrorKind::usage, fmt::format("only the modes {} run without a device", names));
   }
-  return row.on_host(coordinates, {{}, offsets, options});
+  Triangulation result = row.on_host(coordinates, {{}, offsets, options});
+  call::write_areas({coordinates, nullptr, offsets.back()}, options, result);
+  return result;
 }
 
 Partition partition(Triangulator& triangulator, const double* coordinates, std::size_t n, int levels,

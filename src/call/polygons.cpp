@@ -89,7 +89,7 @@ ConstrainedTriangulation make_map(call::Implementation& self, const Polygons& po
                        polygons.part_offsets.empty() ? constrained::curves_of_polygons(points)
                                                      : constrained::curves_of(constraints.rings),
                        options, options.overlaps, result);
-  call::finish(options, result);
+  call::finish(polygons.coordinates, points.back(), options, result);
   call::end_phase("domains", begin, result.statistics);
   return result;
 }

@@ -4,8 +4,10 @@
 
 #include "blocks/run.hpp"
 #include "blocks/small.hpp"
+#include "call/areas.hpp"
 #include "host/clock.hpp"
 #include "host/opencl/device.hpp"
+#include "launchers/call/areas.cl.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
@@ -27,6 +29,7 @@ class Arrays {
     halfedges_ = make(wanted.halfedges, result.halfedges, rows_, "halfedges");
     hull_ = make(wanted.hull, result.hull, n, "hull");
     representatives = make(wanted.representatives, result.representatives, n, "representatives");
+    if (wanted.areas && n > 0) areas = call.output<cl_double>(result.areas, rows_ / 3, "areas");
   }
 
   bool have_links() const { return neighbors_.is_wanted() || halfedges_.is_wanted(); }
@@ -40,6 +43,7 @@ class Arrays {
   }
 
   Output<cl_int> representatives;
+  Output<cl_double> areas;
 
  private:
   static std::size_t most_rows_of(std::size_t n) { return 3 * blocks::kMostTrianglesPerPoint * n; }
@@ -55,14 +59,22 @@ void compute(Frame& call, const Points& points, const std::vector<std::size_t>& 
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
-  blocks::Outcome outcome =
-      blocks::run(engine.runtime, engine.persistent, offsets,
-                  {[&] { return call.points(points); },
-                   arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
-                                                      : engine.persistent.allocate<cl_int>(n),
-                   arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return arrays.mesh(sizes); },
-                   [&] { arrays.reserve(); }},
-                  phases);
+  blocks::MeshBuffers mesh;
+  blocks::Outcome outcome = blocks::run(
+      engine.runtime, engine.persistent, offsets,
+      {[&] { return call.points(points); },
+       arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
+                                          : engine.persistent.allocate<cl_int>(n),
+       arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
+       [&] { arrays.reserve(); }},
+      phases);
+  if (arrays.areas.is_wanted()) {
+    const std::size_t triangles = outcome.sizes.triangles();
+    engine.runtime.map(triangles,
+                       kernels::triangle_areas{.input = call.points(points).template as<cl_ulong>(),
+                                               .triangles = mesh.triangles,
+                                               .areas = arrays.areas.buffer(triangles).as<cl_ulong>()});
+  }
   call.end();
   outcome.write(n, result.statistics);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
@@ -86,6 +98,7 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
   const double begin = host::now();
   const std::vector<double> doubles = widened(points);
   blocks::run_small(points.wide != nullptr ? points.wide : doubles.data(), offsets, options, result);
+  write_areas(points, options, result);
   result.statistics.device = host::kHostName;
   result.statistics.seconds = host::now() - begin;
   result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
@@ -104,7 +117,8 @@ Triangulation triangulate_on(Engine& engine, const HostPoints& points,
   Frame call(engine, options.profile);
   if (engine.workspace != nullptr) engine.provide_memory(n, sets);
   engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
-  const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true}, n, result);
+  const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
+                      result);
   compute(call, points, offsets, arrays, phases, result);
   phases.end("output");
   engine.write_accounts(result.statistics);
@@ -119,8 +133,8 @@ void triangulate_on(Implementation& self, const Place& place, const std::string&
                     const Enqueue& enqueue) {
   Engine& device = *place.device;
   Frame call(self, place, enqueue);
-  if ((parts.neighbors || parts.halfedges) && !parts.triangles) {
-    throw Error(ErrorKind::usage, "neighbours and halfedges are computed with triangles only");
+  if ((parts.neighbors || parts.halfedges || parts.areas) && !parts.triangles) {
+    throw Error(ErrorKind::usage, "neighbours, halfedges and areas are computed with triangles only");
   }
   call.check(points, "points");
   device.check_size(points.count);

@@ -6,6 +6,7 @@
 
 #include "geometry/magnitudes.hpp"
 #include "predicates/areas.h"
+#include "predicates/rounded_area.h"
 
 namespace flaunay::geometry {
 namespace {
@@ -54,6 +55,12 @@ Point Triangles::point(std::int32_t i) const { return kernel::scaled_point(i, co
 
 int Triangles::turn(std::size_t t) const {
   return predicates_.orient(corner(t, 0), corner(t, 1), corner(t, 2));
+}
+
+double Triangles::area(std::size_t t) const {
+  const std::int32_t* const corner = &corners_[3 * t];
+  const auto* const bits = reinterpret_cast<const kernel::double_bits*>(coordinates_);
+  return kernel::as_double(kernel::rounded_area(bits, corner[0], corner[1], corner[2]));
 }
 
 int Triangles::angle(std::size_t t, int k) const {

@@ -20,6 +20,8 @@ class Triangles {
 
   /// 1 if the corners of triangle t turn left, -1 if they turn right, 0 if they are collinear.
   int turn(std::size_t t) const;
+  /// The area, rounded to the nearest double; negative if the corners turn right.
+  double area(std::size_t t) const;
   /// 1 if the angle at corner k of triangle t is acute, -1 if it is obtuse, 0 if it is right.
   int angle(std::size_t t, int k) const;
   /// The radius of the circumcircle, with a relative error below 2^-45: infinite if it exceeds all doubles,

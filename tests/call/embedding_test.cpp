@@ -18,6 +18,7 @@
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
+#include "flaunay/result_arrays.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/embedder.hpp"
 #include "tests/support/fixtures.hpp"
@@ -29,7 +30,7 @@
 namespace flaunay::testing {
 namespace {
 
-constexpr Parts kAll{true, true, true, true, true};
+constexpr Parts kAll{true, true, true, true, true, true};
 constexpr Parts kTriangles{true, false, false, false, false};
 
 using Offsets = std::vector<std::size_t>;
@@ -89,7 +90,7 @@ Enqueue on_own() {
 
 Triangulation expected_of(const Coordinates& coordinates, const Offsets& offsets) {
   Options options;
-  options.halfedges = true;
+  options.halfedges = options.areas = true;
   return triangulator().triangulate(coordinates.data(), offsets, options);
 }
 
@@ -98,25 +99,13 @@ void expect_same(const DeviceTriangulation& result, const Triangulation& expecte
   EXPECT_TRUE(same(result.triangle_offsets, expected.triangle_offsets));
   EXPECT_TRUE(same(result.hull_offsets, expected.hull_offsets));
   EXPECT_EQ(result.points, expected.representatives.size());
-  const auto read = [&](const DeviceBuffer& buffer, std::size_t count) {
-    return embedder().download<std::int32_t>(buffer.memory(), count, queue);
-  };
-  const std::size_t rows = expected.triangles.size();
-  if (result.parts.triangles) {
-    EXPECT_TRUE(same(read(result.triangles, rows), expected.triangles));
-  }
-  if (result.parts.neighbors) {
-    EXPECT_TRUE(same(read(result.neighbors, rows), expected.neighbors));
-  }
-  if (result.parts.halfedges) {
-    EXPECT_TRUE(same(read(result.halfedges, rows), expected.halfedges));
-  }
-  if (result.parts.hull) {
-    EXPECT_TRUE(same(read(result.hull, expected.hull.size()), expected.hull));
-  }
-  if (result.parts.representatives) {
-    EXPECT_TRUE(same(read(result.representatives, result.points), expected.representatives));
-  }
+  for_each_array([&](const auto& array, std::size_t) {
+    if (!(result.parts.*array.part)) return;
+    const auto& values = expected.*array.values;
+    const cl_mem memory = (result.*array.buffer).memory();
+    using Element = typename std::decay_t<decltype(array)>::Element;
+    EXPECT_TRUE(same(embedder().download<Element>(memory, values.size(), queue), values)) << array.name;
+  });
 }
 
 void expect_error(ErrorKind kind, const std::vector<std::string>& parts, const std::function<void()>& work) {
@@ -229,12 +218,13 @@ TEST(SmallEmbedding, HalfedgesOfEveryMode) {
     SCOPED_TRACE(to_string(mode));
     research::Options options;
     options.mode = mode;
-    options.halfedges = true;
+    options.halfedges = options.areas = true;
     for (const bool neighbors : {false, true}) {
       options.neighbors = neighbors;
       const Triangulation result =
           research::triangulate(triangulator(), coordinates.data(), Offsets{0, 30, 50}, options);
       EXPECT_TRUE(same(result.halfedges, reference_halfedges(result.triangles)));
+      EXPECT_TRUE(same(result.areas, reference_areas(coordinates, result.triangles)));
       EXPECT_EQ(result.neighbors.empty(), !neighbors);
     }
   }
@@ -270,11 +260,9 @@ TEST(SmallEmbedding, OnlyWhatIsAskedForIsMade) {
         Parts{false, false, false, true, false}, Parts{false, false, false, false, true}}) {
     DeviceTriangulation result;
     embedded().triangulate(points_in(memory, 50), result, parts, on_own());
-    EXPECT_EQ(result.triangles.memory() != nullptr, parts.triangles);
-    EXPECT_EQ(result.neighbors.memory() != nullptr, parts.neighbors);
-    EXPECT_EQ(result.halfedges.memory() != nullptr, parts.halfedges);
-    EXPECT_EQ(result.hull.memory() != nullptr, parts.hull);
-    EXPECT_EQ(result.representatives.memory() != nullptr, parts.representatives);
+    for_each_array([&](const auto& array, std::size_t) {
+      EXPECT_EQ((result.*array.buffer).memory() != nullptr, parts.*array.part) << array.name;
+    });
     expect_same(result, expected);
     // In rounds, hulls are put in order by some launches of their own.
     const bool has_more = result.statistics.rounds > 0 && parts.hull;
@@ -284,8 +272,8 @@ TEST(SmallEmbedding, OnlyWhatIsAskedForIsMade) {
     if (parts.triangles) launches = result.statistics.kernel_launches + 1;
   }
   DeviceTriangulation result;
-  for (const Parts& parts :
-       {Parts{false, true, false, false, false}, Parts{false, false, true, false, false}}) {
+  for (const Parts& parts : {Parts{false, true, false, false, false}, Parts{false, false, true, false, false},
+                             Parts{false, false, false, false, false, true}}) {
     cl_event done = reinterpret_cast<cl_event>(8);
     Enqueue enqueue;
     enqueue.event = &done;
@@ -302,33 +290,35 @@ TEST(SmallEmbedding, ResultsInTheCallersBuffers) {
   const Triangulation expected = expected_of(coordinates, {0, n});
   const std::vector<std::int32_t> blank(6 * n + 8, -99);
   std::vector<Memory> buffers;
-  for (int k = 0; k < 5; ++k) buffers.push_back(embedder().upload(blank));
   DeviceTriangulation result;
-  DeviceBuffer* const all[] = {&result.triangles, &result.neighbors, &result.halfedges, &result.hull,
-                               &result.representatives};
-  for (int k = 0; k < 5; ++k) *all[k] = DeviceBuffer(buffers[k].get());
+  for_each_array([&](const auto& array, std::size_t) {
+    buffers.push_back(embedder().upload(blank));
+    result.*array.buffer = DeviceBuffer(buffers.back().get());
+  });
   embedded().triangulate(points_in(memory, n), result, kAll, on_own());
   expect_same(result, expected);
-  const std::size_t written[] = {expected.triangles.size(), expected.triangles.size(),
-                                 expected.triangles.size(), expected.hull.size(), n};
-  for (int k = 0; k < 5; ++k) {
-    EXPECT_EQ(all[k]->memory(), buffers[k].get());
-    EXPECT_TRUE(all[k]->is_callers());
+  for_each_array([&](const auto& array, std::size_t k) {
+    const DeviceBuffer& buffer = result.*array.buffer;
+    EXPECT_EQ(buffer.memory(), buffers[k].get());
+    EXPECT_TRUE(buffer.is_callers());
+    const auto& made = expected.*array.values;
     const auto values = embedder().download<std::int32_t>(buffers[k].get(), blank.size());
-    for (std::size_t i = written[k]; i < values.size(); ++i) ASSERT_EQ(values[i], -99) << k << " " << i;
-  }
+    for (std::size_t i = made.size() * sizeof made[0] / 4; i < values.size(); ++i) {
+      ASSERT_EQ(values[i], -99) << array.name << " " << i;
+    }
+  });
   // A buffer of the caller is never replaced.
-  const char* const names[] = {"triangles", "neighbors", "halfedges", "hull", "representatives"};
-  for (int k = 0; k < 5; ++k) {
-    const std::size_t bytes = (k < 3 ? 24 : 4) * n;
+  for_each_array([&](const auto& array, std::size_t) {
+    const std::size_t element = sizeof(typename std::decay_t<decltype(array)>::Element);
+    const std::size_t bytes = most_rows(array.row, n) * array.columns * element;
     const Memory small = embedder().make_buffer(bytes - 1), enough = embedder().make_buffer(bytes);
-    *all[k] = DeviceBuffer(small.get());
-    expect_usage_error({names[k], "too small", std::to_string(bytes - 1), std::to_string(bytes)},
+    result.*array.buffer = DeviceBuffer(small.get());
+    expect_usage_error({array.name, "too small", std::to_string(bytes - 1), std::to_string(bytes)},
                        [&] { embedded().triangulate(points_in(memory, n), result, kAll, on_own()); });
-    *all[k] = DeviceBuffer(enough.get());
+    result.*array.buffer = DeviceBuffer(enough.get());
     embedded().triangulate(points_in(memory, n), result, kAll, on_own());
     expect_same(result, expected);
-  }
+  });
 }
 
 TEST(SmallEmbedding, QueuesInOrderAndNot) {

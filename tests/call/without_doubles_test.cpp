@@ -15,6 +15,7 @@
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
+#include "flaunay/result_arrays.hpp"
 #include "tests/support/embedder.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/same.hpp"
@@ -27,7 +28,7 @@ namespace {
 using Floats = std::vector<float>;
 using Offsets = std::vector<std::size_t>;
 constexpr int kMostPlaces = 62;
-constexpr Parts kAll{true, true, true, true, true};
+constexpr Parts kAll{true, true, true, true, true, true};
 
 bool has_fp64() {
   static const bool has = triangulator().device().fp64;
@@ -67,11 +68,9 @@ Coordinates spanning(int places, std::size_t n = 700, std::uint64_t seed = 1) {
 Floats as_floats(const Coordinates& points) { return {points.begin(), points.end()}; }
 
 void expect_same(const Triangulation& found, const Triangulation& expected) {
-  EXPECT_TRUE(same(found.triangles, expected.triangles));
-  EXPECT_TRUE(same(found.neighbors, expected.neighbors));
-  EXPECT_TRUE(same(found.halfedges, expected.halfedges));
-  EXPECT_TRUE(same(found.hull, expected.hull));
-  EXPECT_TRUE(same(found.representatives, expected.representatives));
+  for_each_array([&](const auto& array, std::size_t) {
+    EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
+  });
   EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
   EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
 }
@@ -90,7 +89,7 @@ void expect_note(const Statistics& statistics, bool left, const std::string& par
 
 Options all_options() {
   Options options;
-  options.halfedges = true;
+  options.halfedges = options.areas = true;
   return options;
 }
 
@@ -199,16 +198,17 @@ DeviceCall device_call(const std::vector<T>& coordinates, std::size_t first) {
 
 // The arrays of a mesh in device memory, read on this queue.
 Triangulation read(const DeviceTriangulation& mesh, cl_command_queue queue) {
-  const auto array = [queue](const DeviceBuffer& buffer, std::size_t count) {
-    return embedder().download<std::int32_t>(buffer.memory(), count, queue);
-  };
   Triangulation result;
-  const std::size_t rows = 3 * mesh.triangle_offsets.back();
-  result.triangles = array(mesh.triangles, rows);
-  result.neighbors = array(mesh.neighbors, rows);
-  result.halfedges = array(mesh.halfedges, rows);
-  result.hull = array(mesh.hull, mesh.hull_offsets.back());
-  result.representatives = array(mesh.representatives, mesh.points);
+  const std::size_t triangles = mesh.triangle_offsets.back();
+  for_each_array([&](const auto& array, std::size_t) {
+    const std::size_t rows = array.row == RowOf::triangle      ? triangles
+                             : array.row == RowOf::halfedge    ? 3 * triangles
+                             : array.row == RowOf::hull_vertex ? mesh.hull_offsets.back()
+                                                               : mesh.points;
+    using Element = typename std::decay_t<decltype(array)>::Element;
+    const cl_mem memory = (mesh.*array.buffer).memory();
+    result.*array.values = embedder().download<Element>(memory, rows * array.columns, queue);
+  });
   result.triangle_offsets = mesh.triangle_offsets;
   result.hull_offsets = mesh.hull_offsets;
   return result;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <set>
@@ -231,6 +232,45 @@ std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& t
     halfedges.push_back(back == halfedge_of.end() ? -1 : back->second);
   }
   return halfedges;
+}
+
+namespace {
+
+mpq_class power_of_two(long exponent) {
+  mpz_class power = 1;
+  power <<= static_cast<mp_bitcnt_t>(std::labs(exponent));
+  return exponent < 0 ? mpq_class(mpz_class(1), power) : mpq_class(power);
+}
+
+/// The nearest double, of two the even one.
+double rounded(const mpq_class& exact) {
+  if (exact < 0) return -rounded(-exact);
+  if (exact == 0) return 0;
+  const auto bits = [](const mpz_class& of) { return static_cast<long>(mpz_sizeinbase(of.get_mpz_t(), 2)); };
+  long exponent = bits(exact.get_num()) - bits(exact.get_den());
+  if (exact < power_of_two(exponent)) --exponent;
+  const long unit = std::max(exponent - 52, -1074L);
+  const mpq_class units = exact / power_of_two(unit);
+  mpz_class whole = units.get_num() / units.get_den();
+  const mpq_class rest = units - whole, half(1, 2);
+  if (rest > half || (rest == half && mpz_odd_p(whole.get_mpz_t()) != 0)) ++whole;
+  return std::ldexp(whole.get_d(), static_cast<int>(unit));
+}
+
+}  // namespace
+
+std::vector<double> reference_areas(const std::vector<double>& coordinates,
+                                    const std::vector<std::int32_t>& triangles) {
+  std::vector<double> areas;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    Point<mpq_class> corners[3];
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t i = 2 * static_cast<std::size_t>(triangles[t + k]);
+      corners[k] = {mpq_class(coordinates[i]), mpq_class(coordinates[i + 1])};
+    }
+    areas.push_back(rounded(cross(corners[0], corners[1], corners[2]) / 2));
+  }
+  return areas;
 }
 
 int reference_orient2d(const double* a, const double* b, const double* c) {

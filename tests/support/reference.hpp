@@ -31,6 +31,10 @@ std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& t
 /// For each edge of a triangle its twin, -1 for none: as Triangulation::halfedges.
 std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles);
 
+/// Triangulation::areas: each the double next to the exact area.
+std::vector<double> reference_areas(const std::vector<double>& coordinates,
+                                    const std::vector<std::int32_t>& triangles);
+
 /// Exact signs for any finite doubles; points are pointers to x, y. +1: a, b, c turn left.
 int reference_orient2d(const double* a, const double* b, const double* c);
 /// +1: d is inside the circle of the counter-clockwise a, b, c.

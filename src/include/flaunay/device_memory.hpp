@@ -70,26 +70,29 @@ class FLAUNAY_API DeviceBuffer {
   bool is_callers_ = false;
 };
 
-/// Which arrays of a triangulation to compute on the device. Neighbours and halfedges need the triangles.
+/// Which arrays of a triangulation to compute on the device. Neighbours, halfedges and areas need the
+/// triangles.
 struct Parts {
   bool triangles = true;         ///< Triangulation::triangles
   bool neighbors = false;        ///< Triangulation::neighbors
   bool halfedges = false;        ///< Triangulation::halfedges
   bool hull = false;             ///< Triangulation::hull
   bool representatives = false;  ///< Triangulation::representatives
+  bool areas = false;            ///< Triangulation::areas
 };
 
-/// A Triangulation in device memory. All arrays are int32. For n points the caller's buffers must have, and
-/// flaunay's have, 24 n bytes for triangles, neighbors and halfedges each, and 4 n bytes for hull and
-/// representatives each.
+/// A Triangulation in device memory. Areas are double, all other arrays int32. For n points the caller's
+/// buffers must have, and flaunay's have, 24 n bytes for triangles, neighbors and halfedges each, 4 n bytes
+/// for hull and representatives each, and 16 n bytes for areas.
 struct DeviceTriangulation {
   DeviceBuffer triangles;        ///< 3 per triangle
   DeviceBuffer neighbors;        ///< 3 per triangle
   DeviceBuffer halfedges;        ///< 3 per triangle
   DeviceBuffer hull;             ///< 1 per hull vertex
   DeviceBuffer representatives;  ///< 1 per point
+  DeviceBuffer areas;            ///< 1 per triangle
   /// The arrays that the last call computed.
-  Parts parts{false, false, false, false, false};
+  Parts parts{false, false, false, false, false, false};
   bool is_constrained = false;  ///< whether segments were made edges of it
   std::size_t points = 0;       ///< number of points over all sets
   /// sets + 1 values in host memory, known when the call returns: set s has points [point_offsets[s],

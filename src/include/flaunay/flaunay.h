@@ -84,7 +84,8 @@ typedef enum flaunay_precision { FLAUNAY_FLOAT64 = 0, FLAUNAY_FLOAT32 = 1 } flau
 /// The type of the indices in arrays that the caller passes: int32_t or int64_t.
 typedef enum flaunay_index_type { FLAUNAY_INT32 = 0, FLAUNAY_INT64 = 1 } flaunay_index_type;
 
-/// The arrays of a triangulation, as bits. All are int32; triangulations in chunks have int64, too.
+/// The arrays of a triangulation, as bits. Areas are double, all others int32; triangulations in chunks have
+/// int64, too.
 typedef enum flaunay_part {
   /// 3 per triangle, counter-clockwise, smallest index first.
   FLAUNAY_PART_TRIANGLES = 1,
@@ -97,7 +98,10 @@ typedef enum flaunay_part {
   /// point. Collinear sets: the distinct points in lexicographic order.
   FLAUNAY_PART_HULL = 8,
   /// One per input point: the smallest index of a point of its set with the same coordinates.
-  FLAUNAY_PART_REPRESENTATIVES = 16
+  FLAUNAY_PART_REPRESENTATIVES = 16,
+  /// One per triangle: its area, rounded to the nearest double, ties to even, whatever the coordinates: 0 up
+  /// to 2^-1075, infinite from about 2^1024. Otherwise it is positive, since triangles are counter-clockwise.
+  FLAUNAY_PART_AREAS = 32
 } flaunay_part;
 
 /// The arrays of a Voronoi diagram in device memory, as bits, with their types and their sizes in bytes for n
@@ -205,8 +209,8 @@ typedef struct flaunay_options {
   int mode;  ///< a flaunay_mode
   int cut;   ///< a flaunay_cut
   int hull;  ///< a flaunay_hull
-  /// Bits of flaunay_part. Triangles, hull and representatives are always computed; neighbours and halfedges
-  /// are computed if their bits are set. 0: everything but the halfedges.
+  /// Bits of flaunay_part. Triangles, hull and representatives are always computed; neighbours, halfedges and
+  /// areas are computed if their bits are set. 0: everything but the halfedges and the areas.
   unsigned parts;
   int profile;           ///< other than 0: measure the time of every kernel; this costs a little time
   int partition_levels;  ///< FLAUNAY_MODE_PARTITION: number of levels on the device; 0: chosen by size
@@ -336,8 +340,8 @@ typedef struct flaunay_point_source {
 
 /// Where a function of the caller's writes a triangulation in pieces.
 typedef struct flaunay_mesh_sink {
-  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES. Other arrays are not computed. 0: the triangles
-  /// alone.
+  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES and FLAUNAY_PART_AREAS. Other arrays are not
+  /// computed. 0: the triangles alone.
   unsigned parts;
   /// Stores `count` values as the entries [first, first + count) of one part, where a triangle has three
   /// entries. Returns 0; if it returns anything else, the call ends with FLAUNAY_ERROR_STOPPED. Entries may
@@ -403,6 +407,7 @@ typedef struct flaunay_mesh {
   const size_t* triangle_offsets;        ///< sets + 1 values
   const size_t* hull_offsets;            ///< sets + 1 values
   const flaunay_statistics* statistics;  ///< what the call did and how long it took
+  const double* areas;                   ///< t values; NULL if not asked for
 } flaunay_mesh;
 
 /// Segments that are to be edges, and what is to be left out. {0}: no segments.
@@ -686,6 +691,8 @@ FLAUNAY_API const int32_t* flaunay_triangulation_halfedges(const flaunay_triangu
 FLAUNAY_API const int32_t* flaunay_triangulation_hull(const flaunay_triangulation* triangulation);
 /// n values, see FLAUNAY_PART_REPRESENTATIVES.
 FLAUNAY_API const int32_t* flaunay_triangulation_representatives(const flaunay_triangulation* triangulation);
+/// t values, see FLAUNAY_PART_AREAS. NULL if not asked for.
+FLAUNAY_API const double* flaunay_triangulation_areas(const flaunay_triangulation* triangulation);
 /// sets + 1 values: set s has triangles [offsets[s], offsets[s + 1]).
 FLAUNAY_API const size_t* flaunay_triangulation_triangle_offsets(const flaunay_triangulation* triangulation);
 /// sets + 1 values: set s has hull vertices [offsets[s], offsets[s + 1]).
@@ -712,6 +719,10 @@ FLAUNAY_API flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, si
 /// index is out of range, and the errors of flaunay_triangulate for points. O(n + t) work.
 FLAUNAY_API flaunay_status flaunay_triangle_turns(const double* coordinates, size_t n,
                                                   const int32_t* triangles, size_t t, int8_t* turns);
+/// Computes the areas of t triangles, rounded as FLAUNAY_PART_AREAS says; negative if the corners turn right.
+/// areas: t values of the caller's.
+FLAUNAY_API flaunay_status flaunay_triangle_areas(const double* coordinates, size_t n,
+                                                  const int32_t* triangles, size_t t, double* areas);
 /// Finds for each corner of t triangles whether its angle is acute (1), right (0) or obtuse (-1), exactly.
 /// angles: 3 t values of the caller's.
 FLAUNAY_API flaunay_status flaunay_triangle_angles(const double* coordinates, size_t n,
@@ -768,8 +779,8 @@ FLAUNAY_API flaunay_status flaunay_device_triangulation_create(flaunay_device_tr
 FLAUNAY_API void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangulation);
 /// Makes later calls write one part (one bit) to the caller's buffer, which is retained and never replaced.
 /// NULL: flaunay makes its own buffer again. The buffer must have, for n points, 24 n bytes for triangles,
-/// neighbors or halfedges, and 4 n bytes for hull or representatives. FLAUNAY_ERROR_USAGE if memory is not a
-/// buffer.
+/// neighbors or halfedges, 4 n bytes for hull or representatives, and 16 n bytes for areas.
+/// FLAUNAY_ERROR_USAGE if memory is not a buffer.
 FLAUNAY_API flaunay_status flaunay_device_triangulation_set_buffer(
     flaunay_device_triangulation* triangulation, unsigned part, cl_mem memory);
 /// The buffer of one part, NULL if there is none yet. It is valid as long as the handle; to keep it longer,
@@ -807,11 +818,11 @@ FLAUNAY_API const flaunay_statistics* flaunay_device_triangulation_statistics(
 /// call returns when everything is enqueued. The results are complete when the event is complete, and for all
 /// commands that are enqueued later on the same in-order queue; until then the points and the buffers of the
 /// results must not be changed. A second call of the same size allocates no device memory. parts: bits of
-/// flaunay_part, 0 for the triangles alone; neighbours and halfedges need the triangles. enqueue: NULL for
-/// the triangulator's own queue. FLAUNAY_ERROR_USAGE for buffers that are too small or of another context, a
-/// queue of another context or device, offsets that decrease or do not end with the number of points;
-/// FLAUNAY_ERROR_INPUT as for points in host memory. The result is unspecified after an error. O(n log n)
-/// work.
+/// flaunay_part, 0 for the triangles alone; neighbours, halfedges and areas need the triangles. enqueue: NULL
+/// for the triangulator's own queue. FLAUNAY_ERROR_USAGE for buffers that are too small or of another
+/// context, a queue of another context or device, offsets that decrease or do not end with the number of
+/// points; FLAUNAY_ERROR_INPUT as for points in host memory. The result is unspecified after an error. O(n
+/// log n) work.
 FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                                       const flaunay_device_points* points, unsigned parts,
                                                       const flaunay_enqueue* enqueue,
@@ -838,8 +849,9 @@ FLAUNAY_API cl_mem flaunay_device_constraints_buffer(const flaunay_device_constr
 FLAUNAY_API size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges);
 /// flaunay_triangulate_constrained for points and segments in device memory, into device memory. segments: 2
 /// int32 per segment. FLAUNAY_ERROR_INPUT if segments cross where no point is; no triangles are left out. The
-/// mesh has all parts but halfedges; Voronoi diagrams and locators refuse it. The work is enqueued like that
-/// of flaunay_triangulate_device, with the same errors; the host waits once more per round of segments.
+/// mesh has all parts but halfedges and areas; Voronoi diagrams and locators refuse it. The work is enqueued
+/// like that of flaunay_triangulate_device, with the same errors; the host waits once more per round of
+/// segments.
 FLAUNAY_API flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
                                                                   const flaunay_device_points* points,
                                                                   cl_mem segments, size_t segment_count,

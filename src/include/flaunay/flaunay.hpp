@@ -56,6 +56,7 @@ class FLAUNAY_API Error : public std::runtime_error {
 struct Options {
   bool neighbors = true;   ///< compute Triangulation::neighbors
   bool halfedges = false;  ///< compute Triangulation::halfedges
+  bool areas = false;      ///< compute Triangulation::areas
   bool profile = false;    ///< measure the time of every kernel with OpenCL events; this costs a little time
   /// If not empty, called from time to time on the calling thread. stage: the name of the stage that begins,
   /// which is "compiling kernels" whenever a device needs some that are not in the cache; level: the level of
@@ -123,6 +124,10 @@ struct Triangulation {
   std::vector<std::int32_t> hull;
   /// One per input point: the smallest index of a point of its set with the same coordinates.
   std::vector<std::int32_t> representatives;
+  /// One per triangle: its area, rounded to the nearest double, ties to even, whatever the coordinates: 0 up
+  /// to 2^-1075, infinite from about 2^1024. Otherwise it is positive, since triangles are counter-clockwise.
+  /// Empty unless Options::areas.
+  std::vector<double> areas;
   /// sets + 1 values: set s has triangles [triangle_offsets[s], triangle_offsets[s + 1]).
   std::vector<std::size_t> triangle_offsets;
   /// sets + 1 values: set s has hull vertices [hull_offsets[s], hull_offsets[s + 1]).
@@ -233,8 +238,8 @@ class FLAUNAY_API Triangulator {
   /// device: "" (what FLAUNAY_DEVICE names if it is set; otherwise flaunay's own choice, see above), "#k"
   /// (the k-th device of list_devices, from 0), a part of a device's or platform's name in upper or lower
   /// case, or "host" for the host without OpenCL. A named device does all the work, that of small sets too,
-  /// except what a device without fp64 leaves to the host. The environment variables FLAUNAY_DEVICE and
-  /// FLAUNAY_TUNING are read here, once, also for devices that are opened later. Throws Error(device) if
+  /// except what a device without fp64 leaves to the host. The environment variables FLAUNAY_DEVICE
+  /// and FLAUNAY_TUNING are read here, once, also for devices that are opened later. Throws Error(device) if
   /// there is no such device, if its arithmetic fails the self test, or if FLAUNAY_TUNING is not valid.
   explicit Triangulator(const std::string& device = "");
   /// Makes a triangulator in the caller's context, which is retained. Throws Error(usage) if the device does
@@ -327,7 +332,8 @@ class FLAUNAY_API Triangulator {
                    const Parts& parts = triangles_alone(), const Enqueue& enqueue = own_queue());
 
   /// Triangulates points in device memory with segments as edges, into device memory. Segments that cross
-  /// where no point is are Error(input); no triangles are left out. The mesh has all parts but halfedges;
+  /// where no point is are Error(input); no triangles are left out. The mesh has all parts but halfedges and
+  /// areas;
   /// Voronoi diagrams and locators refuse it. The host waits once per round of segments, about 8 times more
   /// than for triangulate.
   /// Otherwise the work is enqueued like that of triangulate for device memory, with the same errors and

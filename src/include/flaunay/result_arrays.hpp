@@ -22,7 +22,8 @@
   X(std::int32_t, halfedges, halfedge, 1, on_request, "Halfedges, the opposite ones, -1 on the hull") \
   X(std::int32_t, hull, hull_vertex, 1, always, "Hull, counter-clockwise")                            \
   X(std::int32_t, representatives, point, 1, always,                                                  \
-    "Duplicates, for each point the smallest index of an equal point")
+    "Duplicates, for each point the smallest index of an equal point")                                \
+  X(double, areas, triangle, 1, on_request, "Areas of triangles")
 
 /// The arrays that triangulations in chunks have, in the order of flaunay::MeshArray: X(name).
 #define FLAUNAY_MESH_ARRAYS(X) X(triangles) X(neighbors) X(hull) X(representatives)
@@ -92,13 +93,13 @@ struct TriangulationArray {
                            &DeviceTriangulation::name,     \
                            &Parts::name},
 /// FLAUNAY_TRIANGULATION_ARRAYS as a tuple.
-constexpr std::tuple kTriangulationArrays{FLAUNAY_TRIANGULATION_ARRAYS(FLAUNAY_ROW)};
+inline constexpr std::tuple kTriangulationArrays{FLAUNAY_TRIANGULATION_ARRAYS(FLAUNAY_ROW)};
 #undef FLAUNAY_ROW
 #undef FLAUNAY_OPTION_on_request
 #undef FLAUNAY_OPTION_always
 
 /// The number of arrays of a triangulation.
-constexpr std::size_t kTriangulationArrayCount = std::tuple_size_v<decltype(kTriangulationArrays)>;
+inline constexpr std::size_t kTriangulationArrayCount = std::tuple_size_v<decltype(kTriangulationArrays)>;
 
 /// Calls visit(array, k) for the k-th array of a triangulation, in the order of the table.
 template <typename Visit>
@@ -122,7 +123,7 @@ constexpr std::size_t array_index(std::string_view name) {
 
 #define FLAUNAY_INDEX(name) array_index(#name),
 /// For each MeshArray its place in the table.
-constexpr std::array kMeshArrayIndices = {FLAUNAY_MESH_ARRAYS(FLAUNAY_INDEX)};
+inline constexpr std::array kMeshArrayIndices = {FLAUNAY_MESH_ARRAYS(FLAUNAY_INDEX)};
 #undef FLAUNAY_INDEX
 
 }  // namespace flaunay
