@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/backend.hpp"
@@ -361,10 +362,12 @@ class Runtime {
   /// Does what is no command of the call: it is neither counted nor recorded.
   template <typename Commands>
   void uncounted(const Commands& commands) {
-    Accounts kept = std::move(accounts_);
-    accounts_ = {};
+    const struct Restored {
+      Accounts& accounts;
+      Accounts kept = std::exchange(accounts, {});
+      ~Restored() { accounts = std::move(kept); }
+    } restored{accounts_};
     commands();
-    accounts_ = std::move(kept);
   }
 
   Accounts accounts_;
