@@ -17,8 +17,6 @@ class NativeKernel : public Kernel {
 
   void set_argument(cl_uint index, const void* value, std::size_t bytes) override {
     if (values_.size() <= index) add_values(index + 1);
-    if (bytes > sizeof(Value))
-      throw DeviceError(fmt::format("an argument of kernel {} is too large", name()));
     std::memcpy(values_[index].bytes, value, bytes);
   }
   void** values() { return places_.data(); }

@@ -122,17 +122,17 @@ void OpenClBackend::keep_order() {
 }
 
 std::unique_ptr<Kernel> OpenClBackend::make_kernel(const KernelName& wanted, const std::string& options) {
-  if (!programs_.contains(wanted.program, options)) {
+  const boost::compute::program* program = programs_.find(wanted.program, options);
+  if (program == nullptr) {
     const double begin = now();
     if (on_pocl_) require_pocl_compiler();
-    programs_.find(wanted.program, options, before_compiling);
+    program = programs_.make(wanted.program, options, before_compiling);
     const double seconds = now() - begin;
     accounts().build_seconds += seconds;
     accounts().all_build_seconds += seconds;
   }
-  const boost::compute::program& program = programs_.find(wanted.program, options, before_compiling);
   cl_int code = CL_SUCCESS;
-  cl_kernel kernel = clCreateKernel(program.get(), wanted.name, &code);
+  cl_kernel kernel = clCreateKernel(program->get(), wanted.name, &code);
   check_call(code, "clCreateKernel", fmt::format("{}.cl: {}", wanted.program, wanted.name));
   return std::make_unique<OpenClKernel>(wanted.name, boost::compute::kernel(kernel, false), device_);
 }

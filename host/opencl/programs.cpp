@@ -63,10 +63,13 @@ std::string kernel_source(const std::string& file) {
 // What a copy of a compiled program needs at most, the driver's own work included.
 constexpr std::size_t kSpaceForBinaries = std::size_t{512} << 20;
 
-const boost::compute::program& Programs::find(const std::string& file, const std::string& options,
-                                              const std::function<void()>& before_compiling) {
+const boost::compute::program* Programs::find(const std::string& file, const std::string& options) const {
   const auto found = programs_.find({file, options});
-  if (found != programs_.end()) return found->second;
+  return found != programs_.end() ? &found->second : nullptr;
+}
+
+const boost::compute::program* Programs::make(const std::string& file, const std::string& options,
+                                              const std::function<void()>& before_compiling) {
   const std::string source = kernel_source(file);
   // Everything that a compiled program depends on.
   const std::string key = fmt::format("{}\n{}\n{}\n{}", FLAUNAY_VERSION, identity_, options, source);
@@ -82,7 +85,7 @@ const boost::compute::program& Programs::find(const std::string& file, const std
       cache.store(key, binary);
     }
   }
-  return programs_.emplace(std::pair(file, options), std::move(program)).first->second;
+  return &programs_.emplace(std::pair(file, options), std::move(program)).first->second;
 }
 
 // Makes a program of what binary_of returned; null if the driver does not accept it.

@@ -21,13 +21,12 @@ class Programs {
   Programs(boost::compute::context context, boost::compute::device device, std::string identity)
       : context_(std::move(context)), device_(std::move(device)), identity_(std::move(identity)) {}
 
-  /// The program of a file, compiled with these options. before_compiling: called before it is compiled from
-  /// its source, if set. Throws DeviceError with the compiler's messages if that fails.
-  const boost::compute::program& find(const std::string& file, const std::string& options,
+  /// The program of a file, compiled with these options; null if there is none yet.
+  const boost::compute::program* find(const std::string& file, const std::string& options) const;
+  /// Makes it. before_compiling: called before it is compiled from its source, if set. Throws DeviceError
+  /// with the compiler's messages if that fails.
+  const boost::compute::program* make(const std::string& file, const std::string& options,
                                       const std::function<void()>& before_compiling);
-  bool contains(const std::string& file, const std::string& options) const {
-    return programs_.count({file, options}) > 0;
-  }
   bool empty() const { return programs_.empty(); }
   void clear() { programs_.clear(); }
 

@@ -5,8 +5,7 @@
 // insertion:
 // - mark_ends, over the segments: checks them, and marks the vertices at their ends. clear_vertices is before that.
 // - start_rows, over the triangles: the places of the marked vertices; all rows are unclaimed, and at first unchanged
-// and
-//   without constraints. line_places, over the hulls: those in sets on a line.
+//   and without constraints. line_places, over the hulls: those in sets on a line.
 // - segment_keys, over the segments: a key of the places of both ends, by which the host sorts them.
 // - find_runs and write_unique, over the sorted segments: leave out what is equal.
 // After insertion, of constraint edges that are linked to straight chains:

@@ -130,7 +130,6 @@ class Frame {
   /// Transfers the results, and waits for them if they are in host memory; otherwise sets the caller's event.
   void end();
 
-  const Place& place() const { return place_; }
   Engine& engine;          ///< computes
   host::Runtime& runtime;  ///< the engine's
 

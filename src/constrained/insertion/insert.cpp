@@ -199,16 +199,14 @@ class Insertion {
     host::exclusive_scan(runtime_, walks.pieces, segments.count, walks.pieces);
     const std::size_t all = runtime_.read_one(walks.pieces, segments.count);
     const Pairs pieces{arena_.allocate<cl_int>(2 * all), all};
-    runtime_.map_in_small_groups(
-        segments.count, kernels::write_pieces{
-                            .bound = points_.bounds.orient,
-                            .points = points_.coordinates,
-                            .triangulation = {.triangles = result_.triangles, .neighbors = result_.neighbors},
-                            .hull = delaunay_.hull,
-                            .keys = segments.keys,
-                            .offsets = walks.pieces,
-                            .claims = claims_,
-                            .ends = pieces.ends});
+    runtime_.map_in_small_groups(segments.count, kernels::write_pieces{.bound = points_.bounds.orient,
+                                                                       .points = points_.coordinates,
+                                                                       .triangulation = triangulation(),
+                                                                       .hull = delaunay_.hull,
+                                                                       .keys = segments.keys,
+                                                                       .offsets = walks.pieces,
+                                                                       .claims = claims_,
+                                                                       .ends = pieces.ends});
     return pieces;
   }
 
@@ -313,26 +311,38 @@ class Insertion {
     return unique;
   }
 
+  // Arguments that several kernels have in common (kernels/constrained/arguments.h).
+  kernels::triangulation triangulation() const {
+    return {.triangles = result_.triangles, .neighbors = result_.neighbors};
+  }
+  kernels::rebuilt_rows rebuilt_rows(const Buffer<kernel::chain_entry>& entries) const {
+    return {.triangles = result_.triangles,
+            .neighbors = result_.neighbors,
+            .claims = claims_,
+            .flags = flags_,
+            .changed = changed_,
+            .new_corners = new_corners_,
+            .entries = entries};
+  }
+
   Walks walk(const UniquePairs& pairs, const Limits& limits) {
     const std::size_t count = pairs.count;
     const Walks made{arena_.allocate<kernel::constraint_walk>(count), arena_.allocate<cl_int>(2 * count),
                      arena_.allocate<cl_uint>(count + 1), arena_.allocate<cl_uint2>(count + 1)};
-    runtime_.map_in_small_groups(
-        count, kernels::walk_segments{
-                   .most_pieces = limits.pieces,
-                   .most_rows = limits.rows,
-                   .bound = points_.bounds.orient,
-                   .points = points_.coordinates,
-                   .triangulation = {.triangles = result_.triangles, .neighbors = result_.neighbors},
-                   .hull = delaunay_.hull,
-                   .keys = pairs.keys,
-                   .claims = claims_,
-                   .flags = flags_.as<cl_uint>(),
-                   .walks = made.walks,
-                   .ends = made.ends,
-                   .pieces = made.pieces,
-                   .sizes = made.sizes,
-                   .status = status_});
+    runtime_.map_in_small_groups(count, kernels::walk_segments{.most_pieces = limits.pieces,
+                                                               .most_rows = limits.rows,
+                                                               .bound = points_.bounds.orient,
+                                                               .points = points_.coordinates,
+                                                               .triangulation = triangulation(),
+                                                               .hull = delaunay_.hull,
+                                                               .keys = pairs.keys,
+                                                               .claims = claims_,
+                                                               .flags = flags_.as<cl_uint>(),
+                                                               .walks = made.walks,
+                                                               .ends = made.ends,
+                                                               .pieces = made.pieces,
+                                                               .sizes = made.sizes,
+                                                               .status = status_});
     read_status();
     host::exclusive_scan(runtime_, made.sizes, count, made.sizes);
     return made;
@@ -392,8 +402,7 @@ class Insertion {
                                                             .list = waiting.list,
                                                             .offsets = waiting.offsets,
                                                             .points = points_.coordinates,
-                                                            .triangulation = {.triangles = result_.triangles,
-                                                                              .neighbors = result_.neighbors},
+                                                            .triangulation = triangulation(),
                                                             .claims = claims_,
                                                             .flags = flags_,
                                                             .walks = walks.walks,
@@ -412,13 +421,7 @@ class Insertion {
                                                         .lefts = waiting.lefts,
                                                         .walks = walks.walks,
                                                         .points = points_.coordinates,
-                                                        .rebuilt_rows = {.triangles = result_.triangles,
-                                                                         .neighbors = result_.neighbors,
-                                                                         .claims = claims_,
-                                                                         .flags = flags_,
-                                                                         .changed = changed_,
-                                                                         .new_corners = new_corners_,
-                                                                         .entries = entries}});
+                                                        .rebuilt_rows = rebuilt_rows(entries)});
     if (winners.count > 0) fill_long(waiting, winners);
     runtime_.map(waiting.count, kernels::join_cavities{.mark = waiting.mark,
                                                        .list = waiting.list,
@@ -444,18 +447,16 @@ class Insertion {
   }
 
   void walk_again(const Walks& walks, const Waiting& waiting) {
-    runtime_.map_in_small_groups(
-        waiting.count, kernels::walk_constraints{
-                           .bound = points_.bounds.orient,
-                           .list = waiting.list,
-                           .outcomes = waiting.outcomes,
-                           .points = points_.coordinates,
-                           .triangulation = {.triangles = result_.triangles, .neighbors = result_.neighbors},
-                           .places = places_,
-                           .claims = claims_,
-                           .walks = walks.walks,
-                           .sizes = walks.sizes,
-                           .status = status_});
+    runtime_.map_in_small_groups(waiting.count, kernels::walk_constraints{.bound = points_.bounds.orient,
+                                                                          .list = waiting.list,
+                                                                          .outcomes = waiting.outcomes,
+                                                                          .points = points_.coordinates,
+                                                                          .triangulation = triangulation(),
+                                                                          .places = places_,
+                                                                          .claims = claims_,
+                                                                          .walks = walks.walks,
+                                                                          .sizes = walks.sizes,
+                                                                          .status = status_});
     host::exclusive_scan(runtime_, walks.sizes, waiting.count, walks.sizes);
   }
 
@@ -480,18 +481,17 @@ class Insertion {
     winners.entries = arena_.allocate<kernel::chain_entry>(winners.entry_count);
     winners.chain_offsets = arena_.allocate<cl_int>(2 * count + 1);
     winners.triangles = arena_.allocate<cl_int>(3 * (winners.entry_count - 4 * count));
-    runtime_.map(count, kernels::gather_long{
-                            .bound = points_.bounds.orient,
-                            .winners = list,
-                            .list = waiting.list,
-                            .offsets = offsets,
-                            .walks = walks.walks,
-                            .points = points_.coordinates,
-                            .triangulation = {.triangles = result_.triangles, .neighbors = result_.neighbors},
-                            .claims = claims_,
-                            .flags = flags_,
-                            .entries = winners.entries,
-                            .chain_offsets = winners.chain_offsets});
+    runtime_.map(count, kernels::gather_long{.bound = points_.bounds.orient,
+                                             .winners = list,
+                                             .list = waiting.list,
+                                             .offsets = offsets,
+                                             .walks = walks.walks,
+                                             .points = points_.coordinates,
+                                             .triangulation = triangulation(),
+                                             .claims = claims_,
+                                             .flags = flags_,
+                                             .entries = winners.entries,
+                                             .chain_offsets = winners.chain_offsets});
     Arena::Scope scope(arena_);
     const auto chain = arena_.allocate<cl_int>(winners.entry_count);
     runtime_.map(winners.entry_count, kernels::chain_vertices{.entries = winners.entries, .chain = chain});
@@ -520,13 +520,7 @@ class Insertion {
                                     .chains = 2 * winners.count,
                                     .chain_offsets = winners.chain_offsets,
                                     .chain_triangles = winners.triangles,
-                                    .rebuilt_rows = {.triangles = result_.triangles,
-                                                     .neighbors = result_.neighbors,
-                                                     .claims = claims_,
-                                                     .flags = flags_,
-                                                     .changed = changed_,
-                                                     .new_corners = new_corners_,
-                                                     .entries = winners.entries}});
+                                    .rebuilt_rows = rebuilt_rows(winners.entries)});
   }
 
   // -------------------------------------------------------------------------------------------------------
