@@ -7,7 +7,7 @@
 namespace flaunay {
 
 struct EmbeddedFile {
-  const char* name;  ///< relative to kernels/, e.g. "flattened/frame.h"
+  const char* name;  ///< relative to kernels/, e.g. "flattened/axes.h"
   const char* text;
   std::size_t size;
 };

@@ -21,7 +21,7 @@
 #include "arithmetic/bit_account.h"
 #include "arithmetic/language.h"
 #include "constrained/arguments.h"
-#include "constrained/domains.h"
+#include "constrained/fill_rules.h"
 #include "constrained/meanwhile.h"
 
 // Where another work-item has joined meanwhile: an older parent is an ancestor, too, and what an old root is taken for

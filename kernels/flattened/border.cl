@@ -6,8 +6,8 @@
 // upper side in descending order; the smallest and the largest id are on both sides. If a set is collinear, all its
 // points are on both sides. Each kernel is one pass, with one work-item per point, set or border vertex.
 
+#include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "flattened/frame.h"
 #include "operations/counting.h"
 #include "operations/search.h"
 

@@ -21,8 +21,8 @@
 // device knows.
 
 #include "flattened/arguments.h"
+#include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "flattened/frame.h"
 #include "flattened/hull_height.h"
 #include "flattened/limits.h"
 #include "operations/limits.h"

@@ -3,7 +3,7 @@
 #define FLAUNAY_HULL_HEIGHT_H
 
 #include "arithmetic/language.h"
-#include "flattened/frame.h"
+#include "flattened/axes.h"
 #include "operations/counting.h"
 #include "predicates/planar.h"
 

@@ -5,8 +5,8 @@
 // work-item per point. list_counts, list_bounds and list_split then write the children's lists, stably. They are one
 // pass each, with one work-item per chunk, and a scan (scan.cl) follows the first.
 
+#include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "flattened/frame.h"
 #include "operations/counting.h"
 
 // broken[0] gets BROKEN_PATH if a point on the cut line is not on the path, which would be a bug.

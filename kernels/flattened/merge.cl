@@ -7,8 +7,8 @@
 // write their corners. Each kernel is one pass, with one work-item per corner or path vertex.
 
 #include "flattened/arguments.h"
+#include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "flattened/frame.h"
 #include "operations/counting.h"
 #include "operations/search.h"
 #include "predicates/planar.h"

@@ -4,7 +4,7 @@
 #define FLAUNAY_DETERMINANTS_H
 
 #include "arithmetic/language.h"
-#include "predicates/areas.h"
+#include "predicates/area.h"
 #include "predicates/nearness.h"
 #include "predicates/planar.h"
 

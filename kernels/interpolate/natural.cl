@@ -30,7 +30,7 @@
 #include "arithmetic/coordinates.h"
 #include "interpolate/arguments.h"
 #include "interpolate/determinants.h"
-#include "interpolate/natural.h"
+#include "interpolate/weights.h"
 #include "locate/arguments.h"
 #include "locate/records.h"
 #include "mesh/halfedges.h"

@@ -4,7 +4,7 @@
 
 #include "arithmetic/language.h"
 #include "mesh/halfedges.h"
-#include "predicates/areas.h"
+#include "predicates/area.h"
 #include "predicates/nearness.h"
 #include "predicates/planar.h"
 

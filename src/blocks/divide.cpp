@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "blocks/codes.h"
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "launchers/blocks/divide.cl.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"

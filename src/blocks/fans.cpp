@@ -1,4 +1,4 @@
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "launchers/blocks/fans.cl.hpp"
 
 namespace flaunay::blocks {

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "blocks/limits.h"
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/halve.cl.hpp"
 #include "mesh/limits.h"

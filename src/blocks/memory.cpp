@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "blocks/pipeline.hpp"
 #include "blocks/records.h"
-#include "blocks/stages.hpp"
 #include "mesh/limits.h"
 #include "points/cut_tree.hpp"
 #include "tuning/tuning.hpp"

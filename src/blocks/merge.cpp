@@ -2,8 +2,8 @@
 
 #include "blocks/halving.h"
 #include "blocks/limits.h"
+#include "blocks/pipeline.hpp"
 #include "blocks/records.h"
-#include "blocks/stages.hpp"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/merge_exact.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"

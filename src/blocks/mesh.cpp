@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/mesh.cl.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "blocks/pipeline.hpp"
 #include "blocks/run.hpp"
-#include "blocks/stages.hpp"
 
 namespace flaunay::blocks {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "points/device_mesh.hpp"
 #include "statistics/phases.hpp"
 

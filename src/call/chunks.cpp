@@ -9,8 +9,8 @@
 #include <memory>
 #include <utility>
 
-#include "call/errors.hpp"
 #include "call/implementation.hpp"
+#include "call/with_errors.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/memory/system_memory.hpp"
 #include "large/chunks/array_sink.hpp"

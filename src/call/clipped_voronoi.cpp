@@ -1,5 +1,5 @@
 // The public calls for clipped Voronoi cells.
-#include "call/device_mesh.hpp"
+#include "call/mesh_of.hpp"
 #include "derived/voronoi/clip.hpp"
 
 namespace flaunay {

@@ -1,5 +1,5 @@
 // The public call for triangulations with constraints in device memory.
-#include "call/device_mesh.hpp"
+#include "call/mesh_of.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/insertion/insert.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
-#include "call/errors.hpp"
 #include "call/self_test.hpp"
+#include "call/with_errors.hpp"
 #include "host/error.hpp"
 #include "host/opencl/device.hpp"
 #include "launchers/call/self_test.cl.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "call/engine.hpp"
-#include "call/errors.hpp"
+#include "call/with_errors.hpp"
 #include "flaunay/flaunay.hpp"
 #include "tuning/tuning.hpp"
 

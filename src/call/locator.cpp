@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "call/device_mesh.hpp"
+#include "call/mesh_of.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
 #include "derived/locate/read_back.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "call/host_modes.hpp"
 #include "modes/dwyer/run.hpp"
 #include "modes/partition/regions.hpp"

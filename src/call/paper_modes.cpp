@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "call/areas.hpp"
-#include "call/errors.hpp"
 #include "call/implementation.hpp"
 #include "call/modes.hpp"
+#include "call/with_errors.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/magnitudes.hpp"
 #include "modes/flattened/run.hpp"

@@ -1,7 +1,7 @@
 // The public calls for Voronoi diagrams.
 #include "derived/voronoi/voronoi.hpp"
 
-#include "call/device_mesh.hpp"
+#include "call/mesh_of.hpp"
 
 namespace flaunay {
 namespace {

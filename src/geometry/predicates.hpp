@@ -7,7 +7,7 @@
 
 namespace flaunay::geometry {
 
-/// A point: (x, y), or (s, u) in the coordinates of a region's cut line; see kernels/flattened/frame.h.
+/// A point: (x, y), or (s, u) in the coordinates of a region's cut line; see kernels/flattened/axes.h.
 using Point = kernel::double2;
 
 inline bool operator==(Point a, Point b) { return a.x == b.x && a.y == b.y; }

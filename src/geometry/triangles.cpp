@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "geometry/magnitudes.hpp"
-#include "predicates/areas.h"
+#include "predicates/area.h"
 #include "predicates/rounded_area.h"
 
 namespace flaunay::geometry {

@@ -6,7 +6,7 @@
 #include "mesh/limits.h"
 #include "points/cut_tree.hpp"
 #include "points/inspect.hpp"
-#include "points/move.hpp"
+#include "points/move_points.hpp"
 #include "points/records.h"
 #include "tuning/tuning.hpp"
 

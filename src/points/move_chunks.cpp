@@ -3,7 +3,7 @@
 
 #include "host/launch/vector_operations.hpp"
 #include "launchers/points/distribute.cl.hpp"
-#include "points/move.hpp"
+#include "points/move_points.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {

@@ -5,7 +5,7 @@
 #include "host/launch/vector_operations.hpp"
 #include "launchers/points/distribute_tiles.cl.hpp"
 #include "points/device_mesh.hpp"
-#include "points/move.hpp"
+#include "points/move_points.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::points {

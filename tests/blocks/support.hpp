@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "blocks/stages.hpp"
+#include "blocks/pipeline.hpp"
 #include "tests/points/support.hpp"
 
 namespace flaunay::blocks {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "flattened/frame.h"
 #include "flattened/limits.h"
 #include "launchers/flattened/chains.cl.hpp"
 #include "operations/limits.h"

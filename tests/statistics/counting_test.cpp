@@ -91,7 +91,7 @@ inline Counted convert_double(long x) { return kernel::convert_double(x); }
 #undef FLAUNAY_CIRCLE_INTEGERS_H
 #undef FLAUNAY_EXACT_ARITHMETIC_H
 #undef FLAUNAY_EXACT_DOUBLES_H
-#undef FLAUNAY_FRAME_H
+#undef FLAUNAY_AXES_H
 #undef FLAUNAY_HULL_HEIGHT_H
 #undef FLAUNAY_INTEGER_ARITHMETIC_H
 #undef FLAUNAY_PLANAR_H

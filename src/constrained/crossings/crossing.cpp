@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "predicates/areas.h"
+#include "predicates/area.h"
 
 namespace flaunay::constrained {
 using namespace geometry;

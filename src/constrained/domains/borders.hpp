@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "constrained/domains.h"
+#include "constrained/fill_rules.h"
 
 namespace flaunay::constrained {
 

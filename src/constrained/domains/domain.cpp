@@ -7,8 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "constrained/domains.h"
 #include "constrained/domains/borders.hpp"
+#include "constrained/fill_rules.h"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
 #include "launchers/constrained/holes.cl.hpp"

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "derived/interpolate/interpolate.hpp"
-#include "interpolate/natural.h"
+#include "interpolate/weights.h"
 
 namespace flaunay::interpolate {
 
-/// How neighbours are weighed, as kernels know it (interpolate/natural.h).
+/// How neighbours are weighed, as kernels know it (interpolate/weights.h).
 enum class NaturalWeights : cl_int { sibson = kernel::SIBSON, laplace = kernel::LAPLACE };
 
 /// Interpolates between the natural neighbours of each query. Points and queries of a set together may span

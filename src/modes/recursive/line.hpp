@@ -20,7 +20,7 @@ struct HullPoint {
   double height() const { return projection.x; }
 };
 
-/// The line that cuts a region. With one of the planar axes of kernels/flattened/frame.h, hulls are the lower
+/// The line that cuts a region. With one of the planar axes of kernels/flattened/axes.h, hulls are the lower
 /// or the upper hull of the points in the plane.
 struct Line {
   int axis = kernel::AXIS_X;

@@ -1,4 +1,4 @@
-#include "call/device_mesh.hpp"
+#include "call/mesh_of.hpp"
 
 #include "geometry/magnitudes.hpp"
 

@@ -1,11 +1,10 @@
 // The C interface to devices, triangulators and triangulations.
-#include "flaunay/flaunay.h"
-
 #include <array>
 #include <memory>
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "flaunay/flaunay.h"
 #include "host/opencl/loader.hpp"
 
 using namespace flaunay;

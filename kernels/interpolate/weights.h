@@ -1,6 +1,6 @@
 // The methods of natural-neighbour interpolation, and how exact their weights are.
-#ifndef FLAUNAY_NATURAL_H
-#define FLAUNAY_NATURAL_H
+#ifndef FLAUNAY_WEIGHTS_H
+#define FLAUNAY_WEIGHTS_H
 
 #include "arithmetic/language.h"
 

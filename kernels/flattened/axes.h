@@ -1,6 +1,6 @@
 // The frames in which a region's hull is computed: s across the cut line, u along it.
-#ifndef FLAUNAY_FRAME_H
-#define FLAUNAY_FRAME_H
+#ifndef FLAUNAY_AXES_H
+#define FLAUNAY_AXES_H
 
 #include "arithmetic/language.h"
 

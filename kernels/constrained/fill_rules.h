@@ -1,7 +1,7 @@
 // What is outside and what is a hole of a triangulation with constraints: see FillRule and Outside in
 // flaunay/constrained.hpp, whose values these are.
-#ifndef FLAUNAY_DOMAINS_H
-#define FLAUNAY_DOMAINS_H
+#ifndef FLAUNAY_FILL_RULES_H
+#define FLAUNAY_FILL_RULES_H
 
 #include "arithmetic/language.h"
 

@@ -1,6 +1,6 @@
 // Twice the areas of triangles, in floating point and exactly.
-#ifndef FLAUNAY_AREAS_H
-#define FLAUNAY_AREAS_H
+#ifndef FLAUNAY_AREA_H
+#define FLAUNAY_AREA_H
 
 #include "arithmetic/language.h"
 #include "predicates/nearness.h"
