@@ -42,7 +42,8 @@ tunings() {
 
 files() {
   cmake --preset release -DFLAUNAY_MPI=ON && build release flaunay_cli flaunay_mpi_cli || return
-  FLAUNAY_DEVICE=host python3 tests/chunk_files.py build/release/flaunay --seconds 180 --seed "$RANDOM" \
+  FLAUNAY_DEVICE=host "${PYTHON:-/usr/bin/python3}" tests/chunk_files.py build/release/flaunay --seconds 180 \
+    --seed "$RANDOM" \
     --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
