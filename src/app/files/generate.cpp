@@ -1,6 +1,6 @@
 #include "app/files/generate.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -30,12 +30,8 @@ double portable_log(double x) {
   return exponent * kLog2 + 2 * s * sum;
 }
 
-struct Direction {
-  double x, y;
-};
-
 /// Cosine and sine of `turns` full turns.
-Direction direction(double turns) {
+GeneratedPoint direction(double turns) {
   constexpr double kTau = 0x1.921fb54442d18p+2;
   const double fraction = turns - std::floor(turns);
   const int quarter = static_cast<int>(std::floor(4 * fraction + 0.5));
@@ -59,6 +55,8 @@ Direction direction(double turns) {
   }
 }
 
+}  // namespace
+
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -67,10 +65,12 @@ class Random {
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   /// In [0, bound); the bias of the remainder is below bound / 2^64.
   std::uint64_t below(std::uint64_t bound) { return engine_() % bound; }
+  /// In the unit square.
+  GeneratedPoint in_square() { return {unit(), unit()}; }  // in this order, as in all lists in braces
   /// Two independent N(0, 1), by Box and Muller.
-  Direction normal_pair() {
+  GeneratedPoint normal_pair() {
     const double radius = std::sqrt(-2 * portable_log(1 - unit()));
-    const Direction d = direction(unit());
+    const GeneratedPoint d = direction(unit());
     return {radius * d.x, radius * d.y};
   }
   template <typename Value>
@@ -82,27 +82,10 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Passes the points of one set on in pieces.
-class Sink {
- public:
-  explicit Sink(const PointConsumer& consume) : consume_(consume) { piece_.reserve(2 * kPiece); }
-  void add(double x, double y) {
-    piece_.push_back(x);
-    piece_.push_back(y);
-    if (piece_.size() == 2 * kPiece) pass_on();
-  }
-  void add(Direction p) { add(p.x, p.y); }
-  void pass_on() {
-    consume_(piece_.data(), piece_.size() / 2);
-    piece_.clear();
-  }
+namespace {
 
- private:
-  static constexpr std::size_t kPiece = std::size_t{1} << 16;
-
-  const PointConsumer& consume_;
-  std::vector<double> piece_;
-};
+using Point = GeneratedPoint;
+using MakePoint = Distribution::MakePoint;
 
 /// Columns of the smallest square grid that has n nodes.
 std::size_t grid_width(std::size_t n) {
@@ -112,65 +95,58 @@ std::size_t grid_width(std::size_t n) {
   return width;
 }
 
-void uniform(std::size_t n, Random& random, Sink& sink) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = random.unit();
-    sink.add(x, random.unit());
-  }
+/// Node i of that grid, row by row.
+MakePoint grid(std::size_t n, Random&) {
+  return [width = grid_width(n)](std::size_t i) {
+    return Point{static_cast<double>(i % width), static_cast<double>(i / width)};
+  };
 }
 
-void normal(std::size_t n, Random& random, Sink& sink) {
-  for (std::size_t i = 0; i < n; ++i) sink.add(random.normal_pair());
+MakePoint rotated_grid(std::size_t n, Random& random) {
+  return [node = grid(n, random)](std::size_t i) {
+    const double cosine = 3 / std::sqrt(10.0), sine = 1 / std::sqrt(10.0);  // by atan(1/3)
+    const auto [x, y] = node(i);
+    return Point{cosine * x - sine * y, sine * x + cosine * y};
+  };
 }
 
-void kuzmin(std::size_t n, Random& random, Sink& sink) {
-  for (std::size_t i = 0; i < n; ++i) {
+MakePoint hexagonal(std::size_t n, Random& random) {
+  return [node = grid(n, random), row_distance = std::sqrt(3.0) / 2](std::size_t i) {
+    const auto [x, y] = node(i);
+    return Point{x + (static_cast<std::size_t>(y) % 2 ? 0.5 : 0.0), row_distance * y};
+  };
+}
+
+MakePoint uniform(std::size_t, Random& random) {
+  return [&random](std::size_t) { return random.in_square(); };
+}
+
+MakePoint normal(std::size_t, Random& random) {
+  return [&random](std::size_t) { return random.normal_pair(); };
+}
+
+MakePoint kuzmin(std::size_t, Random& random) {
+  return [&random](std::size_t) {
     // M(r) = 1 - 1 / sqrt(1 + r^2), inverted.
     const double rest = 1 - random.unit();
     const double radius = std::sqrt(1 / (rest * rest) - 1);
-    const Direction d = direction(random.unit());
-    sink.add(radius * d.x, radius * d.y);
-  }
+    const Point d = direction(random.unit());
+    return Point{radius * d.x, radius * d.y};
+  };
 }
 
-void line(std::size_t n, Random& random, Sink& sink) {
-  constexpr double b = 0.001;
-  for (std::size_t i = 0; i < n; ++i) {
+MakePoint line(std::size_t, Random& random) {
+  return [&random](std::size_t) {
+    constexpr double b = 0.001;
     const double u = random.unit();
-    const double x = b / (u - b * u + b);
-    sink.add(x, random.unit());
-  }
+    return Point{b / (u - b * u + b), random.unit()};
+  };
 }
 
-void grid(std::size_t n, Random&, Sink& sink) {
-  const std::size_t width = grid_width(n);
-  for (std::size_t i = 0; i < n; ++i)
-    sink.add(static_cast<double>(i % width), static_cast<double>(i / width));
-}
-
-void rotated_grid(std::size_t n, Random&, Sink& sink) {
-  const std::size_t width = grid_width(n);
-  const double cosine = 3 / std::sqrt(10.0), sine = 1 / std::sqrt(10.0);  // by atan(1/3)
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto x = static_cast<double>(i % width), y = static_cast<double>(i / width);
-    sink.add(cosine * x - sine * y, sine * x + cosine * y);
-  }
-}
-
-void hexagonal(std::size_t n, Random&, Sink& sink) {
-  const std::size_t width = grid_width(n);
-  const double row_distance = std::sqrt(3.0) / 2;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t row = i / width;
-    sink.add(static_cast<double>(i % width) + (row % 2 ? 0.5 : 0.0), row_distance * static_cast<double>(row));
-  }
-}
-
-void circle(std::size_t n, Random& random, Sink& sink) {
-  const double start = random.unit();
-  for (std::size_t i = 0; i < n; ++i) {
-    sink.add(direction((static_cast<double>(i) + start) / static_cast<double>(n)));
-  }
+MakePoint circle(std::size_t n, Random& random) {
+  return [n, start = random.unit()](std::size_t i) {
+    return direction((static_cast<double>(i) + start) / static_cast<double>(n));
+  };
 }
 
 struct IntegerPoint {
@@ -204,7 +180,7 @@ std::vector<IntegerPoint> integer_circle_points(const std::vector<GaussianPrime>
   return points;
 }
 
-void integer_circle(std::size_t n, Random& random, Sink& sink) {
+MakePoint integer_circle(std::size_t n, Random& random) {
   // 5 = 2^2 + 1^2, 13 = 3^2 + 2^2, ...; each circle has more points than the one before, 4 to 36,864.
   const std::vector<std::vector<GaussianPrime>> circles = {
       {},
@@ -229,235 +205,202 @@ void integer_circle(std::size_t n, Random& random, Sink& sink) {
     if (points.size() >= n) break;
   }
   // Scaled by 1, 2, 3, ..., the largest circle gives more circles of as many exactly cocircular points.
-  std::int64_t scale = 1;
-  for (std::size_t left = n; left > 0; ++scale) {
-    random.shuffle(points);
-    const std::size_t taken = std::min(left, points.size());
-    for (std::size_t i = 0; i < taken; ++i) {
-      sink.add(static_cast<double>(scale * points[i].x), static_cast<double>(scale * points[i].y));
+  return [&random, points, scale = std::int64_t{0}](std::size_t i) mutable {
+    const std::size_t k = i % points.size();
+    if (k == 0) {
+      random.shuffle(points);
+      ++scale;
     }
-    left -= taken;
-  }
+    return Point{static_cast<double>(scale * points[k].x), static_cast<double>(scale * points[k].y)};
+  };
 }
 
-void nested_circles(std::size_t n, Random& random, Sink& sink) {
-  const std::size_t circles = grid_width(n) / 4 + 1;
-  const double start = random.unit();
-  for (std::size_t i = 0; i < n; ++i) {
+MakePoint nested_circles(std::size_t n, Random& random) {
+  return [n, circles = grid_width(n) / 4 + 1, start = random.unit()](std::size_t i) {
     const std::size_t c = i % circles, on_circle = (n - c + circles - 1) / circles;
     const double radius = static_cast<double>(c + 1) / static_cast<double>(circles);
-    const Direction d =
-        direction((static_cast<double>(i / circles) + start) / static_cast<double>(on_circle));
-    sink.add(radius * d.x, radius * d.y);
-  }
+    const Point d = direction((static_cast<double>(i / circles) + start) / static_cast<double>(on_circle));
+    return Point{radius * d.x, radius * d.y};
+  };
 }
 
-void columns(std::size_t n, Random& random, Sink& sink) {
-  constexpr std::size_t kColumns = 8;
-  for (std::size_t i = 0; i < n; ++i) {
+MakePoint columns(std::size_t, Random& random) {
+  return [&random](std::size_t i) {
+    constexpr std::size_t kColumns = 8;
     const std::size_t column = i % kColumns, row = i / kColumns;
     // Even columns are equally spaced, odd ones irregular. All numbers are integers, and no two are equal.
     const std::uint64_t shift = column % 2 ? random.below(4) : 0;
-    sink.add(static_cast<double>(column), static_cast<double>(4 * row + shift));
-  }
+    return Point{static_cast<double>(column), static_cast<double>(4 * row + shift)};
+  };
 }
 
-/// Pairs of random small integers, each number changed by `change`.
-template <typename Change>
-void small_integers_changed(std::size_t n, Random& random, Sink& sink, const Change& change) {
+MakePoint small_integers(std::size_t n, Random& random) {
   const std::uint64_t bound = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(n)) / 2) + 2;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = change(static_cast<double>(random.below(bound)));
-    sink.add(x, change(static_cast<double>(random.below(bound))));
-  }
+  return [&random, bound](std::size_t) {
+    return Point{static_cast<double>(random.below(bound)), static_cast<double>(random.below(bound))};
+  };
 }
 
-void small_integers(std::size_t n, Random& random, Sink& sink) {
-  small_integers_changed(n, random, sink, [](double integer) { return integer; });
+MakePoint one_ulp(std::size_t n, Random& random) {
+  return [integers = small_integers(n, random)](std::size_t i) {
+    const auto [x, y] = integers(i);
+    return Point{1 + x * 0x1p-52, 1 + y * 0x1p-52};
+  };
 }
 
-void half_duplicates(std::size_t n, Random& random, Sink& sink) {
+MakePoint half_duplicates(std::size_t n, Random& random) {
   const std::size_t originals = n - n / 2;
-  std::vector<Direction> all;
+  std::vector<Point> all;
   all.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i < originals) {
-      const double x = random.unit();
-      all.push_back({x, random.unit()});
-    } else {
-      all.push_back(all[random.below(originals)]);
-    }
-  }
+  while (all.size() < originals) all.push_back(random.in_square());
+  while (all.size() < n) all.push_back(all[random.below(originals)]);
   random.shuffle(all);
-  for (const Direction& p : all) sink.add(p);
+  return [all = std::move(all)](std::size_t i) { return all[i]; };
 }
 
-void collinear(std::size_t n, Random& random, Sink& sink) {
-  for (std::size_t i = 0; i < n; ++i) {
+MakePoint collinear(std::size_t n, Random& random) {
+  return [&random, n](std::size_t) {
     const auto position = static_cast<double>(random.below(8 * n));
-    sink.add(position, 3 * position);
-  }
+    return Point{position, 3 * position};
+  };
 }
 
-void parabola(std::size_t n, Random&, Sink& sink) {
+MakePoint horizontal(std::size_t n, Random& random) {
+  return [&random, n](std::size_t) { return Point{static_cast<double>(random.below(8 * n)), 7}; };
+}
+
+MakePoint parabola(std::size_t n, Random&) {
   // Scaled by a power of two, so that x is within [-1, 1] and x^2 as exact as the integer's square.
   int bits = 0;
   while ((n / 2) >> bits > 0) ++bits;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = std::ldexp(static_cast<double>(i) - static_cast<double>(n / 2), -bits);
-    sink.add(x, x * x);
-  }
+  return [middle = static_cast<double>(n / 2), bits](std::size_t i) {
+    const double x = std::ldexp(static_cast<double>(i) - middle, -bits);
+    return Point{x, x * x};
+  };
 }
 
-void clusters(std::size_t n, Random& random, Sink& sink) {
-  constexpr int kClusters = 12;
-  Direction centers[kClusters];
-  for (Direction& center : centers) {
-    center.x = random.unit();
-    center.y = random.unit();
-  }
-  for (std::size_t i = 0; i < n; ++i) {
+MakePoint clusters(std::size_t, Random& random) {
+  std::array<Point, 12> centers;
+  for (Point& center : centers) center = random.in_square();
+  return [&random, centers](std::size_t) {
     // Each cluster a quarter the width of the one before: 1/8 down to 3e-8.
-    const auto c = static_cast<int>(random.below(kClusters));
-    const double width = std::ldexp(0.125, -2 * c);
-    const Direction d = random.normal_pair();
-    sink.add(centers[c].x + width * d.x, centers[c].y + width * d.y);
-  }
+    const std::size_t c = random.below(centers.size());
+    const double width = std::ldexp(0.125, -2 * static_cast<int>(c));
+    const Point d = random.normal_pair();
+    return Point{centers[c].x + width * d.x, centers[c].y + width * d.y};
+  };
 }
 
-void spiral(std::size_t n, Random& random, Sink& sink) {
+MakePoint spiral(std::size_t n, Random& random) {
   // Archimedes' spiral. The distance between its arms equals the distance between points along an arm.
   const double pi = 0x1.921fb54442d18p+1;
   const double arms = std::sqrt(static_cast<double>(n) / pi);
-  const double start = random.unit();
-  for (std::size_t i = 0; i < n; ++i) {
+  return [n, arms, start = random.unit()](std::size_t i) {
     const double radius = std::sqrt((static_cast<double>(i) + 0.5) / static_cast<double>(n));
-    const Direction d = direction(arms * radius + start);
-    sink.add(radius * d.x, radius * d.y);
-  }
+    const Point d = direction(arms * radius + start);
+    return Point{radius * d.x, radius * d.y};
+  };
 }
 
-void horizontal(std::size_t n, Random& random, Sink& sink) {
-  for (std::size_t i = 0; i < n; ++i) sink.add(static_cast<double>(random.below(8 * n)), 7);
-}
-
-void thirty_lines(std::size_t n, Random& random, Sink& sink) {
+MakePoint thirty_lines(std::size_t n, Random& random) {
   constexpr std::size_t kLines = 30;
   // No two of the directions are parallel; each line goes through a random node of a grid as wide as it is
   // long, so that all of them cross.
-  constexpr std::int64_t kDirections[kLines][2] = {
+  static constexpr std::int64_t kDirections[kLines][2] = {
       {1, 0}, {0, 1},  {1, 1}, {1, -1}, {2, 1}, {2, -1}, {1, 2}, {1, -2}, {3, 1}, {3, -1},
       {1, 3}, {1, -3}, {3, 2}, {3, -2}, {2, 3}, {2, -3}, {4, 1}, {4, -1}, {1, 4}, {1, -4},
       {4, 3}, {4, -3}, {3, 4}, {3, -4}, {5, 1}, {5, -1}, {1, 5}, {1, -5}, {5, 2}, {5, -2}};
   const std::uint64_t length = 8 * n;
-  double starts[kLines][2];
-  for (auto& start : starts) {
-    for (double& coordinate : start) coordinate = static_cast<double>(random.below(length + 1));
+  std::array<Point, kLines> starts;
+  for (Point& start : starts) {
+    start = {static_cast<double>(random.below(length + 1)), static_cast<double>(random.below(length + 1))};
   }
-  for (std::size_t i = 0; i < n; ++i) {
+  return [&random, length, starts](std::size_t) {
     const std::size_t l = random.below(kLines);
     const double position = static_cast<double>(random.below(length)) - static_cast<double>(length / 2);
-    sink.add(starts[l][0] + static_cast<double>(kDirections[l][0]) * position,
-             starts[l][1] + static_cast<double>(kDirections[l][1]) * position);
-  }
+    return Point{starts[l].x + static_cast<double>(kDirections[l][0]) * position,
+                 starts[l].y + static_cast<double>(kDirections[l][1]) * position};
+  };
 }
 
-void power_of_two_span(std::size_t n, Random& random, Sink& sink) {
+MakePoint power_of_two_span(std::size_t n, Random& random) {
   std::uint64_t span = 4;
   while (span * span / 16 < n) span *= 2;
-  for (std::size_t i = 0; i < n; ++i) {
+  return [&random, span](std::size_t i) {
     // Two opposite corners, so that the span is exact.
-    const bool corner = i < 2;
-    const auto coordinate = [&] { return static_cast<double>(corner ? i * span : random.below(span + 1)); };
-    const double x = coordinate();
-    sink.add(x, coordinate());
-  }
-}
-
-void one_ulp(std::size_t n, Random& random, Sink& sink) {
-  small_integers_changed(n, random, sink, [](double integer) { return 1 + integer * 0x1p-52; });
-}
-
-void mostly_equal(std::size_t n, Random& random, Sink& sink) {
-  constexpr std::size_t kOthers = 10;
-  const double x = random.unit(), y = random.unit();
-  const std::size_t stride = n / kOthers + 1;
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool other = i % stride == stride / 2;
-    const double own_x = other ? random.unit() : x;
-    sink.add(own_x, other ? random.unit() : y);
-  }
-}
-
-void two_clusters(std::size_t n, Random& random, Sink& sink) {
-  constexpr double kDistance = 1e9;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double center = random.below(2) ? kDistance : 0;
-    const Direction d = random.normal_pair();
-    sink.add(center + d.x, center + d.y);
-  }
-}
-
-struct Generator {
-  Distribution distribution;
-  void (*generate)(std::size_t n, Random& random, Sink& sink);
-};
-
-const std::vector<Generator>& generators() {
-  static const std::vector<Generator> all = {
-      {{"uniform", "uniform in the unit square"}, uniform},
-      {{"normal", "both coordinates standard normal"}, normal},
-      {{"kuzmin", "Kuzmin's disk: dense in the centre, heavy tails"}, kuzmin},
-      {{"line", "clustered along a vertical line"}, line},
-      {{"grid", "a square integer grid, row by row"}, grid},
-      {{"rotated-grid", "a square grid turned by atan(1/3), rounded: nearly cocircular, nearly collinear"},
-       rotated_grid},
-      {{"hexagonal", "a hexagonal lattice, rounded"}, hexagonal},
-      {{"circle", "equally spaced on a unit circle, rounded"}, circle},
-      {{"integer-circle", "integers exactly on a circle around 0, or on several if one has too few"},
-       integer_circle},
-      {{"nested-circles", "concentric circles, rounded"}, nested_circles},
-      {{"columns", "eight columns of exactly collinear integers"}, columns},
-      {{"small-integers", "random small integers: most points several times"}, small_integers},
-      {{"half-duplicates", "uniform, half of the points copies of others"}, half_duplicates},
-      {{"collinear", "random integers exactly on one slanted line"}, collinear},
-      {{"parabola", "exactly on a parabola: every point on the hull"}, parabola},
-      {{"clusters", "twelve Gaussian clusters, each a quarter as wide as the one before"}, clusters},
-      {{"spiral", "a spiral with evenly spaced arms"}, spiral},
-      {{"horizontal", "random integers exactly on one horizontal line"}, horizontal},
-      {{"thirty-lines", "integers exactly on thirty lines that cross"}, thirty_lines},
-      {{"power-of-two-span", "random integers from 0 to a power of two, both included"}, power_of_two_span},
-      {{"one-ulp", "rounding errors beside (1, 1): small integers times 2^-52; most points several times"},
-       one_ulp},
-      {{"mostly-equal", "all points equal but up to ten"}, mostly_equal},
-      {{"two-clusters", "two Gaussian clusters a billion times as far apart as wide"}, two_clusters},
+    const auto coordinate = [&] { return static_cast<double>(i < 2 ? i * span : random.below(span + 1)); };
+    return Point{coordinate(), coordinate()};
   };
-  return all;
+}
+
+MakePoint mostly_equal(std::size_t n, Random& random) {
+  constexpr std::size_t kOthers = 10;
+  return [&random, stride = n / kOthers + 1, usual = random.in_square()](std::size_t i) {
+    return i % stride == stride / 2 ? random.in_square() : usual;
+  };
+}
+
+MakePoint two_clusters(std::size_t, Random& random) {
+  return [&random](std::size_t) {
+    constexpr double kDistance = 1e9;
+    const double center = random.below(2) ? kDistance : 0;
+    const Point d = random.normal_pair();
+    return Point{center + d.x, center + d.y};
+  };
 }
 
 }  // namespace
 
 const std::vector<Distribution>& distributions() {
-  static const std::vector<Distribution> all = [] {
-    std::vector<Distribution> list;
-    for (const Generator& generator : generators()) list.push_back(generator.distribution);
-    return list;
-  }();
+  static const std::vector<Distribution> all = {
+      {"uniform", "uniform in the unit square", uniform},
+      {"normal", "both coordinates standard normal", normal},
+      {"kuzmin", "Kuzmin's disk: dense in the centre, heavy tails", kuzmin},
+      {"line", "clustered along a vertical line", line},
+      {"grid", "a square integer grid, row by row", grid},
+      {"rotated-grid", "a square grid turned by atan(1/3), rounded: nearly cocircular, nearly collinear",
+       rotated_grid},
+      {"hexagonal", "a hexagonal lattice, rounded", hexagonal},
+      {"circle", "equally spaced on a unit circle, rounded", circle},
+      {"integer-circle", "integers exactly on a circle around 0, or on several if one has too few",
+       integer_circle},
+      {"nested-circles", "concentric circles, rounded", nested_circles},
+      {"columns", "eight columns of exactly collinear integers", columns},
+      {"small-integers", "random small integers: most points several times", small_integers},
+      {"half-duplicates", "uniform, half of the points copies of others", half_duplicates},
+      {"collinear", "random integers exactly on one slanted line", collinear},
+      {"parabola", "exactly on a parabola: every point on the hull", parabola},
+      {"clusters", "twelve Gaussian clusters, each a quarter as wide as the one before", clusters},
+      {"spiral", "a spiral with evenly spaced arms", spiral},
+      {"horizontal", "random integers exactly on one horizontal line", horizontal},
+      {"thirty-lines", "integers exactly on thirty lines that cross", thirty_lines},
+      {"power-of-two-span", "random integers from 0 to a power of two, both included", power_of_two_span},
+      {"one-ulp", "rounding errors beside (1, 1): small integers times 2^-52; most points several times",
+       one_ulp},
+      {"mostly-equal", "all points equal but up to ten", mostly_equal},
+      {"two-clusters", "two Gaussian clusters a billion times as far apart as wide", two_clusters},
+  };
   return all;
 }
 
 void generate(const std::string& distribution, std::size_t n, std::uint64_t seed,
               const PointConsumer& consume) {
   std::string names;
-  for (const Generator& generator : generators()) {
-    if (generator.distribution.name == distribution) {
-      Random random(seed);
-      Sink sink(consume);
-      generator.generate(n, random, sink);
-      sink.pass_on();
-      return;
+  for (const Distribution& known : distributions()) {
+    names += (names.empty() ? "" : ", ") + known.name;
+    if (known.name != distribution) continue;
+    Random random(seed);
+    const MakePoint make = known.maker(n, random);
+    constexpr std::size_t kPiece = std::size_t{1} << 16;
+    std::vector<double> piece;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Point p = make(i);
+      piece.insert(piece.end(), {p.x, p.y});
+      if (piece.size() < 2 * kPiece && i + 1 < n) continue;
+      consume(piece.data(), piece.size() / 2);
+      piece.clear();
     }
-    names += (names.empty() ? "" : ", ") + generator.distribution.name;
+    return;
   }
   throw Error(ErrorKind::usage, "unknown distribution '" + distribution + "'; expected one of " + names);
 }

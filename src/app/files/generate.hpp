@@ -11,9 +11,17 @@
 
 namespace flaunay::io {
 
+struct GeneratedPoint {
+  double x, y;
+};
+class Random;
+
 struct Distribution {
   std::string name;
   std::string description;
+  /// Makes point i of n, in their order.
+  using MakePoint = std::function<GeneratedPoint(std::size_t i)>;
+  MakePoint (*maker)(std::size_t n, Random& random);
 };
 
 /// The known distributions, each with a line of description; the first four are those of the paper.
