@@ -44,20 +44,29 @@ void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t
   check_disk_space(files);
 }
 
-MeshFiles::MeshFiles(Outputs& outputs, const std::array<std::string, kMeshArrays>& paths, IndexType type)
+MeshFiles::MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials)
     : type_(type) {
   for (std::size_t k = 0; k < kMeshArrays; ++k) {
     check_stream_output(paths[k]);
-    if (!paths[k].empty()) files_[k].output = &outputs.open(paths[k]);
+    if (paths[k].empty()) continue;
+    files_[k].output = partials[k].empty() ? &outputs.open(paths[k]) : &outputs.join(paths[k], partials[k]);
   }
+}
+
+MeshFiles::Paths MeshFiles::partial_paths() const {
+  Paths partials;
+  for (std::size_t k = 0; k < kMeshArrays; ++k) {
+    if (files_[k].output != nullptr) partials[k] = files_[k].output->partial_path();
+  }
+  return partials;
 }
 
 bool MeshFiles::wants(MeshArray array) const { return file_of(array).output != nullptr; }
 
 void MeshFiles::write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) {
-  File& file = files_[static_cast<std::size_t>(array)];
+  const File& file = file_of(array);
   const std::uint64_t place = kNpyHeaderBytes + first * bytes_of(type_);
-  file.entries = std::max(file.entries, first + count);
+  extend(array, first + count);
   if (type_ == IndexType::int64) {
     file.output->write_at(place, values, count * sizeof *values);
     return;
@@ -74,6 +83,11 @@ void MeshFiles::write(MeshArray array, std::uint64_t first, const std::int64_t* 
     file.output->write_at(place + done * sizeof narrow_[0], narrow_.data(),
                           narrow_.size() * sizeof narrow_[0]);
   }
+}
+
+void MeshFiles::extend(MeshArray array, std::uint64_t entries) {
+  std::uint64_t& known = files_[static_cast<std::size_t>(array)].entries;
+  known = std::max(known, entries);
 }
 
 void MeshFiles::finish() {

@@ -19,12 +19,17 @@ constexpr std::size_t kMeshArrays = kMeshArrayIndices.size();  ///< of MeshArray
 /// Nothing has a name before the outputs are committed. Throws Error(input) that names the file.
 class MeshFiles : public MeshSink {
  public:
-  /// paths: in the order of MeshArray; an empty one means that the array is not wanted.
-  MeshFiles(Outputs& outputs, const std::array<std::string, kMeshArrays>& paths, IndexType type);
+  /// In the order of MeshArray; an empty one means that the array is not wanted.
+  using Paths = std::array<std::string, kMeshArrays>;
+  /// partials: the partial files of another process, for those that it has created.
+  MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials = {});
+  Paths partial_paths() const;
 
   bool wants(MeshArray array) const override;
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override;
 
+  /// Says how many entries an array has, if other processes write some of them.
+  void extend(MeshArray array, std::uint64_t entries);
   /// Writes the headers, after all entries.
   void finish();
 

@@ -99,6 +99,11 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   if (target_.exists && ::fchmod(descriptor_, target_.mode) != 0) return;
 }
 
+OutputFile::OutputFile(const std::string& path, const std::string& partial)
+    : path_(path), partial_(partial), descriptor_(::open(partial.c_str(), O_WRONLY | O_CLOEXEC)) {
+  if (descriptor_ < 0) fail(path_, "cannot be opened for writing: {}", system_reason(errno));
+}
+
 OutputFile::~OutputFile() {
   if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
 }
@@ -139,6 +144,10 @@ void OutputFile::close() {
 }
 
 void Outputs::announce(const std::string& path) {
+  for (const std::string& input : inputs_) {
+    if (input == "-" || !is_one_file(input, path)) continue;
+    throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the input", path));
+  }
   auto file = std::make_unique<OutputFile>(path);
   const auto is_same = [&](const auto& other) { return is_one_file(other->path_, path); };
   if (file->target_.is_direct && (std::any_of(announced_.begin(), announced_.end(), is_same) ||
@@ -159,6 +168,10 @@ OutputFile& Outputs::open(const std::string& path) {
   announced_.erase(announced);
   files_.back()->start();
   return *files_.back();
+}
+
+OutputFile& Outputs::join(const std::string& path, const std::string& partial) {
+  return *files_.emplace_back(std::make_unique<OutputFile>(path, partial));
 }
 
 void Outputs::close() {

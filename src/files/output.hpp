@@ -40,6 +40,8 @@ class OutputFile {
  public:
   /// Creates the partial file. Throws Error(usage) if this process writes another one for the same target.
   explicit OutputFile(const std::string& path);
+  /// Opens the partial file that another process has created for the path, for write_at.
+  OutputFile(const std::string& path, const std::string& partial);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
@@ -58,6 +60,8 @@ class OutputFile {
     write(&value, sizeof value);
   }
 
+  /// As the user wrote it.
+  const std::string& path() const { return path_; }
   /// Empty if the file is written directly.
   const std::string& partial_path() const { return partial_.path(); }
 
@@ -71,7 +75,7 @@ class OutputFile {
   void close();
   void check_written(bool is_written) const;
 
-  std::string path_;  // as the user wrote it
+  std::string path_;
   Target target_;
   Temporary partial_;
   int descriptor_ = -1;
@@ -81,11 +85,17 @@ class OutputFile {
 /// The files that one run writes. What was not committed changes nothing.
 class Outputs {
  public:
+  /// inputs: files that no output may overwrite; "-" is none.
+  explicit Outputs(std::vector<std::string> inputs = {}) : inputs_(std::move(inputs)) {}
+
   /// Creates a file that may be written later, to find errors before the work begins. Throws Error(input) if
-  /// it cannot be created, Error(usage) if another file of this run has the path, however it is written.
+  /// it cannot be created, Error(usage) if it is an input, or another file of this run has the path, however
+  /// it is written.
   void announce(const std::string& path);
   /// A file that was announced, or else a new one. The reference is valid until commit.
   OutputFile& open(const std::string& path);
+  /// Opens a partial file of another process, which commits it when this one has called write_out.
+  OutputFile& join(const std::string& path, const std::string& partial);
   /// An old file, or a link to one, that commit removes. No output of this run may have the path.
   void remove(const std::string& path) { removed_.push_back(path); }
 
@@ -107,6 +117,7 @@ class Outputs {
   void keep_old(const std::string& path, const Target& target, bool is_removed);
   std::string take_back();
 
+  std::vector<std::string> inputs_;
   std::vector<std::unique_ptr<OutputFile>> announced_, files_;
   std::vector<std::string> removed_;
   std::vector<Placed> placed_;

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/formats.hpp"
 #include "app/files/generate.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/points.hpp"
@@ -487,14 +488,14 @@ TEST_F(IoTest, UnreadableFilesSayWhy) {
 TEST_F(IoTest, UnknownEndingsListTheKnown) {
   for (const char* name : {"points.vtk", "points", "folder.npy/points", "points.npy.gz"}) {
     for (const auto& action :
-         std::vector<std::function<void()>>{[&] { check_points_ending(name); }, [&] { read_points(name); },
-                                            [&] { write_points(name, {}); }}) {
+         std::vector<std::function<void()>>{[&] { format_of(name, Use::read_points); },
+                                            [&] { read_points(name); }, [&] { write_points(name, {}); }}) {
       expect_error(ErrorKind::usage, std::string(name) + ": ",
                    {".npy, .node, .xy, .txt, .csv, .bin", "\"-\""}, action);
     }
   }
   for (const char* name : {"-", "a.npy", "a.NODE", "b.c/a.xy", "a.Txt", "a.csv", ".bin"}) {
-    EXPECT_NO_THROW(check_points_ending(name)) << name;
+    EXPECT_NO_THROW(format_of(name, Use::read_points)) << name;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "app/files/formats.hpp"
 #include "app/files/generate.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/npy.hpp"
@@ -175,9 +176,9 @@ TEST_F(LasTest, APipeIsReadAsAFile) {
 TEST_F(LasTest, CompressedFilesAreRefused) {
   const std::string laz = write("scan.laz", some_scan().bytes());
   expect_error(ErrorKind::input, laz + ": ", {"compressed (LAZ)", "pdal"}, [&] { read_points(laz); });
-  expect_error(ErrorKind::input, laz + ": ", {"compressed (LAZ)"}, [&] { check_points_ending(laz); });
+  expect_error(ErrorKind::input, laz + ": ", {"compressed (LAZ)"}, [&] { format_of(laz, Use::read_points); });
   expect_error(ErrorKind::usage, "out.las: ", {"unknown ending '.las'"},
-               [] { check_points_output("out.las"); });
+               [] { format_of("out.las", Use::write_points); });
 }
 
 // ----------------------------------------------------------------------------------------- points in pieces

@@ -13,8 +13,7 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/command/results.hpp"
-#include "app/files/mesh.hpp"
-#include "app/files/points.hpp"
+#include "app/files/formats.hpp"
 #include "flaunay/research.hpp"
 #include "host/native/threads.hpp"
 
@@ -103,9 +102,9 @@ Triangulation put_together(const io::Points& points, const research::Partition& 
 }
 
 int assemble(const AssembleRequest& request) {
-  io::check_points_ending(request.input);
+  io::format_of(request.input, io::Use::read_points);
   for (const std::string& path : request.results.all()) check_no_partition_file(request.folder, path);
-  OutputFiles outputs(request.input);
+  OutputFiles outputs({request.input});
   announce(outputs, request.results);
   const PartitionReader reader(request.folder);
   const std::vector<std::string> paths = find_solutions(reader, request.solve);

@@ -127,7 +127,7 @@ io::IndexType index_type(const std::string& choice, std::uint64_t points, const 
 }
 
 int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) {
-  OutputFiles outputs(request.input);
+  OutputFiles outputs({request.input});
   announce(outputs, request.results);
   const auto paths = mesh_paths(request.results);
   for (const std::string& path : paths) io::check_stream_output(path);
@@ -143,18 +143,18 @@ int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) 
 
   const io::IndexType type = index_type(request.index, points->size(), request.results);
   io::check_room(paths, points->size(), type, request.scratch);
-  io::MeshFiles files(outputs.files(), paths, type);
+  io::MeshFiles files(outputs, paths, type);
   const ChunkStatistics statistics = triangulate_file(request, *points, files, progress);
 
   stopwatch.restart();
   progress.update("writing");
   files.finish();
-  outputs.files().write_out();
+  outputs.write_out();
   facts.writing_seconds = stopwatch.seconds();
   if (!request.results.stats.empty()) {
-    outputs.files().open(request.results.stats).print("{}", chunk_statistics_json(statistics, facts));
+    outputs.open(request.results.stats).print("{}", chunk_statistics_json(statistics, facts));
   }
-  outputs.files().commit();
+  outputs.commit();
   progress.finish();
   if (!request.quiet) print(note + host_note(statistics.note) + chunk_summary(statistics, facts));
   return kSuccess;

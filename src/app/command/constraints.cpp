@@ -252,7 +252,7 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
   Stopwatch stopwatch;
   progress.update("writing");
   const io::IndexType index = index_type(work.index, map.points.size(), work.results);
-  io::Outputs& files = outputs.files();
+  io::Outputs& files = outputs;
   if (!work.results.mesh.empty()) {
     const std::vector<double> attributes = attributes_of(map, mesh);
     io::write_mesh(files, work.results.mesh, {map.points, mesh, &mesh, &map, request.fill, attributes});
@@ -379,8 +379,8 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
 
 int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRequest& asked) {
   ConstraintRequest request = asked;
-  OutputFiles outputs(work.input, io::is_map(work.input) ? io::files_of_map(work.input)
-                                                         : std::vector<std::string>{request.segments});
+  OutputFiles outputs(io::is_map(work.input) ? io::files_of_map(work.input)
+                                             : std::vector<std::string>{work.input, request.segments});
   announce(outputs, work.results, true);
   announce_constraints(outputs, request);
 

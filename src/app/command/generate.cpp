@@ -35,13 +35,13 @@ int generate(const GenerateRequest& request) {
     // As in every filter, a closed pipe ends the program without a message.
     std::signal(SIGPIPE, SIG_DFL);
   }
-  OutputFiles outputs("-");
+  OutputFiles outputs;
   outputs.add_points(request.output);
   io::check_disk_space({{request.output, io::least_bytes(request.output, request.count)}});
-  io::PointWriter writer(outputs.files(), request.output, request.count);
+  io::PointWriter writer(outputs, request.output, request.count);
   io::generate(request.distribution, request.count, request.seed,
                [&writer](const double* coordinates, std::size_t count) { writer.write(coordinates, count); });
-  outputs.files().commit();
+  outputs.commit();
   return kSuccess;
 }
 

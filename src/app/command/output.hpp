@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "files/output.hpp"
 
@@ -13,30 +12,18 @@ namespace flaunay::cli {
 /// full disk.
 bool print(const std::string& text);
 
-/// The files that one run writes: first all are announced, to find errors before the work begins; in the end
-/// they are written, and committed together.
-class OutputFiles {
+/// The files that one run writes, by what is in them.
+class OutputFiles : public io::Outputs {
  public:
-  /// input and more: files that no output may overwrite; "-" for none.
-  explicit OutputFiles(const std::string& input, std::vector<std::string> more = {});
+  using io::Outputs::Outputs;
 
-  /// Announces a mesh in one of the formats of write_mesh. An empty path means that there is none. Throws
-  /// Error(usage) if the ending is unknown or another file of this run has the path, Error(input) if the file
-  /// cannot be created.
+  // These announce files. An empty path means that there is none. They throw Error(usage) for another ending,
+  // and what announce throws.
+  /// A mesh in one of the formats of write_mesh.
   void add_mesh(const std::string& path, bool with_constraints = false);
-  /// Announces a file whose ending must be `ending`, with the same errors.
   void add(const std::string& path, const std::string& ending);
-  /// Announces points in one of the formats of write_points, with the same errors. "-" is standard output.
+  /// Points in one of the formats of write_points. "-" is standard output.
   void add_points(const std::string& path);
-
-  /// Where the announced files are written.
-  io::Outputs& files() { return files_; }
-
- private:
-  void announce(const std::string& path);
-
-  std::vector<std::string> inputs_;
-  io::Outputs files_;
 };
 
 }  // namespace flaunay::cli

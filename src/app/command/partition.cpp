@@ -8,7 +8,7 @@
 #include "app/command/partition_folder.hpp"
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
-#include "app/files/points.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/region.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/research.hpp"
@@ -48,12 +48,12 @@ research::Partition compute(const PartitionRequest& request, const io::Points& p
 }
 
 int partition(const PartitionRequest& request) {
-  io::check_points_ending(request.input);
+  io::format_of(request.input, io::Use::read_points);
   // The folder comes first, because the picture may be in it.
   const io::Temporary folder = make_partition_folder(request.folder, request.input, request.force);
   check_no_partition_file(request.folder, request.picture);
-  OutputFiles outputs(request.input);
-  announce_partition(outputs.files(), request.folder);
+  OutputFiles outputs({request.input});
+  announce_partition(outputs, request.folder);
   outputs.add(request.picture, ".svg");
 
   RunFacts facts;
@@ -68,10 +68,10 @@ int partition(const PartitionRequest& request) {
 
   stopwatch.restart();
   progress.update("writing");
-  write_partition(outputs.files(), request.folder, points, result,
+  write_partition(outputs, request.folder, points, result,
                   {request.input, request.levels, request.cut, request.dividing_paths});
-  if (!request.picture.empty()) io::write_partition_svg(outputs.files(), request.picture, points, result);
-  outputs.files().commit();
+  if (!request.picture.empty()) io::write_partition_svg(outputs, request.picture, points, result);
+  outputs.commit();
   facts.writing_seconds = stopwatch.seconds();
   progress.finish();
 

@@ -71,23 +71,23 @@ void write_arrays(const ResultPaths& paths, const Triangulation& mesh, OutputFil
                   io::IndexType index) {
   for_each_array([&](const auto& array, std::size_t k) {
     if (paths.arrays[k].empty()) return;
-    io::write_npy(outputs.files(), paths.arrays[k], mesh.*array.values, array.columns, index);
+    io::write_npy(outputs, paths.arrays[k], mesh.*array.values, array.columns, index);
   });
 }
 
 void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
                             const RunFacts& facts, OutputFiles& outputs) {
-  if (!paths.stats.empty()) outputs.files().open(paths.stats).print("{}", statistics_json(mesh, facts));
-  outputs.files().commit();
+  if (!paths.stats.empty()) outputs.open(paths.stats).print("{}", statistics_json(mesh, facts));
+  outputs.commit();
 }
 
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
                    RunFacts& facts, Progress& progress, OutputFiles& outputs, io::IndexType index) {
   Stopwatch stopwatch;
   progress.update("writing");
-  if (!paths.mesh.empty()) io::write_mesh(outputs.files(), paths.mesh, {points, mesh});
+  if (!paths.mesh.empty()) io::write_mesh(outputs, paths.mesh, {points, mesh});
   write_arrays(paths, mesh, outputs, index);
-  outputs.files().write_out();
+  outputs.write_out();
   facts.writing_seconds = stopwatch.seconds();
   commit_with_statistics(paths, mesh, facts, outputs);
   progress.finish();

@@ -15,6 +15,7 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/command/results.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
 #include "flaunay/research.hpp"
@@ -141,14 +142,14 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
 
 int triangulate(const TriangulateRequest& request) {
   // The request is checked before any work begins, and the input before a device is opened.
-  io::check_points_ending(request.input);
+  io::format_of(request.input, io::Use::read_points);
   if (request.in_chunks) return triangulate_in_chunks(chunk_request(request), "");
   if (request.has_constraints) {
     return triangulate_with_constraints({request.input, request.results, request.device, request.chunks.index,
                                          request.profile, request.quiet},
                                         request.constraints);
   }
-  OutputFiles outputs(request.input);
+  OutputFiles outputs({request.input});
   announce(outputs, request.results);
   const std::uint64_t about = io::estimate_points(request.input);
 
@@ -158,7 +159,7 @@ int triangulate(const TriangulateRequest& request) {
   std::unique_ptr<Triangulator> triangulator;
   if (do_not_fit(request, about, progress, triangulator)) {
     progress.finish();
-    outputs = OutputFiles("-");  // Chunks announce theirs.
+    outputs = OutputFiles();  // Chunks announce theirs.
     return triangulate_too_many(request, about, std::move(triangulator));
   }
   facts.opening_seconds = stopwatch.restart();

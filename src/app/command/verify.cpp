@@ -143,7 +143,7 @@ Checked check(const VerifyRequest& request, Progress& progress) {
 }
 
 int verify(const VerifyRequest& request) {
-  if (!io::is_map(request.points)) io::check_points_ending(request.points);
+  io::format_of(request.points, io::Use::read_points);
   Progress progress(!request.quiet);
   progress.update("reading");
   const auto [report, seconds, how] = check(request, progress);

@@ -1,5 +1,5 @@
-// The formats of files: what is read and written, by the ending of the path. A format is a row of the table
-// in formats.cpp.
+// The formats of files: what is read and written, by the ending of the path. Each format is defined in the
+// file that reads and writes it.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,11 @@
 
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
-#include "app/files/point_text.hpp"
 #include "app/files/points.hpp"
 #include "files/file.hpp"
 #include "files/output.hpp"
 
 namespace flaunay::io {
-
-/// How points are written, in pieces.
-struct PointFormat {
-  /// What comes before them. n: their number.
-  void (*begin)(OutputFile& file, const std::string& path, std::uint64_t n);
-  /// The next points, of which the first has this index.
-  void (*write)(OutputFile& file, const double* coordinates, std::uint64_t first, std::size_t count);
-  std::size_t least_bytes;  ///< of a point
-  /// All points, if the format has their markers.
-  void (*with_markers)(OutputFile& file, const Points& points) = nullptr;
-};
 
 /// What is null is not in the format.
 struct Format {
@@ -46,31 +34,50 @@ struct Format {
   std::vector<std::int32_t> (*segments)(const std::string& path, std::size_t points) = nullptr;
   std::vector<std::int32_t> (*triangles)(const std::string& path) = nullptr;
 
-  const PointFormat* points_out = nullptr;
-  void (*mesh_out)(Outputs& outputs, const std::string& path, const MeshContents& contents) = nullptr;
-  /// Whether mesh_out writes regions and depths.
-  bool has_labels = false;
-  /// The ending of a file beside this one that is read or written, too, and of one only with constraints.
-  std::string_view beside = "", constraints_beside = "";
+  // Points are written in pieces.
+  /// What comes before n points.
+  void (*begin_points)(OutputFile& file, std::uint64_t n, bool has_markers) = nullptr;
+  /// The next points, of which the first has this index. markers: null if there are none.
+  void (*write_points)(OutputFile& file, const double* coordinates, const std::int32_t* markers,
+                       std::uint64_t first, std::size_t count) = nullptr;
+  std::size_t least_bytes = 0;  ///< of a point
+
+  using WriteMesh = void (*)(OutputFile& file, const MeshContents& contents);
+  WriteMesh write_mesh = nullptr;
+  bool has_labels = false;  ///< whether write_mesh writes regions and depths
+  /// A file beside this one that is read or written, too, and one only with constraints.
+  struct Beside {
+    std::string_view ending = "";
+    WriteMesh write = nullptr;
+  } beside = {}, constraints_beside = {};
 };
 
-/// What a file is for.
-enum class Use {
-  read_points,
-  read_records,
-  read_map,
-  read_segments,
-  read_triangles,
-  write_points,
-  write_mesh
+extern const Format kNpy, kNode, kXy, kTxt, kCsv, kBin, kLas, kLaz, kPoly, kGeoJson, kJson, kEle, kOff, kObj,
+    kPly, kVtu, kSvg;
+
+/// What a file may be for.
+struct Use {
+  using Test = bool (*)(const Format& format);
+  static bool read_points(const Format& format) {
+    return format.records != nullptr || format.text != nullptr || format.map != nullptr;
+  }
+  static bool read_records(const Format& format) { return format.records != nullptr; }
+  static bool read_map(const Format& format) { return format.map != nullptr; }
+  static bool read_segments(const Format& format) { return format.segments != nullptr; }
+  static bool read_triangles(const Format& format) { return format.triangles != nullptr; }
+  static bool write_points(const Format& format) { return format.write_points != nullptr; }
+  static bool write_mesh(const Format& format) { return format.write_mesh != nullptr; }
 };
 
 /// The format of a path. Throws Error(usage) that lists the endings if there is none for this use. "-" is
 /// text.
-const Format& format_of(const std::string& path, Use use);
+const Format& format_of(const std::string& path, Use::Test use);
 /// The format of a path, if there is one for this use; null otherwise.
-const Format* find_format(const std::string& path, Use use);
+const Format* find_format(const std::string& path, Use::Test use);
 /// ".npy, .node, ..."
-std::string endings_for(Use use);
+std::string endings_for(Use::Test use);
+
+/// x.poly to x.node: the path with another ending.
+std::string path_beside(const std::string& path, std::string_view ending);
 
 }  // namespace flaunay::io

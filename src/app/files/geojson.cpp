@@ -1,12 +1,11 @@
-#include "app/files/geojson.hpp"
-
+// GeoJSON (RFC 7946).
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
-#include "app/files/text.hpp"
+#include "app/files/formats.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
@@ -62,6 +61,9 @@ Json parse_json(const std::string& path, const std::string& text) {
   }
 }
 
+/// Reads any object. The polygons of a MultiPolygon are one with several outer rings. A ring's closing
+/// position is no point of its own; otherwise each position is a point, in the order of the file. Throws
+/// Error(input) that names the path in the document.
 class GeoJsonReader {
  public:
   explicit GeoJsonReader(const std::string& path) : path_(path) {}
@@ -220,8 +222,32 @@ class GeoJsonReader {
   std::size_t unclosed_ = 0;  // rings
 };
 
+Map read_geojson(const std::string& path) { return GeoJsonReader(path).read(); }
+
+/// A feature per triangle, with its corners as a ring.
+void write_geojson(OutputFile& file, const MeshContents& contents) {
+  const ConstrainedTriangulation& constraints = contents.constraints();
+  file.print("{{\"type\":\"FeatureCollection\",\"features\":[");
+  for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
+    file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{\"triangle\":{}", t == 0 ? "" : ",", t);
+    if (contents.has_labels()) {
+      file.print(",\"region\":{},\"depth\":{}", constraints.regions[t], constraints.depths[t]);
+    }
+    file.print("}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[");
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto corner = static_cast<std::size_t>(contents.corners(t)[k % 3]);
+      file.print("{}[{},{}]", k == 0 ? "" : ",", contents.points.coordinates[2 * corner],
+                 contents.points.coordinates[2 * corner + 1]);
+    }
+    file.print("]]}}}}");
+  }
+  file.print("\n]}}\n");
+}
+
 }  // namespace
 
-Map read_geojson(const std::string& path) { return GeoJsonReader(path).read(); }
+const Format kGeoJson = {
+    .ending = ".geojson", .map = read_geojson, .write_mesh = write_geojson, .has_labels = true};
+const Format kJson = {.ending = ".json", .map = read_geojson};
 
 }  // namespace flaunay::io

@@ -1,10 +1,14 @@
-#include "app/files/las.hpp"
-
+// Points of LAS files, in which laser scans come.
+//
+// The format: American Society for Photogrammetry and Remote Sensing, "LAS Specification 1.4 - R15", 2019,
+// and those of versions 1.0 (2003) to 1.3 (2010), whose headers are the beginning of this one.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <string_view>
+
+#include "app/files/formats.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -45,6 +49,14 @@ std::size_t check_beginning(const std::string& path, std::string_view header) {
   return minor;
 }
 
+/// Says how to decompress a LAZ file.
+[[noreturn]] void refuse_compressed(const std::string& path) {
+  fail(path,
+       "is compressed (LAZ); expected an uncompressed LAS file: decompress it first, for example with "
+       "\"laszip -i "
+       "IN.laz -o OUT.las\" or \"pdal translate IN.laz OUT.las\"");
+}
+
 void check_format(const std::string& path, int format, std::size_t record_bytes) {
   if ((format & kCompressedBits) != 0) refuse_compressed(path);
   if (static_cast<std::size_t>(format) >= kLeastRecordBytes.size()) {
@@ -82,8 +94,7 @@ struct Decode {
   }
 };
 
-}  // namespace
-
+/// Reads the header, and checks it against the size of the file.
 PointRecords las_points(const std::string& path, InputFile& file) {
   const std::string_view header = file.first(kHeaderBytes.back());
   const std::size_t minor = check_beginning(path, header);
@@ -118,11 +129,9 @@ PointRecords las_points(const std::string& path, InputFile& file) {
   return points;
 }
 
-void refuse_compressed(const std::string& path) {
-  fail(path,
-       "is compressed (LAZ); expected an uncompressed LAS file: decompress it first, for example with "
-       "\"laszip "
-       "-i IN.laz -o OUT.las\" or \"pdal translate IN.laz OUT.las\"");
-}
+}  // namespace
+
+const Format kLas = {.ending = ".las", .content = "an uncompressed LAS file", .records = las_points};
+const Format kLaz = {.ending = ".laz", .refuse = refuse_compressed};
 
 }  // namespace flaunay::io

@@ -3,13 +3,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/files/points.hpp"
-#include "app/files/poly.hpp"
 
 namespace flaunay::io {
+
+/// A place in a region, and what a .poly file says about the region.
+struct PolyRegion {
+  double place[2], attribute;
+  std::optional<double> area;  ///< the largest one, for programs that add points
+};
 
 /// Points with segments between them, and what the file says about the inside.
 struct Map {
@@ -30,11 +36,6 @@ struct Map {
 
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
 };
-
-/// A map of Triangle's format.
-Map read_poly_map(const std::string& path);
-/// Segments of a text.
-std::vector<std::int32_t> read_text_segments(const std::string& path, std::size_t points);
 
 /// Whether the ending of path is that of a map: .poly, .geojson or .json.
 bool is_map(const std::string& path);

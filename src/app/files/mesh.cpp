@@ -2,13 +2,10 @@
 
 #include <cstring>
 #include <limits>
-#include <span>
 #include <string_view>
 
 #include "app/files/formats.hpp"
-#include "app/files/mesh_formats.hpp"
-#include "app/files/npy.hpp"
-#include "app/files/poly.hpp"
+#include "app/files/node.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
 
@@ -17,104 +14,75 @@ namespace {
 
 constexpr long long kIndexLimit = std::numeric_limits<std::int32_t>::max();
 
-std::size_t triangle_count(const Triangulation& mesh) { return mesh.triangles.size() / 3; }
+void write_ele(OutputFile& file, const MeshContents& contents) {
+  const ConstrainedTriangulation& constraints = contents.constraints();
+  const bool has_attributes = !contents.attributes.empty(), has_labels = contents.has_labels();
+  file.print("{} 3 {}\n", contents.triangle_count(), (has_attributes ? 1 : 0) + (has_labels ? 2 : 0));
+  for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
+    const std::int32_t* corner = contents.corners(t);
+    file.print("{} {} {} {}", t, corner[0], corner[1], corner[2]);
+    if (has_attributes) file.print(" {}", contents.attributes[t]);
+    if (has_labels) file.print(" {} {}", constraints.regions[t], constraints.depths[t]);
+    file.print("\n");
+  }
+}
 
-/// What a mesh with constraints has, and others do not.
-struct ConstraintParts {
-  std::span<const std::int32_t> edges;            ///< 2 points each
-  std::span<const std::int32_t> segments;         ///< one per edge: the segment that has it
-  std::span<const std::int32_t> markers;          ///< one per segment, or none
-  std::span<const double> holes;                  ///< x and y each
-  std::span<const PolyRegion> places;             ///< in regions
-  std::span<const double> attributes;             ///< one per triangle, or none
-  std::span<const std::int32_t> regions, depths;  ///< one per triangle, or none
-  bool present = false;                           ///< whether the mesh has constraints, if only none of them
-
-  std::size_t edge_count() const { return edges.size() / 2; }
-  bool has_labels() const { return !regions.empty() && !depths.empty(); }
-};
-
-ConstraintParts constraints_of(const MeshContents& contents) {
-  if (contents.constrained == nullptr) return {};
-  const ConstrainedTriangulation& mesh = *contents.constrained;
-  const Map& map = *contents.map;
-  return {mesh.constraint_edges, mesh.edge_segments, map.segment_markers, map.holes, map.regions,
-          contents.attributes,   mesh.regions,       mesh.depths,         true};
+void write_vertices_beside(OutputFile& file, const MeshContents& contents) {
+  write_node(file, contents.points);
 }
 
 /// The constraint edges, whose vertices are in the .node file.
-void write_poly(OutputFile& file, const ConstraintParts& constraints) {
-  file.print("0 2 0 0\n{} 1\n", constraints.edge_count());
-  for (std::size_t e = 0; e < constraints.edge_count(); ++e) {
-    const std::int32_t segment = constraints.segments[e];
-    file.print("{} {} {} {}\n", e, constraints.edges[2 * e], constraints.edges[2 * e + 1],
-               constraints.markers.empty() ? segment + 1LL : constraints.markers[segment]);
+void write_poly_beside(OutputFile& file, const MeshContents& contents) {
+  const std::vector<std::int32_t>& edges = contents.constraints().constraint_edges;
+  const Map& map = *contents.map;
+  file.print("0 2 0 0\n{} 1\n", edges.size() / 2);
+  for (std::size_t e = 0; e < edges.size() / 2; ++e) {
+    const std::int32_t segment = contents.constraints().edge_segments[e];
+    file.print("{} {} {} {}\n", e, edges[2 * e], edges[2 * e + 1],
+               map.segment_markers.empty() ? segment + 1LL : map.segment_markers[segment]);
   }
-  file.print("{}\n", constraints.holes.size() / 2);
-  for (std::size_t k = 0; 2 * k < constraints.holes.size(); ++k) {
-    file.print("{} {} {}\n", k, constraints.holes[2 * k], constraints.holes[2 * k + 1]);
+  file.print("{}\n", map.holes.size() / 2);
+  for (std::size_t k = 0; 2 * k < map.holes.size(); ++k) {
+    file.print("{} {} {}\n", k, map.holes[2 * k], map.holes[2 * k + 1]);
   }
-  if (!constraints.places.empty()) file.print("{}\n", constraints.places.size());
-  for (std::size_t k = 0; k < constraints.places.size(); ++k) {
-    const PolyRegion& region = constraints.places[k];
+  if (!map.regions.empty()) file.print("{}\n", map.regions.size());
+  for (std::size_t k = 0; k < map.regions.size(); ++k) {
+    const PolyRegion& region = map.regions[k];
     file.print("{} {} {} {}{}\n", k, region.place[0], region.place[1], region.attribute,
                region.area ? fmt::format(" {}", *region.area) : "");
   }
 }
 
-}  // namespace
-
-void write_ele(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  const Points& points = contents.points;
-  const Triangulation& mesh = contents.mesh;
-  const ConstraintParts constraints = constraints_of(contents);
-  OutputFile& ele = outputs.open(path);
-  print_node(outputs.open(path_beside(path, ".node")), points);
-  if (constraints.present) write_poly(outputs.open(path_beside(path, ".poly")), constraints);
-  const bool has_attributes = !constraints.attributes.empty();
-  ele.print("{} 3 {}\n", triangle_count(mesh), (has_attributes ? 1 : 0) + (constraints.has_labels() ? 2 : 0));
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
-    const std::int32_t* corner = &mesh.triangles[3 * t];
-    ele.print("{} {} {} {}", t, corner[0], corner[1], corner[2]);
-    if (has_attributes) ele.print(" {}", constraints.attributes[t]);
-    if (constraints.has_labels()) ele.print(" {} {}", constraints.regions[t], constraints.depths[t]);
-    ele.print("\n");
-  }
-}
-
-void write_off(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  const Points& points = contents.points;
-  const Triangulation& mesh = contents.mesh;
-  OutputFile& file = outputs.open(path);
-  file.print("OFF\n{} {} 0\n", points.size(), triangle_count(mesh));
+/// In space, on lines that begin with the prefix.
+void print_points(OutputFile& file, std::string_view prefix, const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    file.print("{} {} 0\n", points.coordinates[2 * i], points.coordinates[2 * i + 1]);
-  }
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
-    const std::int32_t* corner = &mesh.triangles[3 * t];
-    file.print("3 {} {} {}\n", corner[0], corner[1], corner[2]);
+    file.print("{}{} {} 0\n", prefix, points.coordinates[2 * i], points.coordinates[2 * i + 1]);
   }
 }
 
-void write_obj(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  const Points& points = contents.points;
-  const Triangulation& mesh = contents.mesh;
-  const ConstraintParts constraints = constraints_of(contents);
-  OutputFile& file = outputs.open(path);
-  file.print("# {} vertices, {} triangles\n", points.size(), triangle_count(mesh));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    file.print("v {} {} 0\n", points.coordinates[2 * i], points.coordinates[2 * i + 1]);
-  }
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
-    const std::int32_t* corner = &mesh.triangles[3 * t];
-    file.print("f {} {} {}\n", corner[0] + 1LL, corner[1] + 1LL, corner[2] + 1LL);
-  }
-  for (std::size_t e = 0; e < constraints.edge_count(); ++e) {
-    file.print("l {} {}\n", constraints.edges[2 * e] + 1LL, constraints.edges[2 * e + 1] + 1LL);
+/// On lines that begin with the prefix; the first point has the number `base`.
+void print_triangles(OutputFile& file, std::string_view prefix, const MeshContents& contents,
+                     long long base) {
+  for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
+    const std::int32_t* corner = contents.corners(t);
+    file.print("{}{} {} {}\n", prefix, corner[0] + base, corner[1] + base, corner[2] + base);
   }
 }
 
-namespace {
+void write_off(OutputFile& file, const MeshContents& contents) {
+  file.print("OFF\n{} {} 0\n", contents.points.size(), contents.triangle_count());
+  print_points(file, "", contents.points);
+  print_triangles(file, "3 ", contents, 0);
+}
+
+void write_obj(OutputFile& file, const MeshContents& contents) {
+  file.print("# {} vertices, {} triangles\n", contents.points.size(), contents.triangle_count());
+  print_points(file, "v ", contents.points);
+  print_triangles(file, "f ", contents, 1);
+  const std::vector<std::int32_t>& edges = contents.constraints().constraint_edges;
+  for (std::size_t e = 0; e < edges.size(); e += 2)
+    file.print("l {} {}\n", edges[e] + 1LL, edges[e + 1] + 1LL);
+}
 
 /// The points as x, y, 0.
 void write_spatial_points(OutputFile& file, const Points& points) {
@@ -124,109 +92,70 @@ void write_spatial_points(OutputFile& file, const Points& points) {
   }
 }
 
-}  // namespace
-
-void write_ply(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  const Points& points = contents.points;
-  const Triangulation& mesh = contents.mesh;
-  const ConstraintParts constraints = constraints_of(contents);
-  OutputFile& file = outputs.open(path);
+void write_ply(OutputFile& file, const MeshContents& contents) {
+  const std::vector<std::int32_t>& edges = contents.constraints().constraint_edges;
   file.print(
       "ply\nformat binary_little_endian 1.0\ncomment flaunay\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
       "element face {}\nproperty list uchar int vertex_indices\n",
-      points.size(), triangle_count(mesh));
-  if (constraints.present) {
-    file.print("element edge {}\nproperty int vertex1\nproperty int vertex2\n", constraints.edge_count());
+      contents.points.size(), contents.triangle_count());
+  if (contents.constrained != nullptr) {
+    file.print("element edge {}\nproperty int vertex1\nproperty int vertex2\n", edges.size() / 2);
   }
   file.print("end_header\n");
-  write_spatial_points(file, points);
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
+  write_spatial_points(file, contents.points);
+  for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
     file.write_value(std::uint8_t{3});
-    file.write(&mesh.triangles[3 * t], 3 * sizeof(std::int32_t));
+    file.write(contents.corners(t), 3 * sizeof(std::int32_t));
   }
-  file.write(constraints.edges.data(), constraints.edges.size_bytes());
+  file.write(edges.data(), edges.size() * sizeof edges[0]);
 }
 
-void write_vtu(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  const Points& points = contents.points;
-  const Triangulation& mesh = contents.mesh;
-  const ConstraintParts constraints = constraints_of(contents);
+void write_vtu(OutputFile& file, const MeshContents& contents) {
   constexpr std::uint8_t kVtkTriangle = 5;
-  const std::uint64_t point_bytes = points.size() * 3 * sizeof(double);
-  const std::uint64_t corner_bytes = mesh.triangles.size() * sizeof(std::int32_t);
-  const std::uint64_t end_bytes = triangle_count(mesh) * sizeof(std::int64_t);
-  const std::uint64_t type_bytes = triangle_count(mesh);
-
-  // In the appended data, each array is preceded by its size in bytes.
-  const std::uint64_t prefix = sizeof(std::uint64_t);
-  const std::uint64_t corners_at = prefix + point_bytes;
-  const std::uint64_t ends_at = corners_at + prefix + corner_bytes;
-  const std::uint64_t types_at = ends_at + prefix + end_bytes;
-  const std::uint64_t regions_at = types_at + prefix + type_bytes;
-  const std::uint64_t label_bytes = constraints.regions.size_bytes();
-
-  OutputFile& file = outputs.open(path);
+  const std::size_t triangles = contents.triangle_count();
+  const std::uint64_t point_bytes = contents.points.size() * 3 * sizeof(double);
+  const std::uint64_t index_bytes = triangles * sizeof(std::int32_t);
+  // The arrays follow the text, each after its size in bytes.
+  std::uint64_t offset = 0;
+  const auto declare = [&](const char* type, const char* attributes, std::uint64_t bytes) {
+    file.print("<DataArray type=\"{}\" {} format=\"appended\" offset=\"{}\"/>\n", type, attributes, offset);
+    offset += sizeof bytes + bytes;
+  };
   file.print(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n"
-      "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-      points.size(), triangle_count(mesh));
-  file.print(
-      "<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"appended\" "
-      "offset=\"0\"/>\n</Points>\n");
-  file.print(
-      "<Cells>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"appended\" offset=\"{}\"/>\n"
-      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"appended\" offset=\"{}\"/>\n"
-      "<DataArray type=\"UInt8\" Name=\"types\" format=\"appended\" offset=\"{}\"/>\n</Cells>\n",
-      corners_at, ends_at, types_at);
-  if (constraints.has_labels()) {
-    file.print(
-        "<CellData Scalars=\"region\">\n<DataArray type=\"Int32\" Name=\"region\" format=\"appended\" "
-        "offset=\"{}\"/>\n<DataArray type=\"Int32\" Name=\"depth\" format=\"appended\" offset=\"{}\"/>\n"
-        "</CellData>\n",
-        regions_at, regions_at + prefix + label_bytes);
+      "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
+      contents.points.size(), triangles);
+  declare("Float64", "Name=\"Points\" NumberOfComponents=\"3\"", point_bytes);
+  file.print("</Points>\n<Cells>\n");
+  declare("Int32", "Name=\"connectivity\"", 3 * index_bytes);
+  declare("Int64", "Name=\"offsets\"", 2 * index_bytes);
+  declare("UInt8", "Name=\"types\"", triangles);
+  file.print("</Cells>\n");
+  if (contents.has_labels()) {
+    file.print("<CellData Scalars=\"region\">\n");
+    declare("Int32", "Name=\"region\"", index_bytes);
+    declare("Int32", "Name=\"depth\"", index_bytes);
+    file.print("</CellData>\n");
   }
   file.print("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
   file.write_value(point_bytes);
-  write_spatial_points(file, points);
-  file.write_value(corner_bytes);
-  file.write(mesh.triangles.data(), corner_bytes);
-  file.write_value(end_bytes);
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t)
-    file.write_value(static_cast<std::int64_t>(3 * (t + 1)));
-  file.write_value(type_bytes);
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t) file.write_value(kVtkTriangle);
-  if (constraints.has_labels()) {
-    for (const auto& labels : {constraints.regions, constraints.depths}) {
-      file.write_value(label_bytes);
-      file.write(labels.data(), label_bytes);
+  write_spatial_points(file, contents.points);
+  file.write_value(3 * index_bytes);
+  file.write(contents.mesh.triangles.data(), 3 * index_bytes);
+  file.write_value(2 * index_bytes);
+  for (std::size_t t = 1; t <= triangles; ++t) file.write_value(static_cast<std::int64_t>(3 * t));
+  file.write_value(std::uint64_t{triangles});
+  for (std::size_t t = 0; t < triangles; ++t) file.write_value(kVtkTriangle);
+  if (contents.has_labels()) {
+    for (const auto* labels : {&contents.constraints().regions, &contents.constraints().depths}) {
+      file.write_value(index_bytes);
+      file.write(labels->data(), index_bytes);
     }
   }
   file.print("\n</AppendedData>\n</VTKFile>\n");
-}
-
-void write_geojson(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  const Points& points = contents.points;
-  const Triangulation& mesh = contents.mesh;
-  const ConstraintParts constraints = constraints_of(contents);
-  OutputFile& file = outputs.open(path);
-  file.print("{{\"type\":\"FeatureCollection\",\"features\":[");
-  for (std::size_t t = 0; t < triangle_count(mesh); ++t) {
-    file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{\"triangle\":{}", t == 0 ? "" : ",", t);
-    if (constraints.has_labels()) {
-      file.print(",\"region\":{},\"depth\":{}", constraints.regions[t], constraints.depths[t]);
-    }
-    file.print("}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[");
-    for (std::size_t k = 0; k < 4; ++k) {
-      const auto corner = static_cast<std::size_t>(mesh.triangles[3 * t + k % 3]);
-      file.print("{}[{},{}]", k == 0 ? "" : ",", points.coordinates[2 * corner],
-                 points.coordinates[2 * corner + 1]);
-    }
-    file.print("]]}}}}");
-  }
-  file.print("\n]}}\n");
 }
 
 std::vector<std::int32_t> read_ele(const std::string& path) {
@@ -332,8 +261,6 @@ std::vector<std::int32_t> read_obj(const std::string& path) {
   return triangles;
 }
 
-namespace {
-
 /// Bytes of one of PLY's scalar types; 0 for an unknown name.
 std::size_t ply_type_bytes(std::string_view type) {
   if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
@@ -343,8 +270,6 @@ std::size_t ply_type_bytes(std::string_view type) {
   if (type == "double" || type == "float64") return 8;
   return 0;
 }
-
-}  // namespace
 
 std::vector<std::int32_t> read_ply(const std::string& path) {
   constexpr std::string_view kBegin = "ply\n", kEnd = "\nend_header\n";
@@ -358,35 +283,31 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
 
   Lines lines(path, std::string_view(bytes).substr(0, header_end), Lines::Separator::blanks);
   lines.next();
-  std::string_view element;
-  std::size_t vertex_bytes = 0, edge_bytes = 0;
-  long long vertices = -1, faces = -1, edges = -1;
+  constexpr std::string_view kElements[] = {"vertex", "face", "edge"};
+  long long counts[] = {-1, -1, -1};
+  std::size_t element_bytes[] = {0, 0, 0};
+  std::size_t elements = 0;  // so far
   bool binary = false, corner_list = false;
   while (lines.next()) {
     std::string_view word[5];
     std::size_t words = 0;
     while (words < 5 && lines.field(word[words])) ++words;
+    const std::string_view element = elements > 0 ? kElements[elements - 1] : "";
     if (word[0] == "format") {
       binary = word[1] == "binary_little_endian" && word[2] == "1.0";
     } else if (word[0] == "element") {
       lines.rewind();
-      lines.field(word[0]);
-      lines.field(element);
+      for (int k = 0; k < 2; ++k) lines.field(word[k]);
       const long long count = lines.integer("the number of elements");
       if (count < 0) lines.fail_line("{} elements; expected 0 or more", count);
-      if (element == "vertex" && vertices < 0 && faces < 0) {
-        vertices = count;
-      } else if (element == "face" && vertices >= 0 && faces < 0) {
-        faces = count;
-      } else if (element == "edge" && faces >= 0 && edges < 0) {
-        edges = count;
-      } else {
-        lines.fail_line("element {}; expected vertex, then face, and perhaps edge", quoted(element));
+      if (elements == std::size(kElements) || word[1] != kElements[elements]) {
+        lines.fail_line("element {}; expected vertex, then face, and perhaps edge", quoted(word[1]));
       }
+      counts[elements++] = count;
     } else if (word[0] == "property" && (element == "vertex" || element == "edge")) {
       const std::size_t size = ply_type_bytes(word[1]);
       if (size == 0) lines.fail_line("{} property of type {}; expected a number's", element, quoted(word[1]));
-      (element == "vertex" ? vertex_bytes : edge_bytes) += size;
+      element_bytes[elements - 1] += size;
     } else if (word[0] == "property" && element == "face") {
       const bool known = word[1] == "list" && ply_type_bytes(word[2]) == 1 && ply_type_bytes(word[3]) == 4 &&
                          word[3] != "float" && word[3] != "float32";
@@ -397,6 +318,8 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
       lines.fail_line("expected a PLY header line, found {}", quoted(word[0]));
     }
   }
+  const auto [vertices, faces, edges] = counts;
+  const std::size_t vertex_bytes = element_bytes[0], edge_bytes = element_bytes[2];
   if (!binary) fail(path, "expected PLY of format binary_little_endian 1.0");
   if (vertices < 0 || faces < 0 || !corner_list) fail(path, "expected PLY elements vertex and face");
 
@@ -438,21 +361,46 @@ std::vector<std::int32_t> read_ply(const std::string& path) {
   return triangles;
 }
 
-void write_npy_triangles(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  write_npy(outputs, path, contents.mesh.triangles, 3);
+}  // namespace
+
+const Format kEle = {.ending = ".ele",
+                     .triangles = read_ele,
+                     .write_mesh = write_ele,
+                     .has_labels = true,
+                     .beside = {".node", write_vertices_beside},
+                     .constraints_beside = {".poly", write_poly_beside}};
+const Format kOff = {.ending = ".off", .triangles = read_off, .write_mesh = write_off};
+const Format kObj = {.ending = ".obj", .triangles = read_obj, .write_mesh = write_obj};
+const Format kPly = {.ending = ".ply", .triangles = read_ply, .write_mesh = write_ply};
+const Format kVtu = {.ending = ".vtu", .write_mesh = write_vtu, .has_labels = true};
+
+const ConstrainedTriangulation& MeshContents::constraints() const {
+  static const ConstrainedTriangulation none;
+  return constrained != nullptr ? *constrained : none;
+}
+
+bool MeshContents::has_labels() const {
+  return !constraints().regions.empty() && !constraints().depths.empty();
 }
 
 void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  format_of(path, Use::write_mesh).mesh_out(outputs, path, contents);
+  const Format& format = format_of(path, Use::write_mesh);
+  format.write_mesh(outputs.open(path), contents);
+  const auto write_beside = [&](const Format::Beside& beside) {
+    if (beside.write != nullptr) beside.write(outputs.open(path_beside(path, beside.ending)), contents);
+  };
+  write_beside(format.beside);
+  if (contents.constrained != nullptr) write_beside(format.constraints_beside);
 }
 
 std::vector<std::string> mesh_files(const std::string& path, bool with_constraints) {
   const Format& format = format_of(path, Use::write_mesh);
   std::vector<std::string> files = {path};
-  if (!format.beside.empty()) files.push_back(path_beside(path, format.beside));
-  if (with_constraints && !format.constraints_beside.empty()) {
-    files.push_back(path_beside(path, format.constraints_beside));
-  }
+  const auto add = [&](const Format::Beside& beside) {
+    if (beside.write != nullptr) files.push_back(path_beside(path, beside.ending));
+  };
+  add(format.beside);
+  if (with_constraints) add(format.constraints_beside);
   return files;
 }
 

@@ -1,6 +1,7 @@
 // Writing triangulations to files, and reading triangles back for verification.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -21,6 +22,12 @@ struct MeshContents {
   const Map* map = nullptr;                               ///< then the map of the constraints
   FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
   std::span<const double> attributes = {};                ///< one per triangle, or none
+
+  std::size_t triangle_count() const { return mesh.triangles.size() / 3; }
+  const std::int32_t* corners(std::size_t triangle) const { return &mesh.triangles[3 * triangle]; }
+  /// The mesh, or one that has nothing if there are no constraints.
+  const ConstrainedTriangulation& constraints() const;
+  bool has_labels() const;  ///< regions and depths
 };
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "app/files/formats.hpp"
-#include "app/files/mesh.hpp"
 #include "app/files/rows.hpp"
 #include "files/file.hpp"
 #include "host/memory/huge_pages.hpp"
@@ -151,6 +150,9 @@ struct Layout {
   std::vector<std::string> dtypes;
 };
 
+constexpr std::string_view kThreeColumns = "a NumPy array of shape (m, 3)";
+const Layout kRows = {"m", 3, {"<i4", "<i8"}};
+
 std::string dtypes_text(const Layout& layout) {
   std::string text;
   for (std::size_t i = 0; i < layout.dtypes.size(); ++i) {
@@ -231,56 +233,38 @@ class Array {
   std::size_t promised_ = 0;
 };
 
-void begin_npy_points(OutputFile& file, const std::string&, std::uint64_t n) {
-  const std::string header = npy_header("<f8", n, 2);
-  file.write(header.data(), header.size());
+/// The values as indices, after check(value, its place) for each of them.
+template <typename Value, typename Check>
+std::vector<std::int32_t> indices_of(Array& array, const Check& check) {
+  std::vector<Value> values = array.values<Value>();
+  for (std::size_t i = 0; i < values.size(); ++i) check(values[i], i);
+  if constexpr (std::is_same_v<Value, std::int32_t>) {
+    return values;
+  } else {
+    return {values.begin(), values.end()};
+  }
 }
 
 /// An m x 3 array of indices, none below `lowest`; `member` names an element for the message.
-std::vector<std::int32_t> read_npy_indices(const std::string& path, std::int32_t lowest, const char* member) {
-  InputFile file(path, "a NumPy array of shape (m, 3)");
-  const Layout layout = {"m", 3, {"<i4", "<i8"}};
-  Array array(path, file, layout);
-  std::vector<std::int32_t> triangles;
+std::vector<std::int32_t> read_npy_rows(const std::string& path, std::int32_t lowest, const char* member) {
+  InputFile file(path, kThreeColumns);
+  Array array(path, file, kRows);
   const auto check = [&](auto value, std::size_t i) {
-    if (value < lowest || value > std::numeric_limits<std::int32_t>::max()) {
-      fail(path, "triangle {} has {} {}; expected {} to {}", i / 3, member, value, lowest,
-           std::numeric_limits<std::int32_t>::max());
-    }
+    constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+    if (value >= lowest && value <= kMost) return;
+    fail(path, "triangle {} has {} {}; expected {} to {}", i / 3, member, value, lowest, kMost);
   };
-  if (array.dtype() == "<i4") {
-    triangles = array.values<std::int32_t>();
-    for (std::size_t i = 0; i < triangles.size(); ++i) check(triangles[i], i);
-  } else {
-    const std::vector<std::int64_t> wide = array.values<std::int64_t>();
-    for (std::size_t i = 0; i < wide.size(); ++i) check(wide[i], i);
-    triangles.assign(wide.begin(), wide.end());
-  }
-  return triangles;
-}
-
-/// The values of an array of segments, converted to indices of points.
-template <typename Value>
-std::vector<std::int32_t> segments_of(const std::string& path, Array& array, std::size_t points) {
-  const std::vector<Value> values = array.values<Value>();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    // A negative value is large without its sign.
-    if (static_cast<std::uint64_t>(values[i]) >= points) {
-      fail(path, "segment {} has index {}, but there are {} points, with indices from 0", i / 2, +values[i],
-           points);
-    }
-  }
-  return {values.begin(), values.end()};
+  return array.dtype() == "<i4" ? indices_of<std::int32_t>(array, check)
+                                : indices_of<std::int64_t>(array, check);
 }
 
 class NpyRows : public RowSource {
  public:
-  explicit NpyRows(const std::string& path) : path_(path), file_(path, "a NumPy array of shape (m, 3)") {
+  explicit NpyRows(const std::string& path) : path_(path), file_(path, kThreeColumns) {
     file_.first(1);  // an error if there is none
     if (file_.size() < 0)
       fail(path, "is no regular file; expected one, because its rows are not read in order");
-    const Layout layout = {"m", 3, {"<i4", "<i8"}};
-    const Array array(path_, file_, layout);
+    const Array array(path_, file_, kRows);
     array.check_size();
     is_wide_ = array.dtype() == "<i8";
     size_ = array.header().shape[0];
@@ -310,10 +294,6 @@ class NpyRows : public RowSource {
   std::uint64_t begin_ = 0;  // of the first row, in bytes
 };
 
-}  // namespace
-
-const PointFormat kNpyPoints = {begin_npy_points, write_binary_points, 2 * sizeof(double)};
-
 PointRecords npy_points(const std::string& path, InputFile& file) {
   const Layout layout = {"n", 2, {"<f8", "<f4"}};
   const Array array(path, file, layout);
@@ -332,54 +312,77 @@ PointRecords npy_points(const std::string& path, InputFile& file) {
   return records;
 }
 
+void begin_npy(OutputFile& file, const char* descr, std::uint64_t rows, std::size_t columns) {
+  const std::string header = npy_header(descr, rows, columns);
+  file.write(header.data(), header.size());
+}
+
+/// The file of an array, after its header.
+OutputFile& begin_array(Outputs& outputs, const std::string& path, const char* descr, std::size_t values,
+                        std::size_t columns) {
+  const std::size_t row = std::max<std::size_t>(columns, 1);
+  if (values % row != 0) {
+    throw Error(ErrorKind::internal, fmt::format("{}: {} values make no rows of {}", path, values, columns));
+  }
+  OutputFile& file = outputs.open(path);
+  begin_npy(file, descr, values / row, columns > 1 ? columns : 0);
+  return file;
+}
+
+void begin_npy_points(OutputFile& file, std::uint64_t n, bool) { begin_npy(file, "<f8", n, 2); }
+
+void write_npy_mesh(OutputFile& file, const MeshContents& contents) {
+  begin_npy(file, "<i4", contents.triangle_count(), 3);
+  file.write(contents.mesh.triangles.data(), contents.mesh.triangles.size() * sizeof(std::int32_t));
+}
+
+}  // namespace
+
 std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::make_unique<NpyRows>(path); }
 
 std::vector<std::int32_t> read_npy_triangles(const std::string& path) {
-  return read_npy_indices(path, 0, "vertex");
+  return read_npy_rows(path, 0, "vertex");
+}
+
+std::vector<std::int32_t> read_neighbors(const std::string& path) {
+  check_ending(path, ".npy");
+  return read_npy_rows(path, -1, "neighbour");
 }
 
 std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t points) {
   InputFile file(path, "a NumPy array of shape (s, 2)");
   const Layout layout = {"s", 2, {"<i4", "<i8", "<u4", "<u8", "<i2", "<u2", "|i1", "|u1"}};
   Array array(path, file, layout);
+  const auto check = [&](auto value, std::size_t i) {
+    // A negative value is large without its sign.
+    if (static_cast<std::uint64_t>(value) < points) return;
+    fail(path, "segment {} has index {}, but there are {} points, with indices from 0", i / 2, +value,
+         points);
+  };
   const std::string& dtype = array.dtype();
-  if (dtype == "<i4") return segments_of<std::int32_t>(path, array, points);
-  if (dtype == "<i8") return segments_of<std::int64_t>(path, array, points);
-  if (dtype == "<u4") return segments_of<std::uint32_t>(path, array, points);
-  if (dtype == "<u8") return segments_of<std::uint64_t>(path, array, points);
-  if (dtype == "<i2") return segments_of<std::int16_t>(path, array, points);
-  if (dtype == "<u2") return segments_of<std::uint16_t>(path, array, points);
-  if (dtype == "|i1") return segments_of<std::int8_t>(path, array, points);
-  return segments_of<std::uint8_t>(path, array, points);
+  if (dtype == "<i4") return indices_of<std::int32_t>(array, check);
+  if (dtype == "<i8") return indices_of<std::int64_t>(array, check);
+  if (dtype == "<u4") return indices_of<std::uint32_t>(array, check);
+  if (dtype == "<u8") return indices_of<std::uint64_t>(array, check);
+  if (dtype == "<i2") return indices_of<std::int16_t>(array, check);
+  if (dtype == "<u2") return indices_of<std::uint16_t>(array, check);
+  if (dtype == "|i1") return indices_of<std::int8_t>(array, check);
+  return indices_of<std::uint8_t>(array, check);
 }
 
-std::vector<std::int32_t> read_neighbors(const std::string& path) {
-  check_ending(path, ".npy");
-  return read_npy_indices(path, -1, "neighbour");
-}
-
-namespace {
-
-template <typename T>
-OutputFile& begin_npy(Outputs& outputs, const std::string& path, const char* descr,
-                      const std::vector<T>& values, std::size_t columns) {
-  if (columns > 0 && values.size() % columns != 0) {
-    throw Error(ErrorKind::internal,
-                fmt::format("{}: {} values make no rows of {}", path, values.size(), columns));
-  }
-  const bool has_rows = columns > 1;
-  const std::string header =
-      npy_header(descr, has_rows ? values.size() / columns : values.size(), has_rows ? columns : 0);
-  OutputFile& file = outputs.open(path);
-  file.write(header.data(), header.size());
-  return file;
-}
-
-}  // namespace
+const Format kNpy = {.ending = ".npy",
+                     .content = "a NumPy array of shape (n, 2)",
+                     .records = npy_points,
+                     .segments = read_npy_segments,
+                     .triangles = read_npy_triangles,
+                     .begin_points = begin_npy_points,
+                     .write_points = write_pairs,
+                     .least_bytes = 2 * sizeof(double),
+                     .write_mesh = write_npy_mesh};
 
 void write_npy(Outputs& outputs, const std::string& path, const std::vector<std::int32_t>& values,
                std::size_t columns, IndexType type) {
-  OutputFile& file = begin_npy(outputs, path, descr_of(type), values, columns);
+  OutputFile& file = begin_array(outputs, path, descr_of(type), values.size(), columns);
   if (type == IndexType::int32) {
     file.write(values.data(), values.size() * sizeof(std::int32_t));
   } else {
@@ -389,7 +392,8 @@ void write_npy(Outputs& outputs, const std::string& path, const std::vector<std:
 
 void write_npy(Outputs& outputs, const std::string& path, const std::vector<double>& values,
                std::size_t columns, IndexType) {
-  begin_npy(outputs, path, "<f8", values, columns).write(values.data(), values.size() * sizeof(double));
+  begin_array(outputs, path, "<f8", values.size(), columns)
+      .write(values.data(), values.size() * sizeof(double));
 }
 
 }  // namespace flaunay::io

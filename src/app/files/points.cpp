@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "app/files/formats.hpp"
-#include "app/files/text.hpp"
 #include "files/file.hpp"
 #include "host/memory/huge_pages.hpp"
 
@@ -45,58 +44,7 @@ Points read_records(const std::string& path, const Format& format) {
   return points;
 }
 
-// ---- formats ----
-
-/// The first line of a .node file.
-constexpr const char kNodeHeader[] = "{} 2 0 {}\n";
-
-void begin_node(OutputFile& file, const std::string&, std::uint64_t n) { file.print(kNodeHeader, n, 0); }
-
-void write_node_points(OutputFile& file, const double* coordinates, std::uint64_t first, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    file.print("{} {} {}\n", first + i, coordinates[2 * i], coordinates[2 * i + 1]);
-  }
-}
-
-// Every reader skips this line. With it, a file of no points can be read back.
-template <char separator>
-void begin_text(OutputFile& file, const std::string&, std::uint64_t) {
-  file.print("{}", separator == ',' ? "x,y\n" : "# x y\n");
-}
-
-template <char separator>
-void write_text(OutputFile& file, const double* coordinates, std::uint64_t, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    file.print("{}{}{}\n", coordinates[2 * i], separator, coordinates[2 * i + 1]);
-  }
-}
-
-void begin_binary(OutputFile&, const std::string& path, std::uint64_t n) {
-  if (n > 0) return;
-  fail(path,
-       "a .bin of no points would be an empty file, which no one can tell from a failed write; "
-       "expected points, or another ending");
-}
-
-}  // namespace
-
-const PointFormat kNodePoints = {begin_node, write_node_points, 4, print_node};
-const PointFormat kTextPoints = {begin_text<' '>, write_text<' '>, 4};
-const PointFormat kCsvPoints = {begin_text<','>, write_text<','>, 4};
-const PointFormat kBinaryPoints = {begin_binary, write_binary_points, 2 * sizeof(double)};
-
-void write_binary_points(OutputFile& file, const double* coordinates, std::uint64_t, std::size_t count) {
-  file.write(coordinates, 2 * count * sizeof(double));
-}
-
-void print_node(OutputFile& file, const Points& points) {
-  file.print(kNodeHeader, points.size(), points.markers.empty() ? 0 : 1);
-  if (points.markers.empty()) return write_node_points(file, points.coordinates.data(), 0, points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    file.print("{} {} {} {}\n", i, points.coordinates[2 * i], points.coordinates[2 * i + 1],
-               points.markers[i]);
-  }
-}
+// ---- pairs of doubles ----
 
 PointRecords binary_points(const std::string& path, InputFile& file) {
   constexpr std::uint64_t kPair = 2 * sizeof(double);
@@ -107,6 +55,27 @@ PointRecords binary_points(const std::string& path, InputFile& file) {
          bytes % kPair);
   }
   return {bytes / kPair};
+}
+
+void begin_binary(OutputFile& file, std::uint64_t n, bool) {
+  if (n > 0) return;
+  fail(file.path(),
+       "a .bin of no points would be an empty file, which no one can tell from a failed write; "
+       "expected points, or another ending");
+}
+
+}  // namespace
+
+const Format kBin = {.ending = ".bin",
+                     .content = "pairs of little-endian float64",
+                     .records = binary_points,
+                     .begin_points = begin_binary,
+                     .write_points = write_pairs,
+                     .least_bytes = 2 * sizeof(double)};
+
+void write_pairs(OutputFile& file, const double* coordinates, const std::int32_t*, std::uint64_t,
+                 std::size_t count) {
+  file.write(coordinates, 2 * count * sizeof(double));
 }
 
 void PointRecords::read(const ReadAt& read_at, std::uint64_t first, std::size_t count,
@@ -121,35 +90,30 @@ void PointRecords::read(const ReadAt& read_at, std::uint64_t first, std::size_t 
   }
 }
 
-void check_points_ending(const std::string& path) { format_of(path, Use::read_points); }
-void check_points_output(const std::string& path) { format_of(path, Use::write_points); }
-
 Points read_points(const std::string& path) {
   const Format& format = format_of(path, Use::read_points);
   if (format.map != nullptr) return format.map(path).points;
   return format.text != nullptr ? read_text(path, format) : read_records(path, format);
 }
 
-PointWriter::PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n)
-    : format_(*format_of(path, Use::write_points).points_out), file_(outputs.open(path)) {
-  format_.begin(file_, path, n);
+PointWriter::PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n, bool has_markers)
+    : format_(format_of(path, Use::write_points)), file_(outputs.open(path)) {
+  format_.begin_points(file_, n, has_markers);
 }
 
-void PointWriter::write(const double* coordinates, std::size_t count) {
-  format_.write(file_, coordinates, written_, count);
+void PointWriter::write(const double* coordinates, std::size_t count, const std::int32_t* markers) {
+  format_.write_points(file_, coordinates, markers, written_, count);
   written_ += count;
 }
 
 void write_points(Outputs& outputs, const std::string& path, const Points& points) {
-  const PointFormat& format = *format_of(path, Use::write_points).points_out;
-  if (!points.markers.empty() && format.with_markers != nullptr) {
-    return format.with_markers(outputs.open(path), points);
-  }
-  PointWriter(outputs, path, points.size()).write(points.coordinates.data(), points.size());
+  const bool has_markers = !points.markers.empty();
+  PointWriter(outputs, path, points.size(), has_markers)
+      .write(points.coordinates.data(), points.size(), has_markers ? points.markers.data() : nullptr);
 }
 
 std::uint64_t least_bytes(const std::string& path, std::uint64_t n) {
-  const std::uint64_t point = format_of(path, Use::write_points).points_out->least_bytes;
+  const std::uint64_t point = format_of(path, Use::write_points).least_bytes;
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
   return n > kMost / point ? kMost : n * point;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "files/file.hpp"
@@ -33,6 +34,17 @@ struct PointRecords {
   void read(const ReadAt& read_at, std::uint64_t first, std::size_t count, double* coordinates) const;
 };
 
+/// Reads the points of a text that comes in pieces of whole lines. Throws Error(input) that names the line
+/// and the column in the file.
+class PointText {
+ public:
+  virtual ~PointText() = default;
+  /// Appends the points of the next lines.
+  virtual void parse(std::string_view lines, std::vector<double>& coordinates) = 0;
+  /// After the last piece: checks that nothing is missing.
+  virtual void finish() {}
+};
+
 /// Reads points from path, by its ending (any case):
 ///   .npy             NumPy array, n x 2, C order, little-endian float64 or float32 (format versions 1 to 3)
 ///   .node            Triangle's format: comments, attributes, boundary markers, first index 0 or 1
@@ -48,18 +60,9 @@ struct PointRecords {
 /// NaN and infinity are errors that name the index of the point.
 Points read_points(const std::string& path);
 
-/// Throws Error(usage) that lists the endings if read_points does not know the ending of path.
-void check_points_ending(const std::string& path);
-/// Throws Error(usage) that lists the endings if write_points does not know the ending of path.
-void check_points_output(const std::string& path);
-
-/// The points of a .bin file.
-PointRecords binary_points(const std::string& path, InputFile& file);
-
-struct PointFormat;
-extern const PointFormat kNodePoints, kTextPoints, kCsvPoints, kBinaryPoints;
-/// Writes points as pairs of doubles.
-void write_binary_points(OutputFile& file, const double* coordinates, std::uint64_t first, std::size_t count);
+/// Writes points as pairs of doubles, for Format::write_points.
+void write_pairs(OutputFile& file, const double* coordinates, const std::int32_t* markers,
+                 std::uint64_t first, std::size_t count);
 
 /// The least bytes that n points take in a file.
 std::uint64_t least_bytes(const std::string& path, std::uint64_t n);
@@ -69,16 +72,17 @@ std::uint64_t least_bytes(const std::string& path, std::uint64_t n);
 /// Error(input) if path cannot be written.
 void write_points(Outputs& outputs, const std::string& path, const Points& points);
 
-/// Writes the same file in pieces.
+struct Format;
+/// Writes what write_points writes, in pieces.
 class PointWriter {
  public:
   /// n: how many points will be written.
-  PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n);
+  PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n, bool has_markers = false);
   /// The next points: x0 y0 x1 y1 ...
-  void write(const double* coordinates, std::size_t count);
+  void write(const double* coordinates, std::size_t count, const std::int32_t* markers = nullptr);
 
  private:
-  const PointFormat& format_;
+  const Format& format_;
   OutputFile& file_;
   std::uint64_t written_ = 0;
 };

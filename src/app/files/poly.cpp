@@ -3,29 +3,28 @@
 #include <string_view>
 #include <utility>
 
-#include "app/files/node_vertices.hpp"
+#include "app/files/formats.hpp"
+#include "app/files/text.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
 namespace {
 
-constexpr std::string_view kPolyFormat = "Triangle's .poly format";
-
 /// Reads the sections of a file in their order.
 class PolyReader {
  public:
   PolyReader(const std::string& path, std::string_view text, const NodeFile* nodes)
-      : lines_(path, text, Lines::Separator::blanks), nodes_(nodes) {
-    file_.path = path;
+      : path_(path), lines_(path, text, Lines::Separator::blanks), nodes_(nodes) {
+    map_.has_others = true;
   }
 
-  PolyFile read() {
+  Map read() {
     read_vertices();
     read_segments();
     read_holes();
     read_regions();
     if (lines_.next()) lines_.fail_line("expected the end of the file after the regions");
-    return std::move(file_);
+    return std::move(map_);
   }
 
  private:
@@ -36,11 +35,11 @@ class PolyReader {
   };
 
   void read_vertices() {
-    NodeVertices vertices(nullptr, &file_.points.markers);
+    NodeVertices vertices(nullptr, &map_.points.markers);
     if (lines_.next()) vertices.read_header(lines_);
     if (vertices.has_header() && vertices.size() == 0) return take_vertices_of_node_file();
-    while (vertices.left() > 0 && lines_.next()) vertices.read_vertex(lines_, file_.points.coordinates);
-    vertices.check_complete(file_.path);
+    while (vertices.left() > 0 && lines_.next()) vertices.read_vertex(lines_, map_.points.coordinates);
+    vertices.check_complete(path_);
     base_ = vertices.base();
     vertices_ = static_cast<long long>(vertices.size());
   }
@@ -51,19 +50,19 @@ class PolyReader {
       vertices_ = static_cast<long long>(nodes_->points.size());
       return;
     }
-    const std::string path = path_beside(file_.path, ".node");
+    const std::string path = path_beside(path_, ".node");
     if (::access(path.c_str(), R_OK) != 0) {
-      fail(file_.path, "has no vertices, and {} cannot be opened: {}", path, system_reason(errno));
+      fail(path_, "has no vertices, and {} cannot be opened: {}", path, system_reason(errno));
     }
     NodeFile own = read_node(path, false);
     base_ = own.base;
     vertices_ = static_cast<long long>(own.points.size());
-    file_.points = std::move(own.points);
+    map_.points = std::move(own.points);
   }
 
   /// The first number of a section's header, whose other fields are left.
   Section read_header(std::string_view what) {
-    if (!lines_.next()) fail(file_.path, "ends before the line with the number of {}", what);
+    if (!lines_.next()) fail(path_, "ends before the line with the number of {}", what);
     const long long size = lines_.integer(fmt::format("the number of {}", what));
     if (size < 0) lines_.fail_line("{} {}; expected 0 or more", size, what);
     return {size, lines_.number()};
@@ -72,8 +71,8 @@ class PolyReader {
   /// Goes to the next line of a section, of which `read` were read.
   void next_row(const Section& section, long long read, std::string_view what) {
     if (!lines_.next()) {
-      fail(file_.path, "line {}: {} {} expected, but the file ends after {}", section.header_line,
-           section.size, what, read);
+      fail(path_, "line {}: {} {} expected, but the file ends after {}", section.header_line, section.size,
+           what, read);
     }
   }
 
@@ -100,11 +99,11 @@ class PolyReader {
       // As in Triangle, the order of the lines counts, and not how they are numbered.
       lines_.integer("a segment number");
       for (int end = 0; end < 2; ++end) {
-        file_.segments.push_back(
+        map_.segments.push_back(
             checked_index(lines_, "vertex", lines_.integer("a vertex number"), base_, vertices_));
       }
       if (std::string_view marker; has_markers) {
-        file_.markers.push_back(lines_.field(marker) ? boundary_marker(lines_, marker) : 0);
+        map_.segment_markers.push_back(lines_.field(marker) ? boundary_marker(lines_, marker) : 0);
       }
     }
   }
@@ -126,7 +125,7 @@ class PolyReader {
       next_row(section, k, "holes");
       check_fields(3, 3, "hole number, x, y");
       lines_.integer("a hole number");
-      for (int axis = 0; axis < 2; ++axis) file_.holes.push_back(read_number("a coordinate of a hole"));
+      for (int axis = 0; axis < 2; ++axis) map_.holes.push_back(read_number("a coordinate of a hole"));
     }
   }
 
@@ -144,25 +143,26 @@ class PolyReader {
       for (double& coordinate : region.place) coordinate = read_number("a coordinate of a region");
       region.attribute = read_number("the attribute of a region");
       if (has_area) region.area = read_number("the largest area of a region");
-      file_.regions.push_back(region);
+      map_.regions.push_back(region);
     }
   }
 
+  const std::string& path_;
   Lines lines_;
   const NodeFile* nodes_;
-  PolyFile file_;
+  Map map_;
   long long base_ = 0, vertices_ = 0;
 };
 
+Map read_poly_map(const std::string& path) { return read_poly(path, nullptr); }
+
 }  // namespace
 
-PolyFile read_poly(const std::string& path, const NodeFile* nodes) {
-  const std::string text = read_file(path, kPolyFormat);
-  return PolyReader(path, text, nodes).read();
-}
+const Format kPoly = {.ending = ".poly", .map = read_poly_map, .beside = {".node"}};
 
-std::string path_beside(const std::string& path, std::string_view ending) {
-  return path.substr(0, path.size() - ending_of(path).size()).append(ending);
+Map read_poly(const std::string& path, const NodeFile* nodes) {
+  const std::string text = read_file(path, "Triangle's .poly format");
+  return PolyReader(path, text, nodes).read();
 }
 
 }  // namespace flaunay::io

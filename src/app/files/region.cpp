@@ -4,13 +4,12 @@
 #include <vector>
 
 #include "app/files/poly.hpp"
-#include "app/files/text.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
 namespace {
 
-void write_node(OutputFile& file, const Points& points, const research::Region& region) {
+void write_region_node(OutputFile& file, const Points& points, const research::Region& region) {
   std::vector<char> on_border(region.points.size(), 0);
   for (const std::int32_t position : region.border) on_border[static_cast<std::size_t>(position)] = 1;
   file.print("{} 2 1 1\n", region.points.size());
@@ -21,7 +20,7 @@ void write_node(OutputFile& file, const Points& points, const research::Region& 
   }
 }
 
-void write_poly(OutputFile& file, const research::Region& region) {
+void write_region_poly(OutputFile& file, const research::Region& region) {
   // The vertices are in the .node file.
   file.print("0 2 1 1\n{} 0\n", region.border.size() / 2);
   for (std::size_t k = 0; k + 1 < region.border.size(); k += 2) {
@@ -38,8 +37,8 @@ void check_count(const std::string& path, const char* what, std::size_t found, s
 
 void write_region(Outputs& outputs, const std::string& stem, const Points& points,
                   const research::Region& region) {
-  write_node(outputs.open(stem + ".node"), points, region);
-  write_poly(outputs.open(stem + ".poly"), region);
+  write_region_node(outputs.open(stem + ".node"), points, region);
+  write_region_poly(outputs.open(stem + ".poly"), region);
 }
 
 StoredRegion read_region(const std::string& stem, std::size_t points, std::size_t border_edges) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/files/drawing.hpp"
-#include "app/files/mesh_formats.hpp"
+#include "app/files/formats.hpp"
 #include "files/output.hpp"
 
 namespace flaunay::io {
@@ -290,10 +290,10 @@ class Picture {
   double middle_area_ = 0, spread_of_areas_ = 1;  // of their logarithms
 };
 
+void write_svg(OutputFile& file, const MeshContents& contents) { Picture(file, contents).write(); }
+
 }  // namespace
 
-void write_svg(Outputs& outputs, const std::string& path, const MeshContents& contents) {
-  Picture(outputs.open(path), contents).write();
-}
+const Format kSvg = {.ending = ".svg", .write_mesh = write_svg, .has_labels = true};
 
 }  // namespace flaunay::io

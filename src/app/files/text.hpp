@@ -15,9 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/files/points.hpp"
 #include "files/file.hpp"
-#include "files/output.hpp"
 
 namespace flaunay::io {
 
@@ -226,18 +224,6 @@ class Lines {
 /// field. Defined in text.cpp.
 bool is_header(Lines& lines);
 
-/// The largest number of attributes of a vertex or a triangle, far more than a line holds.
-constexpr long long kMostAttributes = std::numeric_limits<std::int32_t>::max();
-
-/// The number of attributes in a header of Triangle's formats.
-inline long long attribute_count(Lines& lines) {
-  const long long attributes = lines.integer("the number of attributes");
-  if (attributes < 0 || attributes > kMostAttributes) {
-    lines.fail_line("{} attributes; expected 0 to {}", attributes, kMostAttributes);
-  }
-  return attributes;
-}
-
 /// A vertex or triangle number as an index from 0: `number` - `base`, checked to be below `count`.
 inline std::int32_t checked_index(const Lines& lines, std::string_view what, long long number, long long base,
                                   long long count) {
@@ -247,17 +233,5 @@ inline std::int32_t checked_index(const Lines& lines, std::string_view what, lon
   }
   return static_cast<std::int32_t>(number - base);
 }
-
-/// A .node file, the format of Triangle. Defined in points.cpp.
-struct NodeFile {
-  Points points;
-  long long base = 0;                 // the number of the first vertex, 0 or 1
-  std::vector<std::int32_t> indices;  // the first attribute of each vertex, if asked for
-};
-NodeFile read_node(const std::string& path, bool with_indices);
-
-/// Writes a .node file, numbered from 0, without attributes, and with markers if there are some. Defined in
-/// points.cpp.
-void print_node(OutputFile& file, const Points& points);
 
 }  // namespace flaunay::io

@@ -11,6 +11,7 @@
 #include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,12 @@
 #include "app/command/progress.hpp"
 #include "app/command/results.hpp"
 #include "app/files/formats.hpp"
-#include "app/mpi_command/files.hpp"
+#include "app/files/point_stream.hpp"
 #include "files/disk_space.hpp"
 #include "files/mesh_stream.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/mpi.hpp"
+#include "large/mpi/ranks.hpp"
 
 namespace flaunay::mpi {
 namespace {
@@ -159,26 +161,74 @@ io::IndexType check_outputs(const Request& request, std::uint64_t points) {
   return type;
 }
 
+// Points of a binary file, which all ranks read.
+std::unique_ptr<PointSource> open_points(Ranks& ranks, const std::string& path) {
+  std::unique_ptr<PointSource> points;
+  ranks.together([&] {
+    if (io::find_format(path, io::Use::read_records) == nullptr) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{}: ranks read {} at the same time, and no other files; convert it, or take "
+                              "flaunay triangulate",
+                              path, io::endings_for(io::Use::read_records)));
+    }
+    points = io::open_point_stream(path, "");
+  });
+  return points;
+}
+
+// This rank's share of the points, as even as possible, without products that may overflow.
+std::vector<double> read_share(Ranks& ranks, PointSource& points) {
+  const auto count = static_cast<std::uint64_t>(ranks.size()), size = points.size();
+  const auto begin_of = [&](std::uint64_t rank) {
+    return size / count * rank + std::min(rank, size % count);
+  };
+  const auto rank = static_cast<std::uint64_t>(ranks.rank());
+  std::vector<double> share(2 * (begin_of(rank + 1) - begin_of(rank)));
+  ranks.together([&] { points.read(begin_of(rank), share.size() / 2, share.data()); });
+  return share;
+}
+
+using Paths = io::MeshFiles::Paths;
+
+// Rank 0 creates the files and commits them, and the others write to them, too. If it is killed, they remove
+// them.
+io::MeshFiles open_files(Ranks& ranks, io::Outputs& outputs, const Paths& paths, io::IndexType type) {
+  std::optional<io::MeshFiles> files;
+  Paths partials;
+  ranks.together([&] {
+    if (ranks.rank() == 0) partials = files.emplace(outputs, paths, type).partial_paths();
+  });
+  for (std::string& partial : partials) {
+    std::vector<char> name(partial.begin(), partial.end());
+    ranks.broadcast(name);
+    partial.assign(name.begin(), name.end());
+  }
+  ranks.together([&] {
+    if (ranks.rank() != 0) files.emplace(outputs, paths, type, partials);
+  });
+  return *std::move(files);
+}
+
 int triangulate(Ranks& ranks, const Request& request) {
   ranks.together([&] {
     if (ranks.rank() != 0) return;
     // Not kept, because other ranks do not know the files yet, which they remove if this one is killed.
-    cli::OutputFiles announced(request.input);
+    cli::OutputFiles announced({request.input});
     cli::announce(announced, request.results);
     for (const std::string& path : request.results.arrays) io::check_stream_output(path);
   });
   cli::Progress progress(!request.quiet && ranks.rank() == 0);
   cli::Stopwatch stopwatch;
   progress.update("reading");
-  const PointFile file(ranks, request.input);
+  const std::unique_ptr<PointSource> file = open_points(ranks, request.input);
   io::IndexType type = io::IndexType::int64;
   std::vector<int> types(1);
   ranks.together([&] {
-    if (ranks.rank() == 0) types.front() = static_cast<int>(check_outputs(request, file.size()));
+    if (ranks.rank() == 0) types.front() = static_cast<int>(check_outputs(request, file->size()));
   });
   ranks.broadcast(types);
   type = static_cast<io::IndexType>(types.front());
-  std::vector<double> points = file.read(ranks);
+  std::vector<double> points = read_share(ranks, *file);
   const double reading = stopwatch.restart();
 
   progress.update("triangulating");
@@ -194,17 +244,21 @@ int triangulate(Ranks& ranks, const Request& request) {
   progress.update("writing");
   stopwatch.restart();
   const auto shares = shares_of(mesh);
-  const auto paths = cli::mesh_paths(request.results);
   io::Outputs outputs;
-  std::vector<std::unique_ptr<IndexFile>> files;
-  for (std::size_t k = 0; k < shares.size(); ++k) {
-    if (paths[k].empty()) continue;
-    const std::size_t columns = io::columns_of(static_cast<MeshArray>(k));
-    files.push_back(std::make_unique<IndexFile>(ranks, outputs, paths[k], columns, shares[k].rows, type));
-    files.back()->write(ranks, shares[k].values, shares[k].first_row);
-  }
+  io::MeshFiles files = open_files(ranks, outputs, cli::mesh_paths(request.results), type);
+  ranks.together([&] {
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const auto array = static_cast<MeshArray>(k);
+      if (!files.wants(array)) continue;
+      const std::size_t columns = std::max<std::size_t>(1, io::columns_of(array));
+      files.write(array, shares[k].first_row * columns, shares[k].values.data(), shares[k].values.size());
+      files.extend(array, shares[k].rows * columns);
+    }
+    outputs.write_out();
+  });
   ranks.together([&] {
     if (ranks.rank() != 0) return;
+    files.finish();
     if (!request.results.stats.empty()) {
       outputs.open(request.results.stats)
           .print("{}", statistics_json(request, mesh.statistics, uses, reading, stopwatch.seconds()));

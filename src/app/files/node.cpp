@@ -1,7 +1,11 @@
-#include "app/files/node_vertices.hpp"
+#include "app/files/node.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 #include <string_view>
+
+#include "app/files/formats.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -13,6 +17,15 @@ std::int32_t read_index_attribute(Lines& lines) {
 }
 
 }  // namespace
+
+long long attribute_count(Lines& lines) {
+  constexpr long long kMost = std::numeric_limits<std::int32_t>::max();  // far more than a line holds
+  const long long attributes = lines.integer("the number of attributes");
+  if (attributes < 0 || attributes > kMost) {
+    lines.fail_line("{} attributes; expected 0 to {}", attributes, kMost);
+  }
+  return attributes;
+}
 
 long long marker_count(Lines& lines) {
   const long long markers = lines.integer("the number of boundary markers");
@@ -81,6 +94,75 @@ void NodeVertices::check_complete(const std::string& path) const {
     fail(path, "line {}: the header says {} vertices, but the file ends after {}", header_line_, vertices_,
          read_);
   }
+}
+
+namespace {
+
+class NodeText : public PointText {
+ public:
+  NodeText(const std::string& path, std::vector<std::int32_t>* indices, std::vector<std::int32_t>* markers)
+      : path_(path), vertices_(indices, markers) {}
+
+  void parse(std::string_view text, std::vector<double>& coordinates) override {
+    Lines lines(path_, text, Lines::Separator::blanks, lines_);
+    if (!vertices_.has_header() && lines.next()) vertices_.read_header(lines);
+    if (vertices_.has_header()) {
+      coordinates.reserve(coordinates.size() + 2 * std::min(vertices_.left(), lines.lines_left()));
+      while (lines.next()) vertices_.read_vertex(lines, coordinates);
+    }
+    lines_ = lines.number();
+  }
+
+  void finish() override { vertices_.check_complete(path_); }
+
+  long long base() const { return vertices_.base(); }
+
+ private:
+  std::string path_;
+  NodeVertices vertices_;
+  std::size_t lines_ = 0;  // read before
+};
+
+std::unique_ptr<PointText> node_text(const std::string& path) {
+  return std::make_unique<NodeText>(path, nullptr, nullptr);
+}
+
+void begin_node(OutputFile& file, std::uint64_t n, bool has_markers) {
+  file.print("{} 2 0 {}\n", n, has_markers ? 1 : 0);
+}
+
+void write_vertices(OutputFile& file, const double* coordinates, const std::int32_t* markers,
+                    std::uint64_t first, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    file.print("{} {} {}", first + i, coordinates[2 * i], coordinates[2 * i + 1]);
+    markers != nullptr ? file.print(" {}\n", markers[i]) : file.print("\n");
+  }
+}
+
+}  // namespace
+
+const Format kNode = {.ending = ".node",
+                      .content = "Triangle's .node format",
+                      .text = node_text,
+                      .begin_points = begin_node,
+                      .write_points = write_vertices,
+                      .least_bytes = 4};
+
+void write_node(OutputFile& file, const Points& points) {
+  const bool has_markers = !points.markers.empty();
+  begin_node(file, points.size(), has_markers);
+  write_vertices(file, points.coordinates.data(), has_markers ? points.markers.data() : nullptr, 0,
+                 points.size());
+}
+
+NodeFile read_node(const std::string& path, bool with_indices) {
+  const std::string text = read_file(path, kNode.content);
+  NodeFile file;
+  NodeText parser(path, with_indices ? &file.indices : nullptr, &file.points.markers);
+  parser.parse(text, file.points.coordinates);
+  parser.finish();
+  file.base = parser.base();
+  return file;
 }
 
 }  // namespace flaunay::io

@@ -1,4 +1,4 @@
-// The vertices in Triangle's .node and .poly files: a header, and then a line per vertex.
+// Triangle's .node files. Their vertices, a header and then a line per vertex, are in .poly files, too.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "app/files/text.hpp"
+#include "files/output.hpp"
 
 namespace flaunay::io {
 
@@ -41,9 +43,20 @@ class NodeVertices {
   long long read_ = 0;  // vertices
 };
 
-/// The number of boundary markers in a header of Triangle's formats, 0 or 1.
+/// The number of attributes and of boundary markers, 0 or 1, in a header of Triangle's formats.
+long long attribute_count(Lines& lines);
 long long marker_count(Lines& lines);
 /// A field of the line as a boundary marker.
 std::int32_t boundary_marker(const Lines& lines, std::string_view text);
+
+struct NodeFile {
+  Points points;
+  long long base = 0;                 // the number of the first vertex, 0 or 1
+  std::vector<std::int32_t> indices;  // the first attribute of each vertex, if asked for
+};
+NodeFile read_node(const std::string& path, bool with_indices);
+
+/// Writes a .node file, numbered from 0, without attributes, and with markers if there are some.
+void write_node(OutputFile& file, const Points& points);
 
 }  // namespace flaunay::io
