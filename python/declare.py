@@ -116,7 +116,10 @@ class Header:
 
 
 def arrays_of(text: str) -> str:
-    """The tables of arrays, each with its type, what has one row per thing, elements per row, and who asks."""
+    """The tables of arrays, each with its type, what has one row per thing, elements per row, and who asks.
+
+    Of a table that has names alone, these.
+    """
     tables = "\n# For each array its type, of what it has rows, the elements of a row, and what asks for it.\n"
     for table, body in re.findall(r"#define FLAUNAY_(\w+)_ARRAYS\(X\)((?:.*\\\n)*.*\n)", text):
         rows = re.findall(r"X\(([\w:]+), (\w+), (\w+), (\d)(?:, (\w+))?", body)
@@ -125,6 +128,9 @@ def arrays_of(text: str) -> str:
             for kind, name, row, columns, asked in rows:
                 tables += f'    "{name}": ("{ELEMENTS[kind]}", "{row}", {columns}, "{asked or "always"}"),\n'
             tables += "}\n"
+        else:
+            names = re.findall(r"X\((\w+)\)", body)
+            tables += f"{table}_ARRAYS = {names}\n"
     return tables
 
 

@@ -1132,6 +1132,34 @@ static void test_constrained(void) {
   flaunay_constrained_destroy(result);
 }
 
+static void test_carried(void) {
+  const int32_t segment_markers[] = {-1, 4, 5, 6}, point_markers[] = {8, 7, 6, 5, 4, 3, 2, 1};
+  const double seeds[] = {0.25, 1, 6, 1, 5.5, 1.5}, attributes[] = {0.5, 1.5, 2.5};
+  const size_t seed_offsets[] = {0, 1, 3};
+  const flaunay_constraints given = {.segments = kDiagonals,
+                                     .segment_count = 4,
+                                     .segment_markers = segment_markers,
+                                     .point_markers = point_markers,
+                                     .seeds = seeds,
+                                     .seed_attributes = attributes,
+                                     .seed_count = 3,
+                                     .seed_offsets = seed_offsets};
+  flaunay_constrained* result = NULL;
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &given, NULL, &result) ==
+          FLAUNAY_SUCCESS);
+  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  const int32_t* triangles = flaunay_constrained_mesh(result)->triangles;
+  CHECK(same(arrays->edge_markers, segment_markers, 2) && same(arrays->vertex_markers, point_markers, 8));
+  for (size_t t = 0; t < 4; ++t) {
+    // Triangles of the first square with its point 0, and of the second with the point at the upper left.
+    const int32_t wanted = t < 2 ? 0 : 7;
+    int has = 0;
+    for (int k = 0; k < 3; ++k) has |= triangles[3 * t + k] == wanted;
+    CHECK(arrays->triangle_attributes[t] == (has ? (t < 2 ? 0.5 : 2.5) : 0));
+  }
+  flaunay_constrained_destroy(result);
+}
+
 static void test_constrained_without_constraints(void) {
   flaunay_triangulation* plain = NULL;
   flaunay_constrained* result = NULL;
@@ -1171,13 +1199,20 @@ static void test_bad_constraints(void) {
   const flaunay_constraints bad[] = {{.segments = none, .segment_count = 1},
                                      {.segment_count = 1},
                                      {.hole_count = 1},
+                                     {.seed_count = 1},
                                      {.crossings = 2},
                                      {.outside = 3},
                                      {.fill_rule = -1},
                                      {.reserved = {0, 1}}};
-  const char* const texts[] = {
-      "4", "null", "null", "flaunay_crossings", "flaunay_outside", "_fill_rule", "flaunay_constraints"};
-  for (int k = 0; k < 7; ++k) CHECK(fails(constrain_square(bad[k], NULL), usage, texts[k]));
+  const char* const texts[] = {"4",
+                               "null",
+                               "null",
+                               "null",
+                               "flaunay_crossings",
+                               "flaunay_outside",
+                               "_fill_rule",
+                               "flaunay_constraints"};
+  for (int k = 0; k < 8; ++k) CHECK(fails(constrain_square(bad[k], NULL), usage, texts[k]));
   flaunay_constrained* result = NULL;
   const flaunay_constraints between = {.segments = across, .segment_count = 1};
   CHECK(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &between, NULL, &result) ==
@@ -2138,6 +2173,7 @@ static void test_all(void) {
   test_out_of_memory();
   test_voronoi();
   test_constrained();
+  test_carried();
   test_constrained_without_constraints();
   test_bad_constraints();
   test_polygons();

@@ -1629,6 +1629,22 @@ TEST_F(CommandConstraintsTest, TrianglesHaveTheAttributesOfTheirRegionsAndMarker
     const bool is_above = middle_y > middle_x / 2;
     EXPECT_EQ(attribute, middle_x < 4 ? (is_above ? 1.5 : 0) : is_above ? 0 : 2.5) << t;
   }
+  run_well({"triangulate", poly, "--crossings", "split", "--edge-markers", path("e.npy"), "--vertex-markers",
+            path("v.npy"), "--triangle-attributes", path("a.npy"), "--constraint-edges", path("c.npy")},
+           kNoPlatform);
+  EXPECT_EQ(read_array(path("v.npy")).values, marks);
+  const std::string doubles = contents(path("a.npy"));
+  EXPECT_NE(doubles.find("'<f8', 'fortran_order': False, 'shape': (6,)"), std::string::npos) << doubles;
+  const Array edges = read_array(path("c.npy")), edge_marks = read_array(path("e.npy"));
+  for (std::size_t e = 0; e < edge_marks.values.size(); ++e) {
+    if (edges.values.at(2 * e) == 0 && edges.values.at(2 * e + 1) == 1) EXPECT_EQ(edge_marks.values[e], 1);
+  }
+  const std::string star = data("star.poly");
+  for (const auto& [option, what] : {std::pair("--edge-markers", "markers of segments"),
+                                     std::pair("--vertex-markers", "markers of points"),
+                                     std::pair("--triangle-attributes", "regions with attributes")}) {
+    expect_error(kUsage, {what, option}, {"triangulate", star, option, path("e.npy")});
+  }
   const std::string segments = contents(path("b.poly"));
   EXPECT_NE(segments.find(" 20\n"), std::string::npos) << segments;
   EXPECT_NE(segments.find("\n5\n0 2 3 1.5 0.1\n1 5 1 -2\n"), std::string::npos) << segments;

@@ -33,7 +33,7 @@ COMMON = ["-x", "cl", "-O3", "-Xclang", "-finclude-default-header", f"-I{KERNELS
           "-Dcl_khr_fp64", "-Dcl_khr_int64_base_atomics"]
 # The folders of kernels that have a text in fixed point.
 FIXED_POINT_FOLDERS = ("blocks", "constrained", "locate", "points")
-ONE_TEXT = {"call/self_test_fixed.cl": True, "locate/fixed_point.cl": True, "constrained/holes.cl": False}
+ONE_TEXT = {"call/self_test_fixed.cl": True, "locate/fixed_point.cl": True, "constrained/seeds.cl": False}
 FIXED_POINT_OPTIONS = ["-DFIXED_POINT"]
 NEWEST, OLDEST = 25, 14
 COLUMNS = ["registers", "stack", "spills", "local_memory"]

@@ -14,7 +14,7 @@
 // 4. Depths. Each pass of reach_regions over the borders goes one level further from outside. Where there are too many
 //    levels the host goes on, one region after the other (src/constrained/domains/domain.cpp). finish_regions says
 //    which regions are left.
-// 5. Holes. drop_holes marks the regions of the triangles that contain seeds, which holes.cl has found.
+// 5. Holes. drop_holes marks the regions of the triangles that contain seeds, which seeds.cl has found.
 // 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets and
 //    write_depths do the rest.
 

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _declarations, _library
-from flaunay._arrays import FloatArray, Mesh
+from flaunay._arrays import FloatArray, Mesh, names_of
 from flaunay._declarations import INDEX_TYPE, PART, PRECISION
 from flaunay._errors import UsageError
 from flaunay._library import DeviceHandle, Handle, check, library, text_of
@@ -314,26 +314,26 @@ class _Triangulation(Handle):
 class _Constrained(Handle):
     _destroy = library.constrained_destroy
 
-    def arrays(self, parts: int, labels: bool, is_map: bool = False) -> dict[str, Any]:
-        """What was computed, by its name; None if an array was not asked for."""
+    def arrays(self, parts: int, asked_by: set[str]) -> dict[str, Any]:
+        """What was computed, by its name; None if an array was not asked for. asked_by: what asks for arrays."""
         result = _arrays_of(self, library.constrained_mesh(self.pointer)[0], parts)
         given = library.constrained_get_arrays(self.pointer)[0]
-        triangles, sets = len(result["triangles"]), len(result["triangle_offsets"]) - 1
         counts = {
+            "point": len(result["representatives"]),
             "added_point": given.added_count,
-            "set_offset": sets + 1,
+            "set_offset": len(result["triangle_offsets"]),
             "constraint": given.constraint_count,
             "segment_offset": given.segment_count + 1,
             "piece": given.piece_count,
-            "triangle": triangles,
+            "triangle": len(result["triangles"]),
         }
-        wanted = {"always": True, "labels": labels, "map": is_map}
-        for name, (dtype, row, columns, asked) in _CONSTRAINED.items():
-            shape = _shape(counts[row], columns)
-            result[name] = (
-                _view(self, getattr(given, name), shape, dtype) if wanted[asked] else None
-            )
-        return result
+        there = {
+            name: row
+            for name, row in _CONSTRAINED.items()
+            if row[3] == "always" or row[3] in asked_by
+        }
+        views = _views(self, there, counts, lambda name: getattr(given, name))
+        return {**result, **dict.fromkeys(_CONSTRAINED), **views}
 
 
 class Triangulator(DeviceHandle):
@@ -409,33 +409,37 @@ def triangulate_constrained(
     points: _Doubles,
     given_offsets: Optional[_Offsets],
     segments: _Indices,
-    holes: _Doubles,
-    hole_offsets: Optional[_Offsets],
+    places: dict[str, tuple[_Doubles, Optional[_Offsets]]],
+    carried: dict[str, Optional[npt.NDArray[Any]]],
     rules: dict[str, int],
     wanted: set[str],
 ) -> dict[str, Any]:
-    """Triangulates points with segments. rules: members of flaunay_constraints that are no arrays."""
+    """Triangulates points with segments.
+
+    places: the holes and the seeds, with their offsets. carried, rules: other members of flaunay_constraints, which
+    are arrays, and numbers.
+    """
     n = _count_points(points)
     parts = _parts_of(wanted) | PART["triangles"]
     offsets, sets = _as_offsets(given_offsets, n)
-    kept_holes, hole_sets = _as_offsets(hole_offsets, len(holes), "hole_offsets", "holes")
-    if kept_holes is not None and hole_sets != max(sets, 1):
-        raise UsageError(f"hole_offsets are of {hole_sets} sets, but there are {max(sets, 1)}")
-    points, holes = _as_doubles(points), _as_doubles(holes)
-    constraints = _declarations.Constraints(
-        segments=_address_of(segments),
-        segment_count=len(segments),
-        holes=_address_of(holes),
-        hole_count=len(holes),
-        hole_offsets=_address_or_none(kept_holes),
-        **rules,
-    )
+    points = _as_doubles(points)
+    arrays: dict[str, Optional[npt.NDArray[Any]]] = {"segments": segments, **carried}
+    counts = {"segment_count": len(segments)}
+    for name, (rows, given) in places.items():
+        of_sets, count = _as_offsets(given, len(rows), f"{name}_offsets", f"{name}s")
+        if of_sets is not None and count != max(sets, 1):
+            raise UsageError(f"{name}_offsets are of {count} sets, but there are {max(sets, 1)}")
+        arrays |= {f"{name}s": _as_doubles(rows), f"{name}_offsets": of_sets}
+        counts[f"{name}_count"] = len(rows)
+    addresses = {name: _address_or_none(array) for name, array in arrays.items()}
+    constraints = _declarations.Constraints(**addresses, **counts, **rules)
     result, options = _Constrained(), _options_for("blocks", parts)
     triangulator.call(
         library.triangulate_constrained,
         *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
     )
-    return result.arrays(parts, bool(rules["labels"]))
+    asked_by = names_of(labels=bool(rules["labels"]), seeds=counts["seed_count"] > 0)
+    return result.arrays(parts, asked_by | {name for name in carried if carried[name] is not None})
 
 
 def triangulate_polygons(
@@ -469,7 +473,7 @@ def triangulate_polygons(
     triangulator.call(
         library.triangulate_polygons, triangulator.pointer, polygons, options, result.place
     )
-    return result.arrays(parts, bool(rules["labels"]), bool(rules["map"]))
+    return result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
 
 
 def _encoded(text: str) -> bytes:
@@ -781,8 +785,9 @@ class _ChunkCall:
                 setattr(self._files, name, path)
                 continue
             # Room for as many rows as there may be. What is never written is never in memory.
-            rows = name in ("triangles", "neighbors")
-            self.arrays[name] = np.empty((2 * n, 3) if rows else n, _INT64 if wide else _INT32)
+            _, row, columns, _ = TRIANGULATION[name]
+            shape = _shape(2 * n if row == "triangle" else n, columns)
+            self.arrays[name] = np.empty(shape, _INT64 if wide else _INT32)
             setattr(self._places, name, self.arrays[name].ctypes.data if n else None)
         self._names = (ctypes.c_char_p * len(names))(*names)
         self._options = options
@@ -843,7 +848,7 @@ def triangulate_chunks(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
 
-    Returns the arrays in memory, with room for more rows than there are, and the statistics.
+    Returns the arrays in memory, and the statistics.
 
     The library works on a thread of its own, while this one waits for its reports. So an exception of `progress`, and
     one that a signal raises, as Ctrl-C does, is never in the library's way: Python runs handlers of signals on the
@@ -871,8 +876,17 @@ def triangulate_chunks(
         raise raised
     if call.error is not None:
         raise call.error
-    statistics = library.chunk_report_statistics(call.report.pointer)[0]
-    return call.arrays, _chunk_statistics_of(statistics)
+    statistics = _chunk_statistics_of(library.chunk_report_statistics(call.report.pointer)[0])
+    counts = {
+        "triangle": statistics["triangles"],
+        "hull_vertex": statistics["hull_vertices"],
+        "point": statistics["points"],
+    }
+    arrays = {name: array[: counts[TRIANGULATION[name][1]]] for name, array in call.arrays.items()}
+    if "hull" in arrays:
+        # It had room for all points.
+        arrays["hull"] = arrays["hull"].copy()
+    return arrays, statistics
 
 
 # ---- Voronoi diagrams and queries

@@ -12,7 +12,7 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _triangulators
+from flaunay import _calls, _declarations, _triangulators
 from flaunay._arrays import FloatArray, as_points, check_points_shape, is_masked, summary
 from flaunay._errors import UsageError
 
@@ -235,16 +235,9 @@ def triangulate_chunks(
     ('memmap', 'ndarray', None)
     >>> folder.cleanup()
     """
+    given = locals()
     source = _as_source(points)
-    wanted = _as_wanted(
-        {
-            "triangles": triangles,
-            "neighbors": neighbors,
-            "hull": hull,
-            "representatives": representatives,
-        },
-        points,
-    )
+    wanted = _as_wanted({name: given[name] for name in _declarations.MESH_ARRAYS}, points)
     if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
         raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
     in_memory, statistics = _calls.triangulate_chunks(
@@ -257,20 +250,9 @@ def triangulate_chunks(
         0 if chunk_points is None else min(int(chunk_points), _MOST_BYTES),
         progress,
     )
-    lengths = {
-        "triangles": statistics["triangles"],
-        "neighbors": statistics["triangles"],
-        "hull": statistics["hull_vertices"],
-        "representatives": statistics["points"],
-    }
-    arrays: dict[str, Optional[Indices]] = {}
-    for name, length in lengths.items():
-        path = wanted.get(name)
+    arrays: dict[str, Optional[Indices]] = dict.fromkeys(_declarations.MESH_ARRAYS)
+    arrays |= in_memory
+    for name, path in wanted.items():
         if path is not None:
             arrays[name] = np.load(path, mmap_mode="r")
-        else:
-            arrays[name] = in_memory[name][:length] if name in wanted else None
-    if "hull" in in_memory:
-        # It had room for all points.
-        arrays["hull"] = in_memory["hull"][: lengths["hull"]].copy()
     return ChunkedTriangulation(**arrays, statistics=statistics)

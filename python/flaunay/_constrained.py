@@ -61,6 +61,15 @@ class ConstrainedTriangulation(Triangulation):
     regions : ndarray of int32, shape (m,), or None
         The region of each triangle: what is connected without crossing a constraint. They are numbered
         from 0 by their first triangles. None without ``labels=True``.
+    edge_markers : ndarray of int32, shape (e,), or None
+        The marker of each constraint edge: that of its segment in ``edge_segments``. None without
+        `segment_markers`.
+    vertex_markers : ndarray of int32, shape (n + a,), or None
+        Those that were given, and for each point that splitting added that of the segment with the smallest
+        index that has it, 0 if segments have none. None without `point_markers`.
+    triangle_attributes : ndarray of float64, shape (m,), or None
+        The attribute of each triangle's region: of the last seed in it, and 0 where there is none. None
+        without `seeds`.
 
     Notes
     -----
@@ -81,6 +90,9 @@ class ConstrainedTriangulation(Triangulation):
     constrained: npt.NDArray[np.bool_]
     depths: Optional[Indices]
     regions: Optional[Indices]
+    edge_markers: Optional[Indices]
+    vertex_markers: Optional[Indices]
+    triangle_attributes: Optional[Doubles]
 
     why_no_array = (
         "are needed, or a Delaunay triangulation of them, not one with constraints: "
@@ -269,15 +281,27 @@ def _as_segments(given: npt.ArrayLike, n: int) -> Indices:
     return np.ascontiguousarray(segments, np.int32)
 
 
-def _as_holes(given: Optional[npt.ArrayLike]) -> Doubles:
+def _as_places(given: Optional[npt.ArrayLike], name: str, columns: int) -> Doubles:
+    """Rows of x, y and perhaps more."""
+    places = np.empty((0, columns)) if given is None else np.asarray(as_floats(given, name), float)
+    if places.size == 0:
+        return np.empty((0, columns))
+    if places.ndim != 2 or places.shape[1] != columns:
+        raise UsageError(f"{name} must have the shape ({name[0]}, {columns}), not {places.shape}")
+    return places
+
+
+def _as_markers(given: Optional[npt.ArrayLike], name: str, count: int) -> Optional[Indices]:
+    """One int32 each of so many things."""
     if given is None:
-        return np.empty((0, 2))
-    holes = np.asarray(as_floats(given, "holes"), np.float64)
-    if holes.size == 0:
-        return np.empty((0, 2))
-    if holes.ndim != 2 or holes.shape[1] != 2:
-        raise UsageError(f"holes must have the shape (h, 2), not {holes.shape}")
-    return holes
+        return None
+    markers = as_integers(given, name)
+    if markers.shape != (count,):
+        raise UsageError(f"{name} must have the shape ({count},), not {markers.shape}")
+    kept = np.ascontiguousarray(markers, np.int32)
+    if (kept != markers).any():
+        raise UsageError(f"{name} must be int32: {markers[kept != markers][0]} is too large")
+    return kept
 
 
 def with_points(result: dict[str, Any], given: Doubles) -> dict[str, Any]:
@@ -290,22 +314,39 @@ def with_points(result: dict[str, Any], given: Doubles) -> dict[str, Any]:
 def arrays_of_constrained(
     points: ArrayLike,
     segments: npt.ArrayLike,
-    holes: Optional[npt.ArrayLike],
     offsets: Optional[npt.NDArray[np.int64]],
-    hole_offsets: Optional[npt.ArrayLike],
+    given: dict[str, Any],
     rules: dict[str, int],
     wanted: set[str],
     device: Optional[str],
 ) -> dict[str, Any]:
-    """What a `ConstrainedTriangulation` consists of, by its names. wanted: the optional arrays to compute."""
+    """What a `ConstrainedTriangulation` consists of, by its names.
+
+    given: the arguments of `triangulate` that are holes, markers and seeds. wanted: the optional arrays to compute.
+    """
     coordinates = np.asarray(as_points(points), np.float64)
-    pairs, places = _as_segments(segments, len(coordinates)), _as_holes(holes)
-    sets_of_holes = None if hole_offsets is None else as_offsets(hole_offsets, "hole_offsets")
-    if sets_of_holes is None and offsets is not None and len(offsets) != 2 and len(places):
-        raise UsageError("holes of several sets need hole_offsets")
+    pairs = _as_segments(segments, len(coordinates))
+    seeds = _as_places(given["seeds"], "seeds", 3)
+    rows = {"hole": _as_places(given["holes"], "holes", 2), "seed": seeds[:, :2]}
+    places = {}
+    for name, members in rows.items():
+        of_sets = given[f"{name}_offsets"]
+        if of_sets is not None:
+            of_sets = as_offsets(of_sets, f"{name}_offsets")
+        elif offsets is not None and len(offsets) != 2 and len(members):
+            raise UsageError(f"{name}s of several sets need {name}_offsets")
+        places[name] = members, of_sets
+    carried = {
+        name: _as_markers(given[name], name, count)
+        for name, count in {
+            "segment_markers": len(pairs),
+            "point_markers": len(coordinates),
+        }.items()
+    }
+    carried["seed_attributes"] = np.ascontiguousarray(seeds[:, 2])
     triangulator = _triangulators.of_device(device)
     result = _calls.triangulate_constrained(
-        triangulator, coordinates, offsets, pairs, places, sets_of_holes, rules, wanted | {"areas"}
+        triangulator, coordinates, offsets, pairs, places, carried, rules, wanted | {"areas"}
     )
     del result["polygons"]
     return with_points(result, coordinates)

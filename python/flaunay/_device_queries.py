@@ -29,6 +29,8 @@ _METHODS = {
 class DeviceLocator:
     """Answers queries in device memory on a triangulation. `DeviceTriangulation.locator` makes it.
 
+    `triangulate_device` has an example.
+
     It has copied what it needs, about 80 bytes per point in device memory, which `close` gives back.
     Queries, values and answers are ``pyopencl.array.Array``; nothing passes through the host. A call
     returns when all is enqueued. Its arrays know the event of its end: what pyopencl does with them
@@ -88,19 +90,6 @@ class DeviceLocator:
         """The triangle that contains each query, exactly, int32, shape (m,); -1 outside of the hull.
 
         On an edge or a vertex it is the triangle of the smallest index that contains the query.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> import numpy as np
-        >>> import pyopencl as cl
-        >>> import pyopencl.array
-        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-        >>> points = cl.array.to_device(queue, np.array([[0, 0], [4, 0], [4, 3], [0, 4.0]]))
-        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-        >>> queries = cl.array.to_device(queue, np.array([[1, 2], [3, 1], [9, 9.0]]))
-        >>> tri.locator().locate(queries)
-        cl.Array([ 0,  1, -1], dtype=int32)
         """
         handle = self._opened()
         call = DeviceCall(queue_for(queries, queue, "queries"), wait_for)
@@ -155,20 +144,6 @@ class DeviceLocator:
         -------
         pyopencl.array.Array of float64, shape (m,) or (m, k)
             At a point, exactly its values.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> import numpy as np
-        >>> import pyopencl as cl
-        >>> import pyopencl.array
-        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-        >>> points = cl.array.to_device(queue, np.array([[0, 0], [4, 0], [0, 4.0]]))
-        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-        >>> values = cl.array.to_device(queue, np.array([0, 8, 4.0]))
-        >>> queries = cl.array.to_device(queue, np.array([[1, 1], [9, 9.0]]))
-        >>> tri.locator().interpolate(values, queries, fill_value=-1)
-        cl.Array([ 3., -1.])
         """
         handle = self._opened()
         if method not in _METHODS:

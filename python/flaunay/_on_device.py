@@ -115,19 +115,6 @@ class DeviceTriangulation:
         ------
         UsageError
             If neighbors, hull or representatives were not asked for, or for a queue of another context.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> import numpy as np
-        >>> import pyopencl as cl
-        >>> import pyopencl.array
-        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-        >>> points = cl.array.to_device(queue, np.array([[0, 0], [4, 0], [4, 3], [0, 4.0]]))
-        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-        >>> locator = tri.locator()
-        >>> locator.nearest(cl.array.to_device(queue, np.array([[1, 3], [9, 9.0]])))
-        cl.Array([3, 2], dtype=int32)
         """
         handle, _, event = self._run(_calls.DeviceLocator, "a locator", queue, wait_for)
         return DeviceLocator(handle, int(self.points.shape[0]), event)
@@ -152,18 +139,6 @@ class DeviceTriangulation:
         ------
         UsageError
             As of `locator`.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> import numpy as np
-        >>> import pyopencl as cl
-        >>> import pyopencl.array
-        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-        >>> points = cl.array.to_device(queue, np.array([[0, 0], [2, 0], [0, 2.0]]))
-        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-        >>> tri.voronoi().vertices
-        cl.Array([[1., 1.]])
         """
         made, own, event = self._run(_calls.DeviceVoronoi, "a Voronoi diagram", queue, wait_for)
         n, m = int(self.points.shape[0]), int(self.triangle_offsets[-1])
@@ -198,19 +173,6 @@ class DeviceTriangulation:
             As of `locator`, and if the bounds are neither.
         InputError
             If the polygon is not convex, or not finite; the message names a corner.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> import numpy as np
-        >>> import pyopencl as cl
-        >>> import pyopencl.array
-        >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
-        >>> points = cl.array.to_device(queue, np.array([[1, 1], [3, 1], [2, 4.0]]))
-        >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
-        >>> cells = tri.clipped_voronoi((0, 0, 4, 4))
-        >>> float(cl.array.sum(cells.areas).get())
-        16.0
         """
         corners = corners_of(bounds)
         work, what = _calls.DeviceClippedVoronoi, "a Voronoi diagram"
@@ -307,9 +269,25 @@ def triangulate_device(
     >>> import pyopencl.array
     >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
     >>> points = cl.array.to_device(queue, np.array([[0, 0], [4, 0], [4, 3], [0, 4.0]]))
-    >>> flaunay.triangulate_device(points).triangles
+    >>> tri = flaunay.triangulate_device(points, neighbors=True, hull=True, representatives=True)
+    >>> tri.triangles
     cl.Array([[0, 2, 3],
            [0, 1, 2]], dtype=int32)
+    >>> tri.voronoi().vertices
+    cl.Array([[1.625, 2.   ],
+           [2.   , 1.5  ]])
+    >>> cells = tri.clipped_voronoi((0, 0, 4, 4))
+    >>> float(cl.array.sum(cells.areas).get())
+    16.0
+    >>> locator = tri.locator()
+    >>> queries = cl.array.to_device(queue, np.array([[1, 2], [3, 1], [9, 9.0]]))
+    >>> locator.locate(queries)
+    cl.Array([ 0,  1, -1], dtype=int32)
+    >>> locator.nearest(queries)
+    cl.Array([0, 1, 2], dtype=int32)
+    >>> values = cl.array.to_device(queue, np.array([0, 8, 11, 4.0]))
+    >>> locator.interpolate(values, queries, fill_value=-1)
+    cl.Array([ 4.,  7., -1.])
     """
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points = call.points(points, offsets, "points")

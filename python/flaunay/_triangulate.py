@@ -74,6 +74,10 @@ def triangulate(
     *,
     offsets: Optional[npt.ArrayLike] = None,
     hole_offsets: Optional[npt.ArrayLike] = None,
+    segment_markers: Optional[npt.ArrayLike] = None,
+    point_markers: Optional[npt.ArrayLike] = None,
+    seeds: Optional[npt.ArrayLike] = None,
+    seed_offsets: Optional[npt.ArrayLike] = None,
     outside: str = "keep",
     crossings: str = "error",
     fill_rule: str = "nesting",
@@ -94,6 +98,10 @@ def triangulate(
     *,
     offsets: Optional[npt.ArrayLike] = None,
     hole_offsets: Optional[npt.ArrayLike] = None,
+    segment_markers: Optional[npt.ArrayLike] = None,
+    point_markers: Optional[npt.ArrayLike] = None,
+    seeds: Optional[npt.ArrayLike] = None,
+    seed_offsets: Optional[npt.ArrayLike] = None,
     outside: str = "keep",
     crossings: str = "error",
     fill_rule: str = "nesting",
@@ -127,6 +135,15 @@ def triangulate(
         and ends with n. Without it, there is one set. Segments have indices over all sets.
     hole_offsets : array_like of int, shape (sets + 1,), optional
         Set s has the holes ``hole_offsets[s]`` to ``hole_offsets[s + 1]``. Needed for holes of several sets.
+    segment_markers, point_markers : array_like of int, shape (k,), (n,), optional
+        With segments: numbers of the caller's, which become `ConstrainedTriangulation.edge_markers` and
+        `vertex_markers`.
+    seeds : array_like, shape (r, 3), optional
+        With segments, x, y and an attribute each, which becomes that of all triangles that are connected to
+        this place without crossing a segment: `ConstrainedTriangulation.triangle_attributes`. Of several
+        seeds in one region the last counts. Those on a segment, and those in no triangle, count for nothing.
+    seed_offsets : array_like of int, shape (sets + 1,), optional
+        As `hole_offsets`.
     outside : {"keep", "hull", "holes"}
         With segments, the triangles to keep: all up to the convex hull; those that are not outside, of
         depth 0; or those that are neither outside nor in holes.
@@ -213,10 +230,17 @@ def triangulate(
     places = None if out is None else _arrays_of(out, wanted)
     sets = None if offsets is None else as_offsets(offsets)
     rules = rules_of(crossings, outside, fill_rule, labels)
+    given = {
+        "holes": holes,
+        "hole_offsets": hole_offsets,
+        "segment_markers": segment_markers,
+        "point_markers": point_markers,
+        "seeds": seeds,
+        "seed_offsets": seed_offsets,
+    }
     if segments is None:
         for name, is_given in {
-            "holes": holes is not None,
-            "hole_offsets": hole_offsets is not None,
+            **{name: value is not None for name, value in given.items()},
             "outside": outside != "keep",
             "crossings": crossings != "error",
             "fill_rule": fill_rule != "nesting",
@@ -228,9 +252,7 @@ def triangulate(
     else:
         if mode != "blocks":
             raise UsageError(f"mode {mode!r} has no segments; mode 'blocks' has")
-        result = arrays_of_constrained(
-            points, segments, holes, sets, hole_offsets, rules, wanted, device
-        )
+        result = arrays_of_constrained(points, segments, sets, given, rules, wanted, device)
     if places:
         _write(result, places)
     return Triangulation(**result) if segments is None else ConstrainedTriangulation(**result)

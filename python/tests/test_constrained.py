@@ -360,6 +360,38 @@ def test_the_direction_of_segments_decides_what_winds():
         flaunay.triangulate(points, segments[:7], **options)
 
 
+def test_markers_are_carried():
+    points, segments = squares(1, 2)
+    points = np.concatenate([points, [[-2, 0.5], [2, 0.5]]])
+    across = np.concatenate([segments, [[8, 9]]])
+    options = {"crossings": "split", "segment_markers": np.arange(9) * -5}
+    mesh = flaunay.triangulate(points, across, **options, point_markers=range(100, 110))
+    assert np.array_equal(mesh.edge_markers, options["segment_markers"][mesh.edge_segments])
+    assert mesh.edge_markers.dtype == mesh.vertex_markers.dtype == np.int32
+    added = mesh.vertex_markers[10:]
+    assert mesh.vertex_markers[:10].tolist() == list(range(100, 110)) and len(added) == 2
+    # Of the square, whose segments come first.
+    assert set((-added // 5).tolist()) <= set(range(8)) and len(mesh.added_points) == 2
+    plain = flaunay.triangulate(points, across, crossings="split")
+    assert plain.edge_markers is plain.vertex_markers is plain.triangle_attributes is None
+
+
+def test_regions_have_the_attributes_of_their_seeds():
+    points, segments = squares(1, 2, 3)
+    seeds = [[1.5, 0.25, 7.5], [0, 0, 1.0], [1.75, 0, -2.5], [1, 0.5, 9], [50, 0, 9]]
+    mesh = flaunay.triangulate(points, segments, seeds=seeds)
+    rings = np.abs(middles(mesh)).max(axis=1) // 1
+    assert np.array_equal(mesh.triangle_attributes, np.array([1, -2.5, 0])[rings.astype(int)])
+    two = flaunay.triangulate(
+        np.concatenate([points, points]),
+        np.concatenate([segments, segments + 12]),
+        offsets=[0, 12, 24],
+        seeds=[[0, 0, 3]],
+        seed_offsets=[0, 0, 1],
+    )
+    assert np.bincount(np.flatnonzero(two.triangle_attributes) >= two.triangle_offsets[1]).tolist() == [0, 2]
+
+
 # ---- Beside other programs
 
 
@@ -414,6 +446,12 @@ def test_segments_that_are_none(segments, message):
         ({"hole_offsets": [0, 1]}, "hole_offsets end with 1, but there are 0 holes"),
         ({"hole_offsets": [0, 0, 0]}, "hole_offsets are of 2 sets, but there are 1"),
         ({"holes": [[0.5, 0.2]], "offsets": [0, 4, 4]}, "holes of several sets need hole_offsets"),
+        ({"seeds": [[1, 1]]}, r"seeds must have the shape \(s, 3\), not \(1, 2\)"),
+        ({"seed_offsets": [0, 1]}, "seed_offsets end with 1, but there are 0 seeds"),
+        ({"seeds": [[1, 1, 1]], "offsets": [0, 4, 4]}, "seeds of several sets need seed_offsets"),
+        ({"segment_markers": [1, 2]}, r"segment_markers must have the shape \(1,\), not \(2,\)"),
+        ({"point_markers": [1, 2, 3, 2**40]}, f"point_markers must be int32: {2**40} is too large"),
+        ({"point_markers": [1.5] * 4}, "point_markers must be integers"),
     ],
 )
 def test_options_that_are_none(options, message):
@@ -430,6 +468,8 @@ def test_options_that_are_none(options, message):
         {"crossings": "split"},
         {"fill_rule": "winding"},
         {"labels": True},
+        {"segment_markers": []},
+        {"seeds": [[0, 0, 1]]},
     ],
 )
 def test_what_is_for_segments_needs_segments(options):

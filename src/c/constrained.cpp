@@ -68,6 +68,14 @@ Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
   if (given.hole_offsets != nullptr) {
     result.hole_offsets.assign(given.hole_offsets, given.hole_offsets + sets + 1);
   }
+  result.segment_markers = given.segment_markers;
+  result.point_markers = given.point_markers;
+  result.seeds = given.seeds;
+  result.seed_attributes = given.seed_attributes;
+  result.seed_count = given.seed_count;
+  if (given.seed_offsets != nullptr) {
+    result.seed_offsets.assign(given.seed_offsets, given.seed_offsets + sets + 1);
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include "call/constrained.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -24,6 +25,9 @@ using Ids = std::vector<std::int32_t>;
 Ids checked_segments(const Constraints& constraints) {
   call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
   call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
+  call::expect(
+      (constraints.seeds != nullptr && constraints.seed_attributes != nullptr) || constraints.seed_count == 0,
+      "the seeds or their attributes are null");
   return {constraints.segments, constraints.segments + 2 * constraints.segment_count};
 }
 
@@ -133,6 +137,27 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   return result;
 }
 
+// Edges have the markers of their segments, and so have points that splitting added.
+void carry_markers(const Constraints& constraints, std::size_t n, ConstrainedTriangulation& result) {
+  const std::int32_t* const of_segments = constraints.segment_markers;
+  if (of_segments != nullptr) {
+    for (const std::int32_t segment : result.edge_segments) {
+      result.edge_markers.push_back(of_segments[segment]);
+    }
+  }
+  if (constraints.point_markers == nullptr) return;
+  result.vertex_markers.assign(constraints.point_markers, constraints.point_markers + n);
+  constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+  Ids first(result.added_points.size() / 2, kNone);
+  for (std::size_t i = 0; i < result.constraint_edges.size(); ++i) {
+    const auto v = static_cast<std::size_t>(result.constraint_edges[i]);
+    if (v >= n) first[v - n] = std::min(first[v - n], result.edge_segments[i / 2]);
+  }
+  for (const std::int32_t segment : first) {
+    result.vertex_markers.push_back(of_segments != nullptr && segment != kNone ? of_segments[segment] : 0);
+  }
+}
+
 }  // namespace
 
 void call::end_phase(const char* name, double begin, Statistics& statistics) {
@@ -182,15 +207,18 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
   const Rings& rings = constraints.rings;
   ConstrainedTriangulation result = constrain(self, coordinates, offsets, constraints, options);
   const double begin = host::now();
+  carry_markers(constraints, offsets.back(), result);
+  const std::vector<double> added = with_added(coordinates, offsets.back(), result.added_points);
+  const double* const all = added.empty() ? coordinates : added.data();
   const constrained::DomainRequest request = request_of(options, are_closed);
   if (!rings.segment_offsets.empty() && request.needs_depths()) {
     leave_polygons(coordinates, offsets, constraints, constrained::curves_of(rings), options, Overlaps::first,
                    result);
     result.polygons.clear();
   } else {
-    const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
-    apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints, request, result);
+    apply_domains(self, all, offsets, constraints, request, result);
   }
+  write_attributes(self, all, offsets, constraints, result);
   finish(coordinates, offsets.back(), options, result);
   end_phase("domains", begin, result.statistics);
   return result;

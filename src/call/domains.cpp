@@ -83,6 +83,12 @@ void write_labels(host::Runtime& runtime, const constrained::Regions& regions,
   runtime.finish();
 }
 
+// Whether the host is quicker than any device.
+bool is_small(const Implementation& self, const Triangulation& result) {
+  // About two triangles per point.
+  return !self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points;
+}
+
 }  // namespace
 
 constrained::DomainRequest request_of(const ConstrainedOptions& options, bool are_closed) {
@@ -93,8 +99,7 @@ void apply_domains(Implementation& self, const double* coordinates, const std::v
                    const Constraints& constraints, const constrained::DomainRequest& request,
                    ConstrainedTriangulation& result) {
   if (!request.needs_depths() && constraints.hole_count == 0) return;
-  // About two triangles per point.
-  if (!self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points) {
+  if (is_small(self, result)) {
     apply_domains_on_host(coordinates, offsets, constraints, request, result);
     return;
   }
@@ -116,22 +121,41 @@ void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const
   constrained::Regions regions = find_regions(runtime, mesh);
   if (request.needs_depths()) find_depths(runtime, mesh, request.rules, regions);
   if (constraints.hole_count > 0) {
-    const constrained::Seeds seeds = constrained::make_seeds(
-        constraints,
-        constrained::magnitudes_at_holes(coordinates, offsets, result.added_offsets, constraints));
+    const constrained::Places holes = constrained::holes_of(constraints, offsets.size() - 1);
+    const constrained::Seeds seeds =
+        make_seeds(holes, magnitudes_at(holes, coordinates, offsets, result.added_offsets));
     const host::Runtime::Settled other_settled(with_doubles);
-    drop_holes(
-        runtime,
-        find_holes(
-            with_doubles,
-            &with_doubles == &runtime ? mesh : view_triangles(with_doubles, coordinates, offsets, result),
-            seeds, constraints),
-        regions);
+    const std::vector<std::int32_t> found = find_seeds(
+        with_doubles,
+        &with_doubles == &runtime ? mesh : view_triangles(with_doubles, coordinates, offsets, result), seeds);
+    check_found(holes, found);
+    drop_holes(runtime, found, regions);
   }
   if (request.rules.outside != Outside::keep || constraints.hole_count > 0) {
     leave(runtime, mesh, regions, result);
   }
   if (request.labels) write_labels(runtime, regions, result);
+}
+
+void write_attributes(Implementation& self, const double* coordinates,
+                      const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                      ConstrainedTriangulation& result) {
+  if (constraints.seed_count == 0) return;
+  const constrained::Places places = constrained::seeds_of(constraints, offsets.size() - 1);
+  const constrained::Seeds seeds =
+      make_seeds(places, magnitudes_at(places, coordinates, offsets, result.added_offsets));
+  const Frame call(is_small(self, result) ? self.native() : self.with_doubles(self.for_host_memory()));
+  constrained::DomainMesh mesh = view_triangles(call.runtime, coordinates, offsets, result);
+  mesh.neighbors = view_of(call.runtime, result.neighbors);
+  const constrained::Regions regions = find_regions(call.runtime, mesh);
+  std::vector<std::int32_t> of(mesh.triangle_count());
+  call.runtime.read_later(regions.of_triangles, 0, of.size(), of.data());
+  const std::vector<std::int32_t> found = find_seeds(call.runtime, mesh, seeds);
+  std::vector<double> attributes(regions.count, 0);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k] >= 0) attributes[of[found[k]]] = constraints.seed_attributes[k];
+  }
+  for (const std::int32_t region : of) result.triangle_attributes.push_back(attributes[region]);
 }
 
 }  // namespace flaunay::call

@@ -23,5 +23,10 @@ void apply_domains(Implementation& self, const double* coordinates, const std::v
 void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
                       const constrained::DomainRequest& request, ConstrainedTriangulation& result);
+/// Writes the attributes of triangles if there are seeds, to a result that has neighbours. coordinates and
+/// offsets: as of apply_domains.
+void write_attributes(Implementation& self, const double* coordinates,
+                      const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                      ConstrainedTriangulation& result);
 
 }  // namespace flaunay::call

@@ -330,10 +330,9 @@ class ConstrainedMeshTest : public FolderTest {
     map.holes = {0.5, 0.25};
     return write_map(name, map, mesh);
   }
-  std::string write_map(const std::string& name, const Map& map, const ConstrainedTriangulation& mesh,
-                        const Values& attributes = {}) {
+  std::string write_map(const std::string& name, const Map& map, const ConstrainedTriangulation& mesh) {
     Outputs outputs;
-    write_mesh(outputs, path(name), {map.points, mesh, &mesh, &map, FillRule::nesting, attributes});
+    write_mesh(outputs, path(name), {map.points, mesh, &mesh, &map, FillRule::nesting});
     outputs.commit();
     return read(path(name));
   }
@@ -355,10 +354,11 @@ TEST_F(ConstrainedMeshTest, TrianglesFormatHasLabelsAndEdges) {
 TEST_F(ConstrainedMeshTest, MarkersAndAttributesAreWrittenThrough) {
   Map map;
   map.points = {{0, 0, 2, 0, 2, 2, 0, 2}, {3, -4, 0, 5}};
-  map.segment_markers = {1, 2, 3, 4, 5, 6, -7};
   map.regions = {{{1.5, 0.5}, 0.25, 0.125}, {{0.5, 1.5}, 1e300, {}}};
-  EXPECT_EQ(write_map("a.ele", map, square(), {0.25, 1e300}),
-            "2 3 3\n0 0 1 2 0.25 0 0\n1 0 2 3 1e+300 1 1\n");
+  ConstrainedTriangulation mesh = square();
+  mesh.edge_markers = {-7};
+  mesh.triangle_attributes = {0.25, 1e300};
+  EXPECT_EQ(write_map("a.ele", map, mesh), "2 3 3\n0 0 1 2 0.25 0 0\n1 0 2 3 1e+300 1 1\n");
   EXPECT_EQ(read(path("a.node")), "4 2 0 1\n0 0 0 3\n1 2 0 -4\n2 2 2 0\n3 0 2 5\n");
   EXPECT_EQ(read(path("a.poly")), "0 2 0 0\n1 1\n0 0 2 -7\n0\n2\n0 1.5 0.5 0.25 0.125\n1 0.5 1.5 1e+300\n");
   const Map again = read_map(path("a.poly"));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "app/command/chunks.hpp"
@@ -18,7 +17,6 @@
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/text.hpp"
-#include "app/verify/exact.hpp"
 
 namespace flaunay::cli {
 namespace {
@@ -31,12 +29,20 @@ const NamedChoices<FillRule> kFillRules = {
 
 const NamedChoices<Overlaps> kOverlaps = {{"first", Overlaps::first}, {"error", Overlaps::error}};
 
-const std::vector<const char*> kChoices = {"--crossings", "--outside",  "--fill",
+const std::vector<std::string> kChoices = {"--crossings", "--outside",  "--fill",
                                            "--hole",      "--separate", "--overlaps"};
 
-std::vector<const char*> file_options() {
-  std::vector<const char*> options = {"--points", "--polygons"};
-  for (const ConstraintArrayFile& file : kConstraintArrayFiles) options.push_back(file.option);
+// Calls visit(array, k) for each array that has a file.
+template <typename Visit>
+void for_each_file(const Visit& visit) {
+  for_each_array(kConstrainedArrays, [&](const auto& array, std::size_t k) {
+    if (*array.text != '\0') visit(array, k);
+  });
+}
+
+std::vector<std::string> file_options() {
+  std::vector<std::string> options = {"--points"};
+  for_each_file([&](const auto& array, std::size_t) { options.push_back(option_of(array.name)); });
   return options;
 }
 
@@ -81,12 +87,35 @@ void choose_for(const io::Map& map, const std::string& input, ConstraintRequest&
   if (!request.chose_fill) request.fill = has_polygons ? FillRule::winding : FillRule::nesting;
 }
 
+/// Whether there is a file for an array that is asked for in this way.
+bool wants(const ConstraintRequest& request, AskedBy asked) {
+  bool wanted = false;
+  for_each_file([&](const auto& array, std::size_t k) {
+    wanted = wanted || (array.asked == asked && !request.arrays[k].empty());
+  });
+  return wanted;
+}
+
+/// Throws Error(usage) for files of what the map does not have.
+void check_carried(const io::Map& map, const std::string& input, const ConstraintRequest& request) {
+  for_each_file([&](const auto& array, std::size_t k) {
+    const auto check = [&](AskedBy asked, bool is_there, const char* what) {
+      if (array.asked != asked || is_there || request.arrays[k].empty()) return;
+      throw Error(ErrorKind::usage, fmt::format("{} has no {}, which {} needs", io::printable(input), what,
+                                                option_of(array.name)));
+    };
+    check(AskedBy::segment_markers, !map.segment_markers.empty(), "markers of segments");
+    check(AskedBy::point_markers, !map.points.markers.empty(), "markers of points");
+    check(AskedBy::seeds, !map.regions.empty(), "regions with attributes");
+  });
+}
+
 /// Whether the map is given to the library as polygons, which knows then which triangle is in which of them.
 /// Throws if the request needs that and it is not possible.
 bool are_polygons(const io::Map& map, const ConstrainedWork& work, const ConstraintRequest& request) {
   const bool possible =
       map.polygon_count() > 0 && !map.has_others && map.holes.empty() && request.fill != FillRule::nesting;
-  if (!possible && (request.separate || request.chose_overlaps || !request.polygons.empty())) {
+  if (!possible && (request.separate || request.chose_overlaps || wants(request, AskedBy::map))) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: --separate, --overlaps and --polygons need a file of polygons alone, without "
@@ -94,14 +123,6 @@ bool are_polygons(const io::Map& map, const ConstrainedWork& work, const Constra
                     io::printable(work.input)));
   }
   return possible;
-}
-
-bool wants_labels(const ConstrainedWork& work, const ConstraintRequest& request) {
-  bool wanted = io::shows_labels(work.results.mesh);
-  for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
-    wanted = wanted || (kConstraintArrayFiles[k].needs_labels && !request.arrays[k].empty());
-  }
-  return wanted;
 }
 
 ConstrainedOptions options_of(const ConstrainedWork& work, const ConstraintRequest& request,
@@ -114,9 +135,20 @@ ConstrainedOptions options_of(const ConstrainedWork& work, const ConstraintReque
   options.crossings = request.crossings;
   options.outside = request.outside;
   options.fill_rule = request.fill;
-  options.labels = wants_labels(work, request);
+  options.labels = io::shows_labels(work.results.mesh) || wants(request, AskedBy::labels);
   options.progress = progress.callback();
   return options;
+}
+
+/// For each triangle the number of its set.
+std::vector<std::int32_t> sets_of(const Triangulation& mesh) {
+  std::vector<std::int32_t> sets(mesh.triangles.size() / 3);
+  for (std::size_t s = 0; s + 1 < mesh.triangle_offsets.size(); ++s) {
+    std::fill(sets.begin() + static_cast<std::ptrdiff_t>(mesh.triangle_offsets[s]),
+              sets.begin() + static_cast<std::ptrdiff_t>(mesh.triangle_offsets[s + 1]),
+              static_cast<std::int32_t>(s));
+  }
+  return sets;
 }
 
 ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const io::Map& map,
@@ -131,7 +163,9 @@ ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const 
   static_cast<ConstrainedOptions&>(polygon_options) = options;
   polygon_options.map = !request.separate;
   polygon_options.overlaps = request.overlaps;
-  return triangulator.polygons(polygons, polygon_options);
+  ConstrainedTriangulation mesh = triangulator.polygons(polygons, polygon_options);
+  if (request.separate) mesh.polygons = sets_of(mesh);
+  return mesh;
 }
 
 ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const io::Map& map,
@@ -144,81 +178,21 @@ ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const 
   constraints.segment_count = segments.size() / 2;
   constraints.holes = map.holes.data();
   constraints.hole_count = map.holes.size() / 2;
+  if (!map.segment_markers.empty()) constraints.segment_markers = map.segment_markers.data();
+  if (!map.points.markers.empty()) constraints.point_markers = map.points.markers.data();
+  std::vector<double> seeds, attributes;
+  for (const io::PolyRegion& region : map.regions) {
+    seeds.insert(seeds.end(), {region.place[0], region.place[1]});
+    attributes.push_back(region.attribute);
+  }
+  constraints.seeds = seeds.data();
+  constraints.seed_attributes = attributes.data();
+  constraints.seed_count = attributes.size();
   return triangulator.constrained(map.points.coordinates.data(), map.points.size(), constraints, options);
-}
-
-/// For each triangle the number of its set.
-std::vector<std::int32_t> sets_of(const Triangulation& mesh) {
-  std::vector<std::int32_t> sets(mesh.triangles.size() / 3);
-  for (std::size_t s = 0; s + 1 < mesh.triangle_offsets.size(); ++s) {
-    std::fill(sets.begin() + static_cast<std::ptrdiff_t>(mesh.triangle_offsets[s]),
-              sets.begin() + static_cast<std::ptrdiff_t>(mesh.triangle_offsets[s + 1]),
-              static_cast<std::int32_t>(s));
-  }
-  return sets;
-}
-
-/// The markers of points that splitting added are those of the first segments that have them.
-void add_markers(const ConstrainedTriangulation& mesh, io::Map& map) {
-  const auto given = static_cast<std::int32_t>(map.points.markers.size());
-  if (given == 0) return;
-  std::vector<std::int32_t> segments(mesh.added_points.size() / 2, -1);
-  for (std::size_t i = 0; i < mesh.constraint_edges.size(); ++i) {
-    const std::int32_t point = mesh.constraint_edges[i] - given, segment = mesh.edge_segments[i / 2];
-    if (point < 0) continue;
-    if (segments[point] < 0 || segment < segments[point]) segments[point] = segment;
-  }
-  for (const std::int32_t segment : segments) {
-    const bool has_marker = segment >= 0 && !map.segment_markers.empty();
-    map.points.markers.push_back(has_marker ? map.segment_markers[segment] : 0);
-  }
-}
-
-/// By triangle the attribute of its region in a .poly file, as Triangle gives it: 0 where there is none, and
-/// of several the last one. A place on a constraint is in no region.
-std::vector<double> attributes_of(const io::Map& map, const ConstrainedTriangulation& mesh) {
-  std::vector<double> attributes;
-  if (map.regions.empty() || mesh.regions.empty()) return attributes;
-  // By x.
-  std::vector<std::size_t> order(map.regions.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto x_of = [&map](std::size_t k) { return map.regions[k].place[0]; };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x_of(a) < x_of(b); });
-  std::vector<std::int32_t> found(order.size(), -1);
-  std::vector<char> barred(order.size(), 0);
-  ExactPredicates predicates;
-  for (std::size_t t = 0; t < mesh.regions.size(); ++t) {
-    const double* p[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = &map.points.coordinates[2 * static_cast<std::size_t>(mesh.triangles[3 * t + k])];
-    }
-    const auto [least, most] = std::minmax({p[0][0], p[1][0], p[2][0]});
-    auto next = std::lower_bound(order.begin(), order.end(), least,
-                                 [&](std::size_t k, double x) { return x_of(k) < x; });
-    for (; next != order.end() && x_of(*next) <= most; ++next) {
-      const double* const place = map.regions[*next].place;
-      int sides[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        sides[k] = predicates.orient2d(p[(k + 1) % 3], p[(k + 2) % 3], place);
-      }
-      if (std::min({sides[0], sides[1], sides[2]}) < 0) continue;
-      found[*next] = mesh.regions[t];
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (sides[k] == 0 && mesh.constrained[3 * t + k] != 0) barred[*next] = 1;
-      }
-    }
-  }
-  std::vector<double> by_region(1 + static_cast<std::size_t>(std::ranges::max(mesh.regions)), 0);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    if (found[k] >= 0 && barred[k] == 0) by_region[found[k]] = map.regions[k].attribute;
-  }
-  for (const std::int32_t region : mesh.regions) attributes.push_back(by_region[region]);
-  return attributes;
 }
 
 void announce_constraints(OutputFiles& outputs, const ConstraintRequest& request) {
   for (const std::string& path : request.arrays) outputs.add(path, ".npy");
-  outputs.add(request.polygons, ".npy");
   if (!request.points.empty()) outputs.add_points(request.points);
 }
 
@@ -252,22 +226,13 @@ void write_results(const ConstrainedWork& work, const ConstraintRequest& request
   Stopwatch stopwatch;
   progress.update("writing");
   const io::IndexType index = index_type(work.index, map.points.size(), work.results);
-  io::Outputs& files = outputs;
   if (!work.results.mesh.empty()) {
-    const std::vector<double> attributes = attributes_of(map, mesh);
-    io::write_mesh(files, work.results.mesh, {map.points, mesh, &mesh, &map, request.fill, attributes});
+    io::write_mesh(outputs, work.results.mesh, {map.points, mesh, &mesh, &map, request.fill});
   }
-  write_arrays(work.results, mesh, outputs, index);
-  for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
-    const ConstraintArrayFile& file = kConstraintArrayFiles[k];
-    if (request.arrays[k].empty()) continue;
-    io::write_npy(files, request.arrays[k], mesh.*file.values, file.columns, index);
-  }
-  if (!request.points.empty()) io::write_points(files, request.points, map.points);
-  if (!request.polygons.empty()) {
-    io::write_npy(files, request.polygons, request.separate ? sets_of(mesh) : mesh.polygons, 0, index);
-  }
-  files.write_out();
+  write_arrays(kTriangulationArrays, work.results.arrays, mesh, outputs, index);
+  write_arrays(kConstrainedArrays, request.arrays, mesh, outputs, index);
+  if (!request.points.empty()) io::write_points(outputs, request.points, map.points);
+  outputs.write_out();
   facts.writing_seconds = stopwatch.seconds();
   research::Triangulation statistics;
   statistics.statistics = mesh.statistics;
@@ -305,15 +270,10 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
   add_named_choice(command, "--overlaps", request.overlaps,
                    "GeoJSON: what is in several polygons belongs to the first one, or is an error", kOverlaps)
       ->default_str("first");
-  for (std::size_t k = 0; k < kConstraintArrayFiles.size(); ++k) {
-    add_path(command, kConstraintArrayFiles[k].option, request.arrays[k],
-             kConstraintArrayFiles[k].description);
-  }
+  for_each_file([&](const auto& array, std::size_t k) { add_array(command, array, request.arrays[k]); });
   add_path(command, "--points", request.points,
            fmt::format("The points of the map and those that were added, to which indices refer: {}",
                        io::endings_for(io::Use::write_points)));
-  add_path(command, "--polygons", request.polygons,
-           "GeoJSON: for each triangle the number of its polygon, -1 for none: .npy");
 }
 
 void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
@@ -351,7 +311,7 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   const bool has_any = is_map || !request.segments.empty();
   if (!has_any) {
     for (const auto& options : {kChoices, file_options()}) {
-      for (const char* option : options) {
+      for (const std::string& option : options) {
         refuse(command, option, "needs segments: --constraints, or a .poly or .geojson file as input");
       }
     }
@@ -391,6 +351,7 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   Stopwatch stopwatch;
   progress.update("reading");
   io::Map map = read_domain(work.input, request);
+  check_carried(map, work.input, request);
   const auto triangulate = are_polygons(map, work, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
 
@@ -411,7 +372,7 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   facts.constraints = facts_of(map, request, mesh);
   map.points.coordinates.insert(map.points.coordinates.end(), mesh.added_points.begin(),
                                 mesh.added_points.end());
-  add_markers(mesh, map);
+  map.points.markers = mesh.vertex_markers;
   write_results(work, request, map, mesh, facts, progress, outputs);
 
   if (!work.quiet) {

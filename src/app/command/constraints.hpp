@@ -11,24 +11,6 @@
 
 namespace flaunay::cli {
 
-/// An array that only triangulations with constraints have, written to a .npy file of indices.
-struct ConstraintArrayFile {
-  const char* option;
-  const char* description;
-  std::vector<std::int32_t> ConstrainedTriangulation::*values;
-  std::size_t columns;  ///< 0: an array of one dimension
-  bool needs_labels;
-};
-constexpr std::array<ConstraintArrayFile, 4> kConstraintArrayFiles = {{
-    {"--constraint-edges", "Constraint edges: .npy, 2 point indices per row",
-     &ConstrainedTriangulation::constraint_edges, 2, false},
-    {"--edge-segments", "For each constraint edge the smallest number of a segment that has it: .npy",
-     &ConstrainedTriangulation::edge_segments, 0, false},
-    {"--depths", "For each triangle its depth by --fill: .npy", &ConstrainedTriangulation::depths, 0, true},
-    {"--regions", "For each triangle the number of its region: .npy", &ConstrainedTriangulation::regions, 0,
-     true},
-}};
-
 struct ConstraintRequest {
   std::string segments;  ///< a file; empty if the input has the segments
   Crossings crossings = Crossings::error;
@@ -37,9 +19,8 @@ struct ConstraintRequest {
   std::vector<std::string> holes;  ///< "X,Y" each
   bool separate = false;
   Overlaps overlaps = Overlaps::first;
-  std::array<std::string, kConstraintArrayFiles.size()> arrays;  ///< paths, one per row of the table
-  std::string points;                                            ///< the file for input and added points
-  std::string polygons;  ///< the file with the polygon of each triangle
+  ArrayPaths<decltype(kConstrainedArrays)> arrays;
+  std::string points;  ///< the file for input and added points
   // Whether the user chose these; otherwise the input decides.
   bool chose_outside = false, chose_fill = false, chose_overlaps = false;
 };

@@ -3,25 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
-#include "app/command/options.hpp"
 #include "app/files/formats.hpp"
-#include "app/files/mesh.hpp"
 
 namespace flaunay::cli {
 namespace {
-
-// Of representatives, users know what they tell.
-std::string option_of(std::string_view name) {
-  return fmt::format("--{}", name == "representatives" ? "duplicates" : name);
-}
 
 bool is_in_chunks(std::size_t k) {
   return std::find(kMeshArrayIndices.begin(), kMeshArrayIndices.end(), k) != kMeshArrayIndices.end();
 }
 
 }  // namespace
+
+std::string option_of(std::string_view name) {
+  // Of representatives, users know what they tell.
+  std::string option = fmt::format("--{}", name == "representatives" ? "duplicates" : name);
+  std::replace(option.begin(), option.end(), '_', '-');
+  return option;
+}
 
 std::vector<std::string> ResultPaths::all() const {
   std::vector<std::string> paths = {mesh};
@@ -38,7 +37,7 @@ void add_results(CLI::App* command, ResultPaths& paths) {
 void add_result_arrays(CLI::App* command, ResultPaths& paths, bool in_chunks) {
   for_each_array([&](const auto& array, std::size_t k) {
     if (in_chunks && !is_in_chunks(k)) return;
-    add_path(command, option_of(array.name), paths.arrays[k], fmt::format("{}: .npy", array.text));
+    add_array(command, array, paths.arrays[k]);
   });
   add_path(command, "--stats", paths.stats, "Statistics: .json");
 }
@@ -67,14 +66,6 @@ void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constrai
   outputs.add(paths.stats, ".json");
 }
 
-void write_arrays(const ResultPaths& paths, const Triangulation& mesh, OutputFiles& outputs,
-                  io::IndexType index) {
-  for_each_array([&](const auto& array, std::size_t k) {
-    if (paths.arrays[k].empty()) return;
-    io::write_npy(outputs, paths.arrays[k], mesh.*array.values, array.columns, index);
-  });
-}
-
 void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
                             const RunFacts& facts, OutputFiles& outputs) {
   if (!paths.stats.empty()) outputs.open(paths.stats).print("{}", statistics_json(mesh, facts));
@@ -86,7 +77,7 @@ void write_results(const ResultPaths& paths, const io::Points& points, const res
   Stopwatch stopwatch;
   progress.update("writing");
   if (!paths.mesh.empty()) io::write_mesh(outputs, paths.mesh, {points, mesh});
-  write_arrays(paths, mesh, outputs, index);
+  write_arrays(kTriangulationArrays, paths.arrays, mesh, outputs, index);
   outputs.write_out();
   facts.writing_seconds = stopwatch.seconds();
   commit_with_statistics(paths, mesh, facts, outputs);

@@ -1,16 +1,23 @@
 // The files of a triangulation, for all subcommands that make one.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
+#include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
+#include "app/files/mesh.hpp"
 #include "app/files/points.hpp"
 #include "files/mesh_stream.hpp"
 #include "flaunay/research.hpp"
@@ -18,15 +25,27 @@
 
 namespace flaunay::cli {
 
+/// For each array of a table the path of its .npy file; an empty one means that the array is not written.
+template <typename Table>
+using ArrayPaths = std::array<std::string, std::tuple_size_v<Table>>;
+
 /// Where each result goes. An empty path means that the result is not written.
 struct ResultPaths {
   std::string mesh;
-  std::array<std::string, kTriangulationArrayCount> arrays;  ///< .npy files, in the order of the table
+  ArrayPaths<decltype(kTriangulationArrays)> arrays;
   std::string stats;
 
   /// In the order of the options.
   std::vector<std::string> all() const;
 };
+
+/// The option for the file of an array: --constraint-edges for constraint_edges.
+std::string option_of(std::string_view name);
+/// An option for the array's file.
+template <typename Array>
+void add_array(CLI::App* command, const Array& array, std::string& path) {
+  add_path(command, option_of(array.name), path, fmt::format("{}: .npy", array.text));
+}
 
 void add_results(CLI::App* command, ResultPaths& paths);
 /// Without --output; in_chunks: only the arrays that triangulations in chunks have.
@@ -42,9 +61,18 @@ void ask_for(const ResultPaths& paths, Options& options);
 /// Announces the files to `outputs`, which checks their paths.
 void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constraints = false);
 
-/// Writes the arrays that have a path.
-void write_arrays(const ResultPaths& paths, const Triangulation& mesh, OutputFiles& outputs,
-                  io::IndexType index);
+/// Writes the arrays of a table that have a path.
+template <typename Table, typename Mesh>
+void write_arrays(const Table& table, const ArrayPaths<Table>& paths, const Mesh& mesh, OutputFiles& outputs,
+                  io::IndexType index) {
+  for_each_array(table, [&]<typename Array>(const Array& array, std::size_t k) {
+    using Element = typename Array::Element;
+    // Those of other elements have no file.
+    if constexpr (std::is_same_v<Element, std::int32_t> || std::is_same_v<Element, double>) {
+      if (!paths[k].empty()) io::write_npy(outputs, paths[k], mesh.*array.values, array.columns, index);
+    }
+  });
+}
 /// Writes the statistics of `mesh`, if they have a path, and commits all files.
 void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
                             const RunFacts& facts, OutputFiles& outputs);

@@ -16,12 +16,13 @@ constexpr long long kIndexLimit = std::numeric_limits<std::int32_t>::max();
 
 void write_ele(OutputFile& file, const MeshContents& contents) {
   const ConstrainedTriangulation& constraints = contents.constraints();
-  const bool has_attributes = !contents.attributes.empty(), has_labels = contents.has_labels();
+  const std::vector<double>& attributes = constraints.triangle_attributes;
+  const bool has_attributes = !attributes.empty(), has_labels = contents.has_labels();
   file.print("{} 3 {}\n", contents.triangle_count(), (has_attributes ? 1 : 0) + (has_labels ? 2 : 0));
   for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
     const std::int32_t* corner = contents.corners(t);
     file.print("{} {} {} {}", t, corner[0], corner[1], corner[2]);
-    if (has_attributes) file.print(" {}", contents.attributes[t]);
+    if (has_attributes) file.print(" {}", attributes[t]);
     if (has_labels) file.print(" {} {}", constraints.regions[t], constraints.depths[t]);
     file.print("\n");
   }
@@ -33,13 +34,13 @@ void write_vertices_beside(OutputFile& file, const MeshContents& contents) {
 
 /// The constraint edges, whose vertices are in the .node file.
 void write_poly_beside(OutputFile& file, const MeshContents& contents) {
-  const std::vector<std::int32_t>& edges = contents.constraints().constraint_edges;
+  const ConstrainedTriangulation& mesh = contents.constraints();
+  const std::vector<std::int32_t>& edges = mesh.constraint_edges;
   const Map& map = *contents.map;
   file.print("0 2 0 0\n{} 1\n", edges.size() / 2);
   for (std::size_t e = 0; e < edges.size() / 2; ++e) {
-    const std::int32_t segment = contents.constraints().edge_segments[e];
     file.print("{} {} {} {}\n", e, edges[2 * e], edges[2 * e + 1],
-               map.segment_markers.empty() ? segment + 1LL : map.segment_markers[segment]);
+               mesh.edge_markers.empty() ? mesh.edge_segments[e] + 1LL : mesh.edge_markers[e]);
   }
   file.print("{}\n", map.holes.size() / 2);
   for (std::size_t k = 0; 2 * k < map.holes.size(); ++k) {

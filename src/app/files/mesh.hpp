@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,6 @@ struct MeshContents {
   const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
   const Map* map = nullptr;                               ///< then the map of the constraints
   FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
-  std::span<const double> attributes = {};                ///< one per triangle, or none
 
   std::size_t triangle_count() const { return mesh.triangles.size() / 3; }
   const std::int32_t* corners(std::size_t triangle) const { return &mesh.triangles[3 * triangle]; }

@@ -11,7 +11,7 @@
 #include "constrained/fill_rules.h"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
-#include "launchers/constrained/holes.cl.hpp"
+#include "launchers/constrained/seeds.cl.hpp"
 #include "points/device_mesh.hpp"
 #include "points/query_range.hpp"
 #include "tuning/tuning.hpp"
@@ -165,21 +165,31 @@ void reach_all(host::Runtime& runtime, FillRule rule, const Borders& borders, st
   reach_on_host(runtime, rule, borders, regions);
 }
 
-std::string place_of(const Constraints& constraints, std::size_t hole) {
-  return fmt::format("({:.17g}, {:.17g})", constraints.holes[2 * hole], constraints.holes[2 * hole + 1]);
+std::string place_of(const Places& places, std::size_t k) {
+  return fmt::format("({:.17g}, {:.17g})", places.coordinates[2 * k], places.coordinates[2 * k + 1]);
 }
 
-// The first hole of a set that is too far from its points, or too fine.
-[[noreturn]] void throw_range(const Constraints& constraints, std::size_t first, std::size_t last,
+// The first place of a set that is too far from its points, or too fine.
+[[noreturn]] void throw_range(const Places& places, std::size_t first, std::size_t last,
                               const geometry::Magnitudes& points) {
-  std::size_t hole = first;
-  const auto fits = [&](std::size_t h) {
-    const auto both = geometry::joined(points, geometry::inspect(constraints.holes, h, h + 1));
+  std::size_t place = first;
+  const auto fits = [&](std::size_t k) {
+    const auto both = geometry::joined(points, geometry::inspect(places.coordinates, k, k + 1));
     return geometry::bits_of(both) <= points::kOrientLimits.most_bits();
   };
-  while (hole + 1 < last && fits(hole)) ++hole;
-  throw Error(ErrorKind::input, fmt::format("hole {} at {} is too fine or too far away to be exact", hole,
-                                            place_of(constraints, hole)));
+  while (place + 1 < last && fits(place)) ++place;
+  throw Error(ErrorKind::input, fmt::format("{} {} at {} is too fine or too far away to be exact",
+                                            places.name, place, place_of(places, place)));
+}
+
+Places checked_places(const char* name, const double* coordinates, std::size_t count,
+                      std::vector<std::size_t> offsets, std::size_t sets) {
+  if (offsets.empty() && sets == 1) offsets = {0, count};
+  if (offsets.size() != sets + 1 || offsets.back() != count) {
+    throw Error(ErrorKind::usage, fmt::format("the offsets of {} {}s do not fit {} sets", count, name, sets));
+  }
+  geometry::check_offsets(offsets);
+  return {name, coordinates, count, std::move(offsets)};
 }
 
 }  // namespace
@@ -230,37 +240,34 @@ void find_depths(host::Runtime& runtime, const DomainMesh& mesh, const DepthRule
                                                      .left = regions.left});
 }
 
-std::vector<std::size_t> hole_offsets(const Constraints& constraints, std::size_t sets) {
-  std::vector<std::size_t> offsets = constraints.hole_offsets;
-  if (offsets.empty() && sets == 1) offsets = {0, constraints.hole_count};
-  if (offsets.size() != sets + 1 || offsets.back() != constraints.hole_count) {
-    throw Error(ErrorKind::usage,
-                fmt::format("the offsets of {} holes do not fit {} sets", constraints.hole_count, sets));
-  }
-  geometry::check_offsets(offsets);
-  return offsets;
+Places holes_of(const Constraints& constraints, std::size_t sets) {
+  return checked_places("hole", constraints.holes, constraints.hole_count, constraints.hole_offsets, sets);
 }
 
-Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Magnitudes>& points) {
+Places seeds_of(const Constraints& constraints, std::size_t sets) {
+  return checked_places("seed", constraints.seeds, constraints.seed_count, constraints.seed_offsets, sets);
+}
+
+Seeds make_seeds(const Places& places, const std::vector<geometry::Magnitudes>& points) {
   Seeds seeds;
-  const std::size_t sets = points.size(), count = constraints.hole_count;
-  seeds.offsets = hole_offsets(constraints, sets);
+  const std::size_t sets = points.size();
+  seeds.offsets = places.offsets;
   seeds.frames.resize(sets);
-  seeds.places.reserve(count);
-  seeds.numbers.resize(count);
+  seeds.places.reserve(places.count);
+  seeds.numbers.resize(places.count);
   std::iota(seeds.numbers.begin(), seeds.numbers.end(), 0);
   for (std::size_t s = 0; s < sets; ++s) {
     const std::size_t first = seeds.offsets[s], last = seeds.offsets[s + 1];
     if (first == last) continue;
-    const geometry::Magnitudes own = geometry::inspect(constraints.holes, first, last);
+    const geometry::Magnitudes own = geometry::inspect(places.coordinates, first, last);
     if (own.bad != kernel::NO_BAD) {
       const auto bad = static_cast<std::size_t>(own.bad);
       throw Error(ErrorKind::input,
-                  fmt::format("hole {} is not finite: {}", bad, place_of(constraints, bad)));
+                  fmt::format("{} {} is not finite: {}", places.name, bad, place_of(places, bad)));
     }
     const geometry::Magnitudes both = geometry::joined(points[s], own);
     if (geometry::bits_of(both) > points::kOrientLimits.most_bits()) {
-      throw_range(constraints, first, last, points[s]);
+      throw_range(places, first, last, points[s]);
     }
     const points::QueryScaling scaling = points::query_scaling(both, 0);
     seeds.frames[s] = scaling.frames[0];
@@ -268,36 +275,29 @@ Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Mag
     const auto numbers = seeds.numbers.begin();
     std::sort(numbers + static_cast<std::ptrdiff_t>(first), numbers + static_cast<std::ptrdiff_t>(last),
               [&](std::int32_t a, std::int32_t b) {
-                const double x = constraints.holes[2 * static_cast<std::size_t>(a)],
-                             other = constraints.holes[2 * static_cast<std::size_t>(b)];
+                const double x = places.coordinates[2 * static_cast<std::size_t>(a)],
+                             other = places.coordinates[2 * static_cast<std::size_t>(b)];
                 return x != other ? x < other : a < b;
               });
     for (std::size_t h = first; h < last; ++h) {
       seeds.places.push_back(
-          kernel::scaled_point(seeds.numbers[h], constraints.holes, seeds.frames[s].scale));
+          kernel::scaled_point(seeds.numbers[h], places.coordinates, seeds.frames[s].scale));
     }
   }
   return seeds;
 }
 
-void check_seeds(const Seeds& seeds, const Constraints& constraints, const std::vector<std::int32_t>& found,
-                 const std::vector<std::uint8_t>& barred) {
-  std::int32_t first = kNone;
-  bool is_on_constraint = false;
+std::vector<std::int32_t> in_order(const Seeds& seeds, const std::vector<std::int32_t>& found,
+                                   const std::vector<std::uint8_t>& barred) {
+  std::vector<std::int32_t> triangles(found.size());
   for (std::size_t h = 0; h < found.size(); ++h) {
     const bool is_nowhere = found[h] < 0 || found[h] == kNone;
-    if ((!is_nowhere && barred[h] == 0) || seeds.numbers[h] > first) continue;
-    first = seeds.numbers[h];
-    is_on_constraint = !is_nowhere;
+    triangles[seeds.numbers[h]] = is_nowhere ? kNowhere : barred[h] != 0 ? kOnConstraint : found[h];
   }
-  if (first == kNone) return;
-  const auto hole = static_cast<std::size_t>(first);
-  throw Error(ErrorKind::input, fmt::format("hole {} at {} is {}", hole, place_of(constraints, hole),
-                                            is_on_constraint ? "on a constraint" : "in no triangle"));
+  return triangles;
 }
 
-std::vector<std::int32_t> find_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
-                                     const Constraints& constraints) {
+std::vector<std::int32_t> find_seeds(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds) {
   const std::size_t count = seeds.places.size();
   std::vector<std::int32_t> triangles(count);
   if (count == 0) return triangles;
@@ -310,9 +310,9 @@ std::vector<std::int32_t> find_holes(host::Runtime& runtime, const DomainMesh& m
     return runtime.upload(runtime.arena(), points::integers(offsets));
   };
   runtime.map(mesh.triangle_count(),
-              kernels::find_holes{.sets = mesh.triangle_offsets.size() - 1,
+              kernels::find_seeds{.sets = mesh.triangle_offsets.size() - 1,
                                   .triangle_offsets = offsets_of(mesh.triangle_offsets),
-                                  .hole_offsets = offsets_of(seeds.offsets),
+                                  .seed_offsets = offsets_of(seeds.offsets),
                                   .frames = runtime.upload(runtime.arena(), seeds.frames),
                                   .bound = seeds.bound,
                                   .input = mesh.coordinates,
@@ -325,8 +325,15 @@ std::vector<std::int32_t> find_holes(host::Runtime& runtime, const DomainMesh& m
   runtime.read_later(found, 0, count, triangles.data());
   runtime.read_later(barred, 0, count, on_constraint.data());
   runtime.finish();
-  check_seeds(seeds, constraints, triangles, on_constraint);
-  return triangles;
+  return in_order(seeds, triangles, on_constraint);
+}
+
+void check_found(const Places& places, const std::vector<std::int32_t>& found) {
+  const auto bad = std::find_if(found.begin(), found.end(), [](std::int32_t t) { return t < 0; });
+  if (bad == found.end()) return;
+  const auto place = static_cast<std::size_t>(bad - found.begin());
+  throw Error(ErrorKind::input, fmt::format("{} {} at {} is {}", places.name, place, place_of(places, place),
+                                            *bad == kOnConstraint ? "on a constraint" : "in no triangle"));
 }
 
 void drop_holes(host::Runtime& runtime, const std::vector<std::int32_t>& triangles, Regions& regions) {

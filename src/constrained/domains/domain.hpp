@@ -53,7 +53,18 @@ struct DepthRules {
 /// Tuning::depth_rounds levels; what is deeper than a few times as many is done on the host.
 void find_depths(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules, Regions& regions);
 
-/// Places in regions that are holes.
+/// Places in regions, as the caller has them: holes or seeds of attributes.
+struct Places {
+  const char* name;  ///< in messages
+  const double* coordinates;
+  std::size_t count;
+  std::vector<std::size_t> offsets;  ///< of sets
+};
+/// Throws Error(usage) if their offsets do not fit so many sets.
+Places holes_of(const Constraints& constraints, std::size_t sets);
+Places seeds_of(const Constraints& constraints, std::size_t sets);
+
+/// Places, sorted and scaled.
 struct Seeds {
   std::vector<std::size_t> offsets;         ///< of sets
   std::vector<kernel::query_frame> frames;  ///< how sets are scaled
@@ -62,21 +73,22 @@ struct Seeds {
   std::vector<std::int32_t> numbers;        ///< those of the caller
 };
 
-/// The offsets of the holes of sets. Throws Error(usage) if they do not fit.
-std::vector<std::size_t> hole_offsets(const Constraints& constraints, std::size_t sets);
-/// Sorts and scales the holes of sets. points: the magnitudes by set. Throws
-/// Error(input), which names a hole, if one is not finite, too fine or too far away.
-Seeds make_seeds(const Constraints& constraints, const std::vector<geometry::Magnitudes>& points);
-/// Throws Error(input), which names the first hole that is in no triangle or on a constraint. found: per
-/// seed, less than 0 or INT_MAX if it is in none; barred: whether it is on a constraint.
-void check_seeds(const Seeds& seeds, const Constraints& constraints, const std::vector<std::int32_t>& found,
-                 const std::vector<std::uint8_t>& barred);
+/// Sorts and scales places. points: the magnitudes by set. Throws Error(input), which names a place, if one
+/// is not finite, too fine or too far away.
+Seeds make_seeds(const Places& places, const std::vector<geometry::Magnitudes>& points);
 
-/// The triangles of seeds. Reads the coordinates, the triangles and the constrained edges of the mesh, with
-/// doubles, which the runtime must have. Throws what check_seeds throws. Waits once. O(n log m) for m seeds,
-/// if not many have an x coordinate in the range of one triangle.
-std::vector<std::int32_t> find_holes(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds,
-                                     const Constraints& constraints);
+/// In place of the triangle of a place.
+constexpr std::int32_t kNowhere = -1, kOnConstraint = -2;
+/// By number of the caller what each place is in. found: per seed, less than 0 or INT_MAX if it is in no
+/// triangle; barred: whether it is on a constraint.
+std::vector<std::int32_t> in_order(const Seeds& seeds, const std::vector<std::int32_t>& found,
+                                   const std::vector<std::uint8_t>& barred);
+/// By number of the caller the triangle of each place, or what is in place of it. Reads the coordinates, the
+/// triangles and the constrained edges of the mesh, with doubles, which the runtime must have. Waits once.
+/// O(n log m) for m seeds, if not many have an x coordinate in the range of one triangle.
+std::vector<std::int32_t> find_seeds(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds);
+/// Throws Error(input), which names the first place that is in no triangle or on a constraint.
+void check_found(const Places& places, const std::vector<std::int32_t>& found);
 /// Leaves out the regions of triangles. Does not wait.
 void drop_holes(host::Runtime& runtime, const std::vector<std::int32_t>& triangles, Regions& regions);
 

@@ -106,8 +106,8 @@ void find_depths(const ConstrainedTriangulation& mesh, const DepthRules& rules, 
 void drop_holes(const double* coordinates, const std::vector<std::size_t>& offsets,
                 const Constraints& constraints, const ConstrainedTriangulation& mesh, HostRegions& regions) {
   if (constraints.hole_count == 0) return;
-  const Seeds seeds =
-      make_seeds(constraints, magnitudes_at_holes(coordinates, offsets, mesh.added_offsets, constraints));
+  const Places places = holes_of(constraints, offsets.size() - 1);
+  const Seeds seeds = make_seeds(places, magnitudes_at(places, coordinates, offsets, mesh.added_offsets));
   Ids found(seeds.places.size(), -1);
   std::vector<std::uint8_t> barred(seeds.places.size(), 0);
   for (std::size_t s = 0; s + 1 < seeds.offsets.size(); ++s) {
@@ -136,7 +136,8 @@ void drop_holes(const double* coordinates, const std::vector<std::size_t>& offse
       }
     }
   }
-  check_seeds(seeds, constraints, found, barred);
+  found = in_order(seeds, found, barred);
+  check_found(places, found);
   for (const std::int32_t t : found) regions.left[regions.of_triangles[t]] = 0;
 }
 
@@ -221,15 +222,13 @@ void leave_on_host(const double* coordinates, const std::vector<std::size_t>& of
   result.regions = std::move(regions.of_triangles);
 }
 
-std::vector<geometry::Magnitudes> magnitudes_at_holes(const double* coordinates,
-                                                      const std::vector<std::size_t>& offsets,
-                                                      const std::vector<std::size_t>& added_offsets,
-                                                      const Constraints& constraints) {
+std::vector<geometry::Magnitudes> magnitudes_at(const Places& places, const double* coordinates,
+                                                const std::vector<std::size_t>& offsets,
+                                                const std::vector<std::size_t>& added_offsets) {
   const std::size_t sets = offsets.size() - 1, n = offsets.back();
-  const std::vector<std::size_t> holes = hole_offsets(constraints, sets);
   std::vector<geometry::Magnitudes> magnitudes(sets);
   for (std::size_t s = 0; s < sets; ++s) {
-    if (holes[s] == holes[s + 1]) continue;
+    if (places.offsets[s] == places.offsets[s + 1]) continue;
     magnitudes[s] =
         geometry::joined(geometry::inspect(coordinates, offsets[s], offsets[s + 1]),
                          geometry::inspect(coordinates, n + added_offsets[s], n + added_offsets[s + 1]));

@@ -36,11 +36,10 @@ void leave_on_host(const double* coordinates, const std::vector<std::size_t>& of
                    const Constraints& constraints, bool labels, HostRegions& regions,
                    ConstrainedTriangulation& result);
 
-/// The magnitudes of the points of sets that have holes, with those that splitting added; of other sets, of
+/// The magnitudes of the points of sets that have places, with those that splitting added; of other sets, of
 /// none.
-std::vector<geometry::Magnitudes> magnitudes_at_holes(const double* coordinates,
-                                                      const std::vector<std::size_t>& offsets,
-                                                      const std::vector<std::size_t>& added_offsets,
-                                                      const Constraints& constraints);
+std::vector<geometry::Magnitudes> magnitudes_at(const Places& places, const double* coordinates,
+                                                const std::vector<std::size_t>& offsets,
+                                                const std::vector<std::size_t>& added_offsets);
 
 }  // namespace flaunay::constrained

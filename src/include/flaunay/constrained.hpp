@@ -50,7 +50,8 @@ struct Rings {
   std::vector<std::size_t> polygon_offsets;
 };
 
-/// Segments that are to be edges, and what is to be left out. The arrays belong to the caller.
+/// Segments that are to be edges, what is to be left out, and what is known of segments, points and regions.
+/// The arrays belong to the caller.
 struct Constraints {
   const std::int32_t* segments = nullptr;  ///< 2 indices of points of the same set per segment
   std::size_t segment_count = 0;           ///< number of segments
@@ -65,6 +66,18 @@ struct Constraints {
   /// what is inside of it. A part is what is inside of its border and of none of its holes, and a polygon is
   /// all of its parts. The depth is the number of polygons that a triangle is in.
   Rings rings;
+  /// One per segment, or null. If there are some, ConstrainedTriangulation::edge_markers are computed.
+  const std::int32_t* segment_markers = nullptr;
+  /// One per point, or null. If there are some, ConstrainedTriangulation::vertex_markers are computed.
+  const std::int32_t* point_markers = nullptr;
+  /// x and y per seed: the region that this place is in has an attribute. If there are some,
+  /// ConstrainedTriangulation::triangle_attributes are computed.
+  const double* seeds = nullptr;
+  const double* seed_attributes = nullptr;  ///< one per seed
+  std::size_t seed_count = 0;               ///< number of seeds
+  /// sets + 1 values: set s has seeds [seed_offsets[s], seed_offsets[s + 1]). May be empty if there is one
+  /// set.
+  std::vector<std::size_t> seed_offsets;
 };
 
 /// The options of one constrained triangulation.
@@ -141,6 +154,14 @@ struct ConstrainedTriangulation : Triangulation {
   std::vector<std::int32_t> regions;
   /// One per triangle: the polygon that it is in; -1 if it is in none. Empty unless PolygonOptions::map.
   std::vector<std::int32_t> polygons;
+  /// One per constraint edge: the marker of its segment in edge_segments.
+  std::vector<std::int32_t> edge_markers;
+  /// One per point: those of the input as they were given, and for each point that splitting added the marker
+  /// of the segment with the smallest index that has it; 0 if segments have no markers.
+  std::vector<std::int32_t> vertex_markers;
+  /// One per triangle: the attribute of its region; of several seeds in one region the last one counts, and
+  /// where there is none it is 0. Seeds on a constraint, and those in no triangle, count for nothing.
+  std::vector<double> triangle_attributes;
 };
 
 }  // namespace flaunay

@@ -410,7 +410,8 @@ typedef struct flaunay_mesh {
   const double* areas;                   ///< t values; NULL if not asked for
 } flaunay_mesh;
 
-/// Segments that are to be edges, and what is to be left out. {0}: no segments.
+/// Segments that are to be edges, what is to be left out, and what is known of segments, points and regions.
+/// {0}: no segments.
 typedef struct flaunay_constraints {
   const int32_t* segments;  ///< 2 indices of points of the same set per segment
   size_t segment_count;     ///< number of segments
@@ -421,11 +422,19 @@ typedef struct flaunay_constraints {
   /// Set s has holes [hole_offsets[s], hole_offsets[s + 1]): sets + 1 offsets from 0 to hole_count. May be
   /// NULL if there is one set, or if there are no holes.
   const size_t* hole_offsets;
-  int crossings;          ///< a flaunay_crossings
-  int outside;            ///< a flaunay_outside
-  int fill_rule;          ///< a flaunay_fill_rule
-  int labels;             ///< other than 0: depths and regions are computed
-  uintptr_t reserved[8];  ///< 0
+  int crossings;                   ///< a flaunay_crossings
+  int outside;                     ///< a flaunay_outside
+  int fill_rule;                   ///< a flaunay_fill_rule
+  int labels;                      ///< other than 0: depths and regions are computed
+  const int32_t* segment_markers;  ///< NULL, or one per segment: edge_markers are computed
+  const int32_t* point_markers;    ///< NULL, or one per point: vertex_markers are computed
+  /// x and y per seed: the region that this place is in has an attribute. If there are some,
+  /// triangle_attributes are computed.
+  const double* seeds;
+  const double* seed_attributes;  ///< one per seed
+  size_t seed_count;              ///< number of seeds
+  const size_t* seed_offsets;     ///< as hole_offsets
+  uintptr_t reserved[2];          ///< 0
 } flaunay_constraints;
 
 /// Polygons with holes, as rings with offsets, in the layout of GeoArrow. {0}: no polygons. A ring may repeat
@@ -489,6 +498,14 @@ typedef struct flaunay_constrained_arrays {
   /// their first triangles. NULL without labels.
   const int32_t* regions;
   const int32_t* polygons;  ///< t values: the polygon of a map, -1 if it is in none; NULL if there is no map
+  const int32_t*
+      edge_markers;  ///< e values: the marker of its segment in edge_segments; NULL without markers
+  /// A value per point, added ones too: those of the input as they were given, and for each added point the
+  /// marker of the segment with the smallest index that has it, 0 if segments have none. NULL without.
+  const int32_t* vertex_markers;
+  /// t values: the attribute of its region; of several seeds in one region the last one counts, and where
+  /// there is none it is 0. Seeds on a constraint, and those in no triangle, count for nothing. NULL without.
+  const double* triangle_attributes;
 } flaunay_constrained_arrays;
 
 /// A round of chunks.

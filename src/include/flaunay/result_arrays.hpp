@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 
@@ -28,19 +29,27 @@
 /// The arrays that triangulations in chunks have, in the order of flaunay::MeshArray: X(name).
 #define FLAUNAY_MESH_ARRAYS(X) X(triangles) X(neighbors) X(hull) X(representatives)
 
-/// The arrays that flaunay::ConstrainedTriangulation has besides: X(type, name, rows, elements per row, asked
-/// for by).
-#define FLAUNAY_CONSTRAINED_ARRAYS(X)                       \
-  X(double, added_points, added_point, 2, always)           \
-  X(std::size_t, added_offsets, set_offset, 1, always)      \
-  X(std::int32_t, constraint_edges, constraint, 2, always)  \
-  X(std::int32_t, edge_segments, constraint, 1, always)     \
-  X(std::int32_t, piece_offsets, segment_offset, 1, always) \
-  X(std::int32_t, piece_edges, piece, 2, always)            \
-  X(std::uint8_t, constrained, triangle, 3, always)         \
-  X(std::int32_t, depths, triangle, 1, labels)              \
-  X(std::int32_t, regions, triangle, 1, labels)             \
-  X(std::int32_t, polygons, triangle, 1, map)
+/// The arrays that flaunay::ConstrainedTriangulation has besides. A row is as above, but the line for users
+/// is empty for arrays that the command does not write to files. An array is computed always, or if there is
+/// what it is computed from: labels, a map, or a member of flaunay::Constraints.
+#define FLAUNAY_CONSTRAINED_ARRAYS(X)                                                                   \
+  X(double, added_points, added_point, 2, always, "")                                                   \
+  X(std::size_t, added_offsets, set_offset, 1, always, "")                                              \
+  X(std::int32_t, constraint_edges, constraint, 2, always, "Constraint edges, 2 point indices per row") \
+  X(std::int32_t, edge_segments, constraint, 1, always,                                                 \
+    "For each constraint edge the smallest number of a segment that has it")                            \
+  X(std::int32_t, piece_offsets, segment_offset, 1, always, "")                                         \
+  X(std::int32_t, piece_edges, piece, 2, always, "")                                                    \
+  X(std::uint8_t, constrained, triangle, 3, always, "")                                                 \
+  X(std::int32_t, depths, triangle, 1, labels, "For each triangle its depth by --fill")                 \
+  X(std::int32_t, regions, triangle, 1, labels, "For each triangle the number of its region")           \
+  X(std::int32_t, polygons, triangle, 1, map,                                                           \
+    "GeoJSON: for each triangle the number of its polygon, -1 for none")                                \
+  X(std::int32_t, edge_markers, constraint, 1, segment_markers,                                         \
+    ".poly: for each constraint edge the marker of its segment")                                        \
+  X(std::int32_t, vertex_markers, point, 1, point_markers,                                              \
+    ".poly: for each point its marker, and for added ones that of their segment")                       \
+  X(double, triangle_attributes, triangle, 1, seeds, ".poly: for each triangle the attribute of its region")
 
 /// The arrays of flaunay::Voronoi, in the order of the bits of flaunay_voronoi_part: X(type, name, rows,
 /// elements per row).
@@ -101,15 +110,40 @@ inline constexpr std::tuple kTriangulationArrays{FLAUNAY_TRIANGULATION_ARRAYS(FL
 /// The number of arrays of a triangulation.
 inline constexpr std::size_t kTriangulationArrayCount = std::tuple_size_v<decltype(kTriangulationArrays)>;
 
-/// Calls visit(array, k) for the k-th array of a triangulation, in the order of the table.
-template <typename Visit>
-constexpr void for_each_array(const Visit& visit) {
+/// By what an array of a constrained triangulation is asked for.
+enum class AskedBy { always, labels, map, segment_markers, point_markers, seeds };
+
+/// One array that constrained triangulations have besides, with elements of type T.
+template <typename T>
+struct ConstrainedArray {
+  using Element = T;                                 ///< the type of its elements
+  const char* name;                                  ///< the name of the member below
+  std::size_t columns;                               ///< elements per row; 1: it has one dimension
+  AskedBy asked;                                     ///< by what it is asked for
+  const char* text;                                  ///< a line for users; "": it has no file
+  std::vector<T> ConstrainedTriangulation::*values;  ///< the array
+};
+
+#define FLAUNAY_ROW(type, name, row, columns, asked, text) \
+  ConstrainedArray<type>{#name, columns, AskedBy::asked, text, &ConstrainedTriangulation::name},
+/// FLAUNAY_CONSTRAINED_ARRAYS as a tuple.
+inline constexpr std::tuple kConstrainedArrays{FLAUNAY_CONSTRAINED_ARRAYS(FLAUNAY_ROW)};
+#undef FLAUNAY_ROW
+
+/// Calls visit(array, k) for the k-th array of a table.
+template <typename Table, typename Visit>
+constexpr void for_each_array(const Table& table, const Visit& visit) {
   std::apply(
       [&visit](const auto&... arrays) {
         std::size_t k = 0;
         (visit(arrays, k++), ...);
       },
-      kTriangulationArrays);
+      table);
+}
+/// Those of a triangulation.
+template <typename Visit>
+constexpr void for_each_array(const Visit& visit) {
+  for_each_array(kTriangulationArrays, visit);
 }
 
 /// The place of an array in the table, by its name.

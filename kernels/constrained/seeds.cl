@@ -1,6 +1,7 @@
-// Which triangles contain the seeds of holes: one pass over the triangles of all sets, each of which looks at the seeds
-// in its range of x. Seeds are any places, whose coordinates need not be on a grid with those of the points. So this is
-// for double precision alone; where a device computes in fixed point, another one or the host finds holes.
+// Which triangles contain seeds, of holes or of attributes: one pass over the triangles of all sets, each of which
+// looks at the seeds in its range of x. Seeds are any places, whose coordinates need not be on a grid with those of the
+// points. So this is for double precision alone; where a device computes in fixed point, another one or the host finds
+// them.
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/language.h"
@@ -12,16 +13,16 @@
 
 // seeds: in each set by ascending x, scaled by frames. found: INT_MAX throughout; gets the first triangle that contains
 // the seed. barred: 0 throughout; gets 1 if the seed is on a constraint.
-kernel void find_holes(int n, int sets, global const int* restrict triangle_offsets,
-                       global const int* restrict hole_offsets, global const query_frame* restrict frames,
+kernel void find_seeds(int n, int sets, global const int* restrict triangle_offsets,
+                       global const int* restrict seed_offsets, global const query_frame* restrict frames,
                        filter_bound bound, global const double* restrict input, global const int* restrict triangles,
                        global const uchar* restrict constrained, global const double2* restrict seeds,
                        global volatile int* restrict found, global uchar* restrict barred) {
   const int t = get_global_id(0);
   if (t < n) {
     const int s = segment_of(t, sets, triangle_offsets);
-    const int last = hole_offsets[s + 1];
-    int low = hole_offsets[s];
+    const int last = seed_offsets[s + 1];
+    int low = seed_offsets[s];
     if (low < last) {
       double2 p[3];
       for (int k = 0; k < 3; ++k) p[k] = scaled_point(triangles[3 * t + k], input, frames[s].scale);
