@@ -54,9 +54,7 @@ class AlphaShape(Fixed):
     @cached_property
     def area(self) -> float:
         """The area of the triangles."""
-        a, b, c = (self.delaunay.points[self.simplices[:, k]].astype(np.float64) for k in range(3))
-        u, v = b - a, c - a
-        return float((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2)
+        return float(self.delaunay.areas[self.inside].sum())
 
     @cached_property
     def _boundary(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:

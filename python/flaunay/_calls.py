@@ -907,6 +907,19 @@ def _triangulation_of(mesh: Mesh) -> tuple[_Doubles, int, _Triangulation]:
     return points, n, result
 
 
+def _cells_of(result: Handle, table: _Arrays, prefix: str, n: int) -> dict[str, Any]:
+    """The arrays of a diagram of n points. prefix: of the functions that have them and the numbers of their rows."""
+
+    def read(name: str) -> Any:
+        return getattr(library, f"{prefix}_{name}")(result.pointer)
+
+    counts = {"point": n, "point_offset": n + 1}
+    for _, row, _, _ in table.values():
+        if row not in counts:
+            counts[row] = read(f"{row}_count")
+    return _views(result, table, counts, read)
+
+
 class _Voronoi(Handle):
     _destroy = library.voronoi_destroy
 
@@ -918,14 +931,7 @@ def voronoi(triangulator: Triangulator, mesh: Mesh) -> dict[str, Any]:
     triangulator.call(
         library.voronoi_compute, triangulator.pointer, points, n, primal.pointer, result.place
     )
-    of = result.pointer
-    counts = {
-        "triangle": library.voronoi_triangle_count(of),
-        "point_offset": n + 1,
-        "corner": library.voronoi_corner_count(of),
-        "point": n,
-    }
-    return _views(result, _VORONOI, counts, lambda name: getattr(library, f"voronoi_{name}")(of))
+    return _cells_of(result, _VORONOI, "voronoi", n)
 
 
 class _ClippedVoronoi(Handle):
@@ -941,18 +947,7 @@ def clipped_voronoi(triangulator: Triangulator, mesh: Mesh, corners: _Doubles) -
         library.voronoi_clip,
         *(triangulator.pointer, points, n, primal.pointer, corners, len(corners), result.place),
     )
-    of = result.pointer
-    counts = {
-        "vertex": library.clipped_voronoi_vertex_count(of),
-        "point_offset": n + 1,
-        "point": n,
-    }
-    return _views(
-        result,
-        _CLIPPED_VORONOI,
-        counts,
-        lambda name: getattr(library, f"clipped_voronoi_{name}")(of),
-    )
+    return _cells_of(result, _CLIPPED_VORONOI, "clipped_voronoi", n)
 
 
 def relax(

@@ -129,8 +129,15 @@ class ConstrainedTriangulation(Triangulation):
 
         In each row the smaller index first; the rows in increasing order. O(m log m) work.
         """
-        first, second = (np.roll(self.triangles, -k, axis=1).ravel() for k in (1, 2))
-        return _unique_pairs(first, second, len(self.points))
+        return self._edges_where(np.ones_like(self.constrained))
+
+    def _edges_where(self, chosen: npt.NDArray[np.bool_]) -> Indices:
+        """The edges opposite to such corners, each once, sorted, in each the smaller index first."""
+        first, second = (np.roll(self.triangles, -k, axis=1)[chosen] for k in (1, 2))
+        n = max(len(self.points), 1)
+        keys = np.unique(np.minimum(first, second).astype(np.int64) * n + np.maximum(first, second))
+        pairs: Indices = np.stack(np.divmod(keys, n), axis=1).astype(np.int32)
+        return pairs
 
     def edges_of(self, segment: int) -> Indices:
         """The edges of a segment, int32, shape (k, 2), from its lexicographically smaller end to the other one.
@@ -189,7 +196,8 @@ class ConstrainedTriangulation(Triangulation):
         (4, 1)
         """
         purpose = f"{type(self).__name__}.plot"
-        return draw_constrained(self.points, self.edges, self.constraint_edges, ax, style, purpose)
+        edges, constraints = (self._edges_where(self.constrained == k) for k in (False, True))
+        return draw_constrained(self.points, edges, constraints, ax, style, purpose)
 
     def to_shapely(self) -> npt.NDArray[Any]:
         """The triangles as geometries of Shapely, one collection for each set.
@@ -238,14 +246,6 @@ class ConstrainedTriangulation(Triangulation):
             "constraints do not change which point is nearest: "
             "flaunay.Delaunay(result.points).nearest finds it"
         )
-
-
-def _unique_pairs(first: Indices, second: Indices, n: int) -> Indices:
-    """Pairs of indices of n points without order, each once, sorted, the smaller one first."""
-    low, high = np.minimum(first, second).astype(np.int64), np.maximum(first, second)
-    keys = np.unique(low * max(n, 1) + high)
-    pairs: Indices = np.stack(np.divmod(keys, max(n, 1)), axis=1).astype(np.int32)
-    return pairs
 
 
 def number_of(names: Mapping[str, int], given: object, name: str) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -577,21 +578,15 @@ def griddata(
     >>> flaunay.griddata([[0, 0], [4, 0], [0, 4]], [0, 8, 4], ([1, 3], [1, 0.5]))
     array([3. , 6.5])
     """
-    interpolator: _Interpolator
-    if method == "nearest":
-        interpolator = NearestInterpolator(points, values, rescale, device=device)
-    elif method == "linear":
-        interpolator = LinearInterpolator(points, values, fill_value, rescale, device=device)
-    elif method == "cubic":
-        interpolator = CloughTocherInterpolator(
-            points, values, fill_value, rescale=rescale, device=device
-        )
-    elif method == "natural":
-        interpolator = NaturalNeighborInterpolator(
-            points, values, fill_value=fill_value, rescale=rescale, device=device
-        )
-    else:
+    kinds: dict[str, Callable[..., _Interpolator]] = {
+        "linear": LinearInterpolator,
+        "nearest": NearestInterpolator,
+        "cubic": CloughTocherInterpolator,
+        "natural": NaturalNeighborInterpolator,
+    }
+    if method not in kinds:
         raise UsageError(
             f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
         )
-    return interpolator(xi)
+    fill = {} if method == "nearest" else {"fill_value": fill_value}
+    return kinds[method](points, values, rescale=rescale, device=device, **fill)(xi)

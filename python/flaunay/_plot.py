@@ -215,7 +215,7 @@ def draw_constrained(
     style: dict[str, Any],
     purpose: str,
 ) -> ConstrainedArtists:
-    """As `ConstrainedTriangulation.plot` says."""
+    """As `ConstrainedTriangulation.plot` says. edges: those that are no constraints."""
     axes = _axes(ax, purpose)
     look = _with_defaults(style, {_WIDTH: 0.5, _COLOR: "tab:blue"})
     strong = {
@@ -223,16 +223,7 @@ def draw_constrained(
         "linewidth": look.pop("constraint_linewidth", 1.6),
         "capstyle": "round",
     }
-    n = max(len(points), 1)
-
-    def keys_of(edges: Indices) -> npt.NDArray[np.int64]:
-        ends = np.sort(edges, axis=1).astype(np.int64)
-        keys: npt.NDArray[np.int64] = ends[:, 0] * n + ends[:, 1]
-        return keys
-
-    is_constraint = np.isin(keys_of(edges), keys_of(constraint_edges))
-    lines = _segments(points[edges[~is_constraint]], look)
-    constraints = _segments(points[edges[is_constraint]], strong)
+    lines, constraints = _segments(points[edges], look), _segments(points[constraint_edges], strong)
     for collection in (lines, constraints):
         axes.add_collection(collection)
     axes.autoscale_view()
