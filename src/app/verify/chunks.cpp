@@ -114,17 +114,10 @@ class ChunkChecker {
   }
 
   VerifyChunksReport run() {
-    try {
+    run_checks(report_, [this] {
       check_form();
-      if (rows_ == 0) {
-        check_collinear();
-      } else {
-        check_mesh();
-      }
-    } catch (const Violation& violation) {
-      report_.problem = violation.problem;
-    }
-    report_.ok = report_.problem.empty();
+      rows_ == 0 ? check_collinear() : check_mesh();
+    });
     report_.exact_evaluations += predicates_.exact_evaluations();
     return report_;
   }
@@ -162,7 +155,7 @@ class ChunkChecker {
     if (used_ < n_) check_unused();
     filter_.reset();
     check_windows();
-    check_count();
+    check_count(report_);
   }
 
   // ------------------------------------------------------------------------------------ points, in ranges
@@ -455,14 +448,6 @@ class ChunkChecker {
         if (id - first < count) window.corners[corner] = index.number(id);
       });
     }
-  }
-
-  /// Euler's formula. Follows from the checks before; a safeguard against an error in them.
-  void check_count() const {
-    const std::uint64_t expected = 2 * report_.distinct_points - 2 - report_.hull_vertices;
-    if (rows_ == expected) return;
-    violate("there are {} triangles, but {} distinct points with {} on the boundary must have {}", rows_,
-            report_.distinct_points, report_.hull_vertices, expected);
   }
 
   static constexpr std::size_t kBatch = std::size_t{1} << 18;  // vertices that are written together

@@ -29,12 +29,15 @@ namespace flaunay {
 namespace {
 
 using verification::Checker;
+using verification::is_before;
 using verification::kHull;
 using verification::kNone;
 using verification::Piece;
 using verification::Place;
 using verification::Span;
 using verification::Sweep;
+using verification::Vertex;
+using verification::violate;
 
 constexpr std::int32_t kNoPiece = -1, kNoPoint = -1;
 
@@ -99,13 +102,33 @@ class ConstrainedChecker : public Checker {
         sweep_(places_, predicates_) {}
 
   VerifyReport run() {
-    report_.ok = check_form() && check_coordinates() && check_indices() && check_segments() && check_holes();
-    if (report_.ok) {
+    verification::run_checks(report_, [this] {
+      check_form();
+      check_coordinates();
+      check_indices();
+      check_segments();
+      check_holes();
       sort_points();
-      report_.ok = check_orientations() && check_representatives() && match_half_edges() && cut_segments() &&
-                   check_triangulation() && check_circles() && check_edges() && check_segment_edges() &&
-                   check_edge_segments() && check_labels() && check_neighbors_if_given();
-    }
+      check_orientations();
+      check_representatives();
+      match_half_edges();
+      cut_segments();
+      match_pieces();
+      choose_faces();
+      check_constraints();
+      check_border();
+      check_sides();
+      check_places();
+      if (constraints_.outside == Outside::keep && constraints_.holes == nullptr && covered_.size() > 1) {
+        verification::check_count(report_);
+      }
+      check_circles();
+      check_edges();
+      check_segment_edges();
+      check_edge_segments();
+      check_labels();
+      check_neighbors();
+    });
     report_.exact_evaluations = predicates_.exact_evaluations();
     return report_;
   }
@@ -124,31 +147,29 @@ class ConstrainedChecker : public Checker {
                        describe_point(point_of(static_cast<std::size_t>(piece.to))));
   }
 
-  bool check_segments() {
+  void check_segments() {
     if (segments_.size() % 2 != 0) {
-      return fail("the segments are {} indices, which is not a multiple of 2", segments_.size());
+      violate("the segments are {} indices, which is not a multiple of 2", segments_.size());
     }
     for (std::size_t i = 0; i < segments_.size(); ++i) {
       if (segments_[i] < 0 || static_cast<std::size_t>(segments_[i]) >= n_) {
-        return fail("segment {} has an end {}, which is not the index of one of the {} points", i / 2,
-                    segments_[i], n_);
+        violate("segment {} has an end {}, which is not the index of one of the {} points", i / 2,
+                segments_[i], n_);
       }
     }
-    return true;
   }
 
-  bool check_holes() {
+  void check_holes() {
     for (std::size_t i = 0; constraints_.holes != nullptr && i < constraints_.holes->size(); ++i) {
-      if (!std::isfinite((*constraints_.holes)[i])) return fail("hole {} is not finite", i / 2);
+      if (!std::isfinite((*constraints_.holes)[i])) violate("hole {} is not finite", i / 2);
     }
-    return true;
   }
 
   /// Numbers the distinct points in their order, and the places of holes among them. Each stands for the one
   /// that triangles use.
   void number_places() {
     place_of_point_.resize(n_);
-    const std::vector<SortedPoint> holes = sorted_holes();
+    const std::vector<Vertex> holes = sorted_holes();
     place_of_hole_.resize(holes.size());
     auto hole = holes.begin();
     for (std::size_t i = 0; i < n_; ++i) {
@@ -156,51 +177,47 @@ class ConstrainedChecker : public Checker {
         for (; hole != holes.end() && is_before(*hole, sorted_[i]); ++hole) add_hole(*hole);
         add_place(sorted_[i], true);
         for (; hole != holes.end() && !is_before(sorted_[i], *hole); ++hole)
-          place_of_hole_[hole->index] = newest_place();
+          place_of_hole_[hole->id] = newest_place();
       }
-      const auto index = static_cast<std::int32_t>(sorted_[i].index);
+      const auto index = static_cast<std::int32_t>(sorted_[i].id);
       if (point_of_place_.back() == kNoPoint || used_[index] != 0) point_of_place_.back() = index;
       place_of_point_[index] = newest_place();
     }
     for (; hole != holes.end(); ++hole) add_hole(*hole);
   }
-  static bool is_before(const SortedPoint& a, const SortedPoint& b) {
-    return a.x != b.x ? a.x < b.x : a.y < b.y;
-  }
   std::int32_t newest_place() const { return static_cast<std::int32_t>(places_.size()) - 1; }
-  void add_place(const SortedPoint& at, bool is_point) {
-    places_.push_back({{at.x, at.y}, is_point});
+  void add_place(const Vertex& at, bool is_point) {
+    places_.push_back({{at.at[0], at.at[1]}, is_point});
     point_of_place_.push_back(kNoPoint);
   }
-  void add_hole(const SortedPoint& hole) {
+  void add_hole(const Vertex& hole) {
     add_place(hole, false);
-    place_of_hole_[hole.index] = newest_place();
+    place_of_hole_[hole.id] = newest_place();
   }
-  std::vector<SortedPoint> sorted_holes() const {
-    std::vector<SortedPoint> holes;
+  std::vector<Vertex> sorted_holes() const {
+    std::vector<Vertex> holes;
     for (std::size_t k = 0; constraints_.holes != nullptr && k < constraints_.holes->size() / 2; ++k) {
-      holes.push_back({(*constraints_.holes)[2 * k], (*constraints_.holes)[2 * k + 1], k});
+      holes.push_back({k, {(*constraints_.holes)[2 * k], (*constraints_.holes)[2 * k + 1]}});
     }
-    std::sort(holes.begin(), holes.end());
+    std::stable_sort(holes.begin(), holes.end(), is_before);
     return holes;
   }
 
-  bool cut_segments() {
+  void cut_segments() {
     number_places();
     std::vector<Span> spans;
     for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
-      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
-      if (a != b) spans.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(s)});
+      if (first_place(s) == last_place(s)) continue;
+      spans.push_back({first_place(s), last_place(s), static_cast<std::int32_t>(s)});
     }
     add_hull(spans, 1);
     add_hull(spans, -1);
     const Sweep::Crossing crossing = sweep_.run(spans);
     if (crossing.first >= 0) {
-      return fail("{} and {} cross at a place that is no point", describe_segment(crossing.first),
-                  describe_segment(crossing.second));
+      violate("{} and {} cross at a place that is no point", describe_segment(crossing.first),
+              describe_segment(crossing.second));
     }
     for (const Piece& piece : sweep_.pieces()) report_.constraint_edges += is_constraint(piece);
-    return true;
   }
 
   /// Andrew's chain (1979) below all places, or with turn = -1 above them.
@@ -218,40 +235,37 @@ class ConstrainedChecker : public Checker {
     for (std::size_t i = 1; i < chain.size(); ++i) spans.push_back({chain[i - 1], chain[i], kHull});
   }
 
-  bool check_triangulation() {
-    match_pieces();
-    return choose_faces() && check_constraints() && check_border() && check_sides() && check_places() &&
-           check_count();
-  }
-
   /// Finds the piece that each half-edge is, and the triangles beside each piece.
   void match_pieces() {
-    const std::vector<Piece>& pieces = sweep_.pieces();
-    std::vector<std::int32_t> first(places_.size() + 1, 0);
-    for (const Piece& piece : pieces) ++first[piece.from + 1];
-    for (std::size_t i = 0; i < places_.size(); ++i) first[i + 1] += first[i];
+    first_piece_.assign(places_.size() + 1, 0);
+    for (const Piece& piece : sweep_.pieces()) ++first_piece_[piece.from + 1];
+    for (std::size_t i = 0; i < places_.size(); ++i) first_piece_[i + 1] += first_piece_[i];
     piece_of_.assign(corners_.size(), kNoPiece);
-    above_.assign(pieces.size(), kNone);
-    below_.assign(pieces.size(), kNone);
+    above_.assign(sweep_.pieces().size(), kNone);
+    below_.assign(sweep_.pieces().size(), kNone);
     for (std::size_t h = 0; h < corners_.size(); ++h) {
       const std::int32_t a = place_of_point_[origin(h)], b = place_of_point_[target(h)];
-      const std::int32_t from = std::min(a, b), to = std::max(a, b);
-      const auto end = pieces.begin() + first[from + 1];
-      const auto found = std::lower_bound(pieces.begin() + first[from], end, to,
-                                          [](const Piece& piece, std::int32_t v) { return piece.to < v; });
-      if (found == end || found->to != to) continue;
-      piece_of_[h] = static_cast<std::int32_t>(found - pieces.begin());
-      (a == from ? above_ : below_)[piece_of_[h]] = static_cast<std::int64_t>(h / 3);
+      piece_of_[h] = find_piece(std::min(a, b), std::max(a, b));
+      if (piece_of_[h] == kNoPiece) continue;
+      (a < b ? above_ : below_)[piece_of_[h]] = static_cast<std::int64_t>(h / 3);
     }
   }
 
+  /// The piece between two places, or kNoPiece.
+  std::int32_t find_piece(std::int32_t from, std::int32_t to) const {
+    const auto begin = sweep_.pieces().begin(), end = begin + first_piece_[from + 1];
+    const auto found = std::lower_bound(begin + first_piece_[from], end, to,
+                                        [](const Piece& piece, std::int32_t v) { return piece.to < v; });
+    return found != end && found->to == to ? static_cast<std::int32_t>(found - begin) : kNoPiece;
+  }
+
   /// Decides which faces are to be covered.
-  bool choose_faces() {
+  void choose_faces() {
     covered_.assign(sweep_.face_count(), 1);
     covered_[0] = 0;
     const bool by_nesting = constraints_.fill_rule == FillRule::nesting;
     if (constraints_.outside != Outside::keep || constraints_.depths != nullptr) {
-      if (!check_closed()) return false;
+      check_closed();
       depths_ = by_nesting                      ? nesting_depths()
                 : constraints_.rings != nullptr ? polygon_depths()
                                                 : winding_depths();
@@ -262,12 +276,12 @@ class ConstrainedChecker : public Checker {
         if (depths_[f] == 0 || (drops_holes && depths_[f] % 2 == 0)) covered_[f] = 0;
       }
     }
-    return drop_seeded();
+    drop_seeded();
   }
 
   /// Rules other than nesting need closed curves.
-  bool check_closed() {
-    if (constraints_.fill_rule == FillRule::nesting) return true;
+  void check_closed() {
+    if (constraints_.fill_rule == FillRule::nesting) return;
     std::vector<std::int32_t> excess(places_.size(), 0);
     const Rings* const rings = constraints_.rings;
     const std::size_t count = rings != nullptr ? rings->segment_offsets.back() : segments_.size() / 2;
@@ -279,10 +293,9 @@ class ConstrainedChecker : public Checker {
     }
     for (std::size_t place = 0; place < places_.size(); ++place) {
       if (is_even_odd() ? excess[place] % 2 == 0 : excess[place] == 0) continue;
-      return fail("the segments are no closed curves: at {}, {}", describe_point(point_of(place)),
-                  is_even_odd() ? "an odd number of them ends" : "not as many begin as end");
+      violate("the segments are no closed curves: at {}, {}", describe_point(point_of(place)),
+              is_even_odd() ? "an odd number of them ends" : "not as many begin as end");
     }
-    return true;
   }
   bool is_even_odd() const { return constraints_.fill_rule == FillRule::even_odd; }
 
@@ -323,22 +336,11 @@ class ConstrainedChecker : public Checker {
   /// By face: its winding number, or the parity of the number of segments to the outside.
   std::vector<std::int64_t> winding_depths() const {
     const std::vector<std::int64_t> steps = steps_across();
-    const std::vector<std::vector<Beyond>> beyond = faces_beyond();
     std::vector<std::int64_t> depths(covered_.size(), 0);
-    std::vector<char> reached(covered_.size(), 0);
-    std::vector<std::int32_t> open = {0};
-    reached[0] = 1;
-    while (!open.empty()) {
-      const std::int32_t face = open.back();
-      open.pop_back();
-      for (const Beyond& other : beyond[face]) {
-        if (reached[other.face] != 0) continue;
-        reached[other.face] = 1;
-        const bool is_upward = sweep_.pieces()[other.piece].below == face;
-        depths[other.face] = depths[face] + (is_upward ? steps[other.piece] : -steps[other.piece]);
-        if (is_even_odd()) depths[other.face] &= 1;
-        open.push_back(other.face);
-      }
+    std::int64_t depth = 0;
+    for (const Move& move : tour()) {
+      depth += move.sign * steps[move.piece];
+      if (move.face != Sweep::kNoFace) depths[move.face] = is_even_odd() ? depth & 1 : depth;
     }
     return depths;
   }
@@ -350,11 +352,10 @@ class ConstrainedChecker : public Checker {
     // A segment counts from its first piece on, up to the one that begins where it ends.
     std::vector<std::int64_t> changes(pieces.order.size() + 1, 0), steps(pieces.order.size());
     for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
-      const std::int32_t a = first_place(s), b = last_place(s);
-      if (a == b) continue;
-      const std::int64_t step = is_even_odd() || place_of_point_[segments_[2 * s]] == a ? 1 : -1;
-      changes[pieces.position(s, a)] += step;
-      changes[pieces.position(s, b)] -= step;
+      if (first_place(s) == last_place(s)) continue;
+      const std::int64_t step = is_even_odd() || place_of_point_[segments_[2 * s]] == first_place(s) ? 1 : -1;
+      changes[pieces.position(s, first_place(s))] += step;
+      changes[pieces.position(s, last_place(s))] -= step;
     }
     std::int64_t sum = 0;
     for (std::size_t i = 0; i < pieces.order.size(); ++i) steps[pieces.order[i]] = sum += changes[i];
@@ -459,19 +460,18 @@ class ConstrainedChecker : public Checker {
   };
 
   /// Leaves out the faces of holes.
-  bool drop_seeded() {
+  void drop_seeded() {
     for (std::size_t k = 0; k < place_of_hole_.size(); ++k) {
       const double* at = places_[place_of_hole_[k]].at;
       const std::int32_t face = sweep_.face_of_place()[place_of_hole_[k]];
-      if (face == Sweep::kNoFace) return fail("hole {} at ({}, {}) is on a segment", k, at[0], at[1]);
-      if (face == 0) return fail("hole {} at ({}, {}) is outside of the convex hull", k, at[0], at[1]);
+      if (face == Sweep::kNoFace) violate("hole {} at ({}, {}) is on a segment", k, at[0], at[1]);
+      if (face == 0) violate("hole {} at ({}, {}) is outside of the convex hull", k, at[0], at[1]);
       covered_[face] = 0;
     }
-    return true;
   }
 
   /// Every part of a segment that borders on a covered face must be an edge.
-  bool check_constraints() {
+  void check_constraints() {
     const Piece* missing = nullptr;
     for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
       const Piece& piece = sweep_.pieces()[i];
@@ -479,139 +479,114 @@ class ConstrainedChecker : public Checker {
       if (covered_[piece.below] == 0 && covered_[piece.above] == 0) continue;
       if (missing == nullptr || piece.segment < missing->segment) missing = &piece;
     }
-    if (missing == nullptr) return true;
-    return fail("{} is no chain of edges: {} is missing", describe_segment(missing->segment),
-                describe_piece(*missing));
+    if (missing == nullptr) return;
+    violate("{} is no chain of edges: {} is missing", describe_segment(missing->segment),
+            describe_piece(*missing));
   }
 
-  bool check_border() {
+  void check_border() {
     for (std::size_t h = 0; h < twins_.size(); ++h) {
       if (twins_[h] != kNone) continue;
       ++report_.hull_vertices;
       if (piece_of_[h] != kNoPiece) continue;
-      return fail(
+      violate(
           "{} has no triangle beyond the edge from point {} to point {}, which is neither on the hull nor a "
           "constraint",
-          describe_triangle(h / 3), origin(h), target(h));
+          describe_row(h / 3), origin(h), target(h));
     }
     if (twins_.empty() && covered_.size() == 1) report_.hull_vertices = report_.distinct_points;
-    return true;
   }
 
-  bool check_sides() {
+  void check_sides() {
     for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
       const Piece& piece = sweep_.pieces()[i];
-      if (!check_side(piece, "right", piece.below, below_[i])) return false;
-      if (!check_side(piece, "left", piece.above, above_[i])) return false;
+      check_side(piece, "right", piece.below, below_[i]);
+      check_side(piece, "left", piece.above, above_[i]);
     }
-    return true;
   }
-  bool check_side(const Piece& piece, const char* side, std::int32_t face, std::int64_t triangle) {
-    if ((triangle != kNone) == (covered_[face] != 0)) return true;
+  void check_side(const Piece& piece, const char* side, std::int32_t face, std::int64_t triangle) {
+    if ((triangle != kNone) == (covered_[face] != 0)) return;
     if (triangle == kNone) {
-      return fail("there is no triangle on the {} of {}, which is inside", side, describe_piece(piece));
+      violate("there is no triangle on the {} of {}, which is inside", side, describe_piece(piece));
     }
-    return fail("{} is outside, on the {} of {}", describe_triangle(static_cast<std::size_t>(triangle)), side,
-                describe_piece(piece));
+    violate("{} is outside, on the {} of {}", describe_row(static_cast<std::size_t>(triangle)), side,
+            describe_piece(piece));
   }
 
   /// Places on the border of a covered face are ends of edges, which were found.
-  bool check_places() {
+  void check_places() {
     for (std::size_t place = 0; place < places_.size(); ++place) {
       if (!places_[place].is_point) continue;
       const std::int32_t face = sweep_.face_of_place()[place];
       const auto i = static_cast<std::size_t>(point_of_place_[place]);
       if (face == Sweep::kNoFace || covered_[face] == 0 || used_[i] != 0) continue;
-      return fail("{} is in no triangle", describe_point(i));
+      violate("{} is in no triangle", describe_point(i));
     }
-    return true;
   }
 
-  /// Euler's formula. Follows from the checks before; a safeguard against an error in them.
-  bool check_count() {
-    if (constraints_.outside != Outside::keep || constraints_.holes != nullptr || covered_.size() == 1)
-      return true;
-    const std::size_t expected = 2 * report_.distinct_points - 2 - report_.hull_vertices;
-    if (report_.triangles == expected) return true;
-    return fail("there are {} triangles, but {} distinct points with {} on the boundary must have {}",
-                report_.triangles, report_.distinct_points, report_.hull_vertices, expected);
-  }
-
-  bool check_circles() {
+  void check_circles() {
     for (std::size_t h = 0; h < twins_.size(); ++h) {
       // On the border, or checked from the other side.
       if (twins_[h] < static_cast<std::int64_t>(h)) continue;
       if (piece_of_[h] != kNoPiece && is_constraint(sweep_.pieces()[piece_of_[h]])) continue;
-      bool is_tie = false;
-      if (!check_circle(h, is_tie)) return false;
-      if (is_tie && !check_fan(h)) return false;
+      if (check_circle(h)) check_fan(h);
     }
-    return true;
   }
 
-  bool check_fan(std::size_t h) {
+  void check_fan(std::size_t h) {
     const auto place = [this](std::int32_t v) { return place_of_point_[v]; };
     const std::int32_t a = origin(h), b = target(h), c = corners_[h], d = corners_[twins_[h]];
     const std::int32_t first = place(c) < place(d) ? c : d;
-    if (std::min(place(a), place(b)) < place(first)) return true;
-    return fail(
+    if (std::min(place(a), place(b)) < place(first)) return;
+    violate(
         "{} and triangle {} are on one circle, but their edge from point {} to point {} does not begin at "
         "{}, the lexicographically smallest of their corners",
-        describe_triangle(h / 3), twins_[h] / 3, a, b, describe_point(first));
+        describe_row(h / 3), twins_[h] / 3, a, b, describe_point(first));
   }
 
   /// The given edges must be the parts of the segments, each once, its smaller end first.
-  bool check_edges() {
-    if (constraints_.edges == nullptr) return true;
+  void check_edges() {
+    if (constraints_.edges == nullptr) return;
     const std::vector<std::int32_t>& edges = *constraints_.edges;
     if (edges.size() != 2 * report_.constraint_edges) {
-      return fail("there are {} indices in the constraint edges, but the segments are made of {} edges",
-                  edges.size(), report_.constraint_edges);
+      violate("there are {} indices in the constraint edges, but the segments are made of {} edges",
+              edges.size(), report_.constraint_edges);
     }
     std::vector<char> listed(sweep_.pieces().size(), 0);
     for (std::size_t e = 0; e < edges.size() / 2; ++e) {
       const std::int32_t piece = piece_between(edges[2 * e], edges[2 * e + 1]);
       if (piece == kNoPiece) {
-        return fail(
+        violate(
             "constraint edge {} from point {} to point {} is no part of a segment, or is the wrong way round",
             e, edges[2 * e], edges[2 * e + 1]);
       }
       if (listed[piece] != 0) {
-        return fail("constraint edge {} from point {} to point {} is listed twice", e, edges[2 * e],
-                    edges[2 * e + 1]);
+        violate("constraint edge {} from point {} to point {} is listed twice", e, edges[2 * e],
+                edges[2 * e + 1]);
       }
       listed[piece] = 1;
     }
-    return true;
   }
 
   /// The constraint from one point to a later one; kNoPiece if there is none, or if another point stands for
   /// one of them.
   std::int32_t piece_between(std::int32_t a, std::int32_t b) const {
     if (!is_representative(a) || !is_representative(b)) return kNoPiece;
-    const Piece sought{place_of_point_[a], place_of_point_[b], 0, 0, 0, 0};
-    const std::vector<Piece>& pieces = sweep_.pieces();
-    const auto found = std::lower_bound(
-        pieces.begin(), pieces.end(), sought,
-        [](const Piece& p, const Piece& q) { return p.from != q.from ? p.from < q.from : p.to < q.to; });
-    if (found == pieces.end() || found->from != sought.from || found->to != sought.to ||
-        !is_constraint(*found)) {
-      return kNoPiece;
-    }
-    return static_cast<std::int32_t>(found - pieces.begin());
+    const std::int32_t piece = find_piece(place_of_point_[a], place_of_point_[b]);
+    return piece != kNoPiece && is_constraint(sweep_.pieces()[piece]) ? piece : kNoPiece;
   }
   bool is_representative(std::int32_t v) const {
     return v >= 0 && static_cast<std::size_t>(v) < n_ && point_of_place_[place_of_point_[v]] == v;
   }
 
   /// Each segment's edges must lead straight from its smaller end to the other one.
-  bool check_segment_edges() {
-    if (constraints_.segment_edges == nullptr || constraints_.edges == nullptr) return true;
+  void check_segment_edges() {
+    if (constraints_.segment_edges == nullptr || constraints_.edges == nullptr) return;
     const std::vector<std::int32_t>& ranges = *constraints_.segment_edges;
     const std::vector<std::int32_t>& edges = *constraints_.edges;
     if (ranges.size() != segments_.size()) {
-      return fail("there are {} indices of segments' edges, but there should be {}", ranges.size(),
-                  segments_.size());
+      violate("there are {} indices of segments' edges, but there should be {}", ranges.size(),
+              segments_.size());
     }
     // By edge: how many up to it do not go on straight with the next one.
     const auto count = static_cast<std::int32_t>(edges.size() / 2);
@@ -622,25 +597,24 @@ class ConstrainedChecker : public Checker {
       bends[e + 1] = bends[e] + (goes_on ? 0 : 1);
     }
     for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
-      const std::int32_t a = place_of_point_[segments_[2 * s]], b = place_of_point_[segments_[2 * s + 1]];
       const std::int32_t first = ranges[2 * s], last = ranges[2 * s + 1];
-      const bool is_right = a == b ? first == 0 && last == 0
-                                   : first >= 0 && first < last && last <= count &&
-                                         place_of_point_[edges[2 * first]] == std::min(a, b) &&
-                                         place_of_point_[edges[2 * last - 1]] == std::max(a, b) &&
-                                         bends[last - 1] == bends[first];
-      if (!is_right) return fail("the edges [{}, {}) are not those of {}", first, last, describe_segment(s));
+      const bool is_right = first_place(s) == last_place(s)
+                                ? first == 0 && last == 0
+                                : first >= 0 && first < last && last <= count &&
+                                      place_of_point_[edges[2 * first]] == first_place(s) &&
+                                      place_of_point_[edges[2 * last - 1]] == last_place(s) &&
+                                      bends[last - 1] == bends[first];
+      if (!is_right) violate("the edges [{}, {}) are not those of {}", first, last, describe_segment(s));
     }
-    return true;
   }
 
   /// Segments claim their pieces in ascending order, and skip those that have been claimed.
-  bool check_edge_segments() {
-    if (constraints_.edge_segments == nullptr || constraints_.edges == nullptr) return true;
+  void check_edge_segments() {
+    if (constraints_.edge_segments == nullptr || constraints_.edges == nullptr) return;
     const std::vector<std::int32_t>& claimed = *constraints_.edge_segments;
     if (2 * claimed.size() != constraints_.edges->size()) {
-      return fail("there are {} segments of edges, but there are {} constraint edges", claimed.size(),
-                  constraints_.edges->size() / 2);
+      violate("there are {} segments of edges, but there are {} constraint edges", claimed.size(),
+              constraints_.edges->size() / 2);
     }
     const PiecesByLine pieces(sweep_);
     std::vector<std::int32_t> smallest(pieces.order.size(), -1);
@@ -662,17 +636,16 @@ class ConstrainedChecker : public Checker {
       const std::int32_t expected =
           smallest[piece_between((*constraints_.edges)[2 * e], (*constraints_.edges)[2 * e + 1])];
       if (claimed[e] == expected) continue;
-      return fail("constraint edge {} is said to be a part of segment {} first, but it is one of segment {}",
-                  e, claimed[e], expected);
+      violate("constraint edge {} is said to be a part of segment {} first, but it is one of segment {}", e,
+              claimed[e], expected);
     }
-    return true;
   }
 
-  bool check_labels() {
-    if (constraints_.depths == nullptr && constraints_.regions == nullptr) return true;
+  void check_labels() {
+    if (constraints_.depths == nullptr && constraints_.regions == nullptr) return;
     for (const auto* const labels : {constraints_.depths, constraints_.regions}) {
       if (labels != nullptr && labels->size() != report_.triangles) {
-        return fail("there are {} depths or regions, but {} triangles", labels->size(), report_.triangles);
+        violate("there are {} depths or regions, but {} triangles", labels->size(), report_.triangles);
       }
     }
     const std::vector<std::int32_t> faces = faces_of_triangles();
@@ -682,15 +655,13 @@ class ConstrainedChecker : public Checker {
       std::int32_t& region = regions[faces[t]];
       if (region < 0) region = count++;
       if (constraints_.depths != nullptr && (*constraints_.depths)[t] != depths_[faces[t]]) {
-        return fail("{} has depth {}, but it should be {}", describe_triangle(t), (*constraints_.depths)[t],
-                    depths_[faces[t]]);
+        violate("{} has depth {}, but it should be {}", describe_row(t), (*constraints_.depths)[t],
+                depths_[faces[t]]);
       }
       if (constraints_.regions != nullptr && (*constraints_.regions)[t] != region) {
-        return fail("{} has region {}, but it should be {}", describe_triangle(t), (*constraints_.regions)[t],
-                    region);
+        violate("{} has region {}, but it should be {}", describe_row(t), (*constraints_.regions)[t], region);
       }
     }
-    return true;
   }
 
   /// Every face has triangles beside its pieces, and the others are connected with these.
@@ -716,13 +687,12 @@ class ConstrainedChecker : public Checker {
     return faces;
   }
 
-  bool check_neighbors_if_given() { return neighbors_ == nullptr || check_neighbors(); }
-
   const VerifyConstraints& constraints_;
   const std::vector<std::int32_t>& segments_;
   std::vector<Place> places_;
   std::vector<std::int32_t> place_of_point_, point_of_place_, place_of_hole_;
   Sweep sweep_;
+  std::vector<std::int32_t> first_piece_;    // by place: of those that begin there, and the number of all
   std::vector<std::int32_t> piece_of_;       // by half-edge
   std::vector<std::int64_t> below_, above_;  // by piece: the triangles on its right and on its left, or kNone
   std::vector<std::int64_t> depths_;         // by face

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "app/verify/verify.hpp"
+
 namespace flaunay::verification {
 
 /// The first violation that a part of the check found; ends it.
@@ -17,6 +19,17 @@ struct Violation {
 template <typename... Arguments>
 [[noreturn]] void violate(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
   throw Violation{fmt::format(text, std::forward<Arguments>(arguments)...)};
+}
+
+/// Runs checks, and writes the violation that ends them to the report.
+template <typename Checks>
+void run_checks(VerifyReport& report, const Checks& checks) {
+  try {
+    checks();
+  } catch (const Violation& violation) {
+    report.problem = violation.problem;
+  }
+  report.ok = report.problem.empty();
 }
 
 /// A point with its index in the input.
@@ -38,6 +51,14 @@ inline std::string describe(const Vertex& vertex) {
 inline std::string describe_triangle(std::uint64_t row, const Vertex& a, const Vertex& b, const Vertex& c) {
   return fmt::format("triangle {} with points {}, {}, {} at ({}, {}), ({}, {}), ({}, {})", row, a.id, b.id,
                      c.id, a.at[0], a.at[1], b.at[0], b.at[1], c.at[0], c.at[1]);
+}
+
+/// Euler's formula. Follows from the checks before; a safeguard against an error in them.
+inline void check_count(const VerifyReport& report) {
+  const std::size_t expected = 2 * report.distinct_points - 2 - report.hull_vertices;
+  if (report.triangles == expected) return;
+  violate("there are {} triangles, but {} distinct points with {} on the boundary must have {}",
+          report.triangles, report.distinct_points, report.hull_vertices, expected);
 }
 
 }  // namespace flaunay::verification

@@ -17,24 +17,34 @@ namespace flaunay {
 namespace {
 
 using verification::Checker;
+using verification::is_same_place;
 using verification::kNone;
+using verification::Vertex;
+using verification::violate;
 
 class DelaunayChecker : public Checker {
  public:
   using Checker::Checker;
 
   VerifyReport run() {
-    report_.ok = check_form() && check_coordinates() && check_indices();
-    if (report_.ok) {
+    verification::run_checks(report_, [this] {
+      check_form();
+      check_coordinates();
+      check_indices();
       sort_points();
       if (report_.triangles == 0) {
-        report_.ok = check_collinear();
-      } else {
-        report_.ok = check_orientations() && check_representatives() && check_use_of_points() &&
-                     match_half_edges() && check_boundary() && check_circles() && check_count();
+        check_collinear();
+        return;
       }
-    }
-    if (report_.ok && neighbors_ != nullptr) report_.ok = check_neighbors();
+      check_orientations();
+      check_representatives();
+      check_use_of_points();
+      match_half_edges();
+      check_boundary();
+      check_circles();
+      verification::check_count(report_);
+      check_neighbors();
+    });
     report_.exact_evaluations = predicates_.exact_evaluations();
     return report_;
   }
@@ -42,47 +52,44 @@ class DelaunayChecker : public Checker {
  private:
   /// No triangles: right if and only if all points are collinear. (If there are triangles then the points are
   /// not collinear, or a triangle is degenerate.)
-  bool check_collinear() {
+  void check_collinear() {
     report_.hull_vertices = report_.distinct_points;
-    if (report_.distinct_points < 3) return true;
-    const std::size_t first = sorted_.front().index, last = sorted_.back().index;
+    if (report_.distinct_points < 3) return;
+    const Vertex &first = sorted_.front(), &last = sorted_.back();
     for (std::size_t i = 0; i < n_; ++i) {
-      if (predicates_.orient2d(point(first), point(last), point(i)) != 0) {
-        return fail("there are no triangles, but the points are not all collinear: {}, {}, {}",
-                    describe_point(first), describe_point(last), describe_point(i));
+      if (predicates_.orient2d(first.at, last.at, point(i)) != 0) {
+        violate("there are no triangles, but the points are not all collinear: {}, {}, {}", describe(first),
+                describe(last), describe_point(i));
       }
     }
-    return true;
   }
 
   /// Of every group of duplicates one index must be used.
-  bool check_use_of_points() {
+  void check_use_of_points() const {
     std::size_t smallest_unused = n_;
     for (std::size_t begin = 0, end = 0; begin < n_; begin = end) {
       bool is_used = false;
-      std::size_t smallest = n_;
       for (end = begin; end == begin || (end < n_ && !starts_group(end)); ++end) {
-        is_used = is_used || used_[sorted_[end].index] != 0;
-        smallest = std::min(smallest, sorted_[end].index);
+        is_used = is_used || used_[sorted_[end].id] != 0;
       }
-      if (!is_used) smallest_unused = std::min(smallest_unused, smallest);
+      // The first of a group has its smallest index.
+      if (!is_used) smallest_unused = std::min<std::size_t>(smallest_unused, sorted_[begin].id);
     }
-    if (smallest_unused < n_) return fail("{} is in no triangle", describe_point(smallest_unused));
-    return true;
+    if (smallest_unused < n_) violate("{} is in no triangle", describe_point(smallest_unused));
   }
 
   /// The half-edges without twin must form one closed cycle, convex and counter-clockwise (points on its
   /// edges allowed): all turns left or straight on, lexicographically ascending up to the last point, then
   /// descending, so that it goes around once. (It encloses the sum of the triangles' areas, so it cannot be
   /// flat.)
-  bool check_boundary() {
+  void check_boundary() {
     std::vector<std::int64_t> outgoing(n_, kNone);
     std::size_t boundary_edges = 0;
     for (std::size_t h = 0; h < twins_.size(); ++h) {
       if (twins_[h] != kNone) continue;
       if (outgoing[origin(h)] != kNone) {
-        return fail("the boundary touches itself at {}, a corner of {} and of triangle {}",
-                    describe_point(origin(h)), describe_triangle(h / 3), outgoing[origin(h)] / 3);
+        violate("the boundary touches itself at {}, a corner of {} and of triangle {}",
+                describe_point(origin(h)), describe_row(h / 3), outgoing[origin(h)] / 3);
       }
       outgoing[origin(h)] = static_cast<std::int64_t>(h);
       ++boundary_edges;
@@ -91,13 +98,12 @@ class DelaunayChecker : public Checker {
 
     // As many half-edges without twin end at a point as begin there, so following them leads back to the
     // start.
-    std::size_t start = sorted_[0].index;
-    for (std::size_t i = 0; i < n_ && sorted_[i].x == sorted_[0].x && sorted_[i].y == sorted_[0].y; ++i) {
-      if (outgoing[sorted_[i].index] != kNone) start = sorted_[i].index;
+    std::size_t start = sorted_[0].id;
+    for (std::size_t i = 0; i < n_ && is_same_place(sorted_[i], sorted_[0]); ++i) {
+      if (outgoing[sorted_[i].id] != kNone) start = sorted_[i].id;
     }
     if (outgoing[start] == kNone) {
-      return fail("{} is the lexicographically smallest but not on the boundary",
-                  describe_point(sorted_[0].index));
+      violate("{} is the lexicographically smallest but not on the boundary", describe(sorted_[0]));
     }
     std::vector<std::size_t> cycle;
     std::vector<char> visited(n_, 0);
@@ -107,10 +113,10 @@ class DelaunayChecker : public Checker {
     }
     for (std::size_t h = 0; cycle.size() < boundary_edges && h < twins_.size(); ++h) {
       if (twins_[h] == kNone && !visited[origin(h)]) {
-        return fail(
+        violate(
             "the edge from point {} to point {} of {} has no triangle beyond it, but is not on the outer "
             "boundary: a hole, or a separate piece",
-            origin(h), target(h), describe_triangle(h / 3));
+            origin(h), target(h), describe_row(h / 3));
       }
     }
 
@@ -119,40 +125,26 @@ class DelaunayChecker : public Checker {
       const std::size_t before = cycle[i], at = following(i),
                         after = target(static_cast<std::size_t>(outgoing[at]));
       if (predicates_.orient2d(point(before), point(at), point(after)) < 0) {
-        return fail("the boundary is not convex at {}, between {} and {}", describe_point(at),
-                    describe_point(before), describe_point(after));
+        violate("the boundary is not convex at {}, between {} and {}", describe_point(at),
+                describe_point(before), describe_point(after));
       }
     }
-    const SortedPoint& last = sorted_.back();
     bool ascending = true;
     for (std::size_t i = 0; i < cycle.size(); ++i) {
-      const double *at = point(cycle[i]), *after = point(following(i));
-      if (at[0] == last.x && at[1] == last.y) ascending = false;
-      const bool ascends = at[0] < after[0] || (at[0] == after[0] && at[1] < after[1]);
-      if (ascends != ascending) {
-        return fail("the boundary goes around more than once: it turns back at {}, before {}",
-                    describe_point(cycle[i]), describe_point(following(i)));
+      const Vertex at = vertex(cycle[i]), after = vertex(following(i));
+      if (is_same_place(at, sorted_.back())) ascending = false;
+      if (is_before(at, after) != ascending) {
+        violate("the boundary goes around more than once: it turns back at {}, before {}", describe(at),
+                describe(after));
       }
     }
-    return true;
   }
 
-  bool check_circles() {
+  void check_circles() {
     for (std::size_t h = 0; h < twins_.size(); ++h) {
-      bool is_tie = false;
-      // On the boundary, or checked from the other side.
-      if (twins_[h] < static_cast<std::int64_t>(h)) continue;
-      if (!check_circle(h, is_tie)) return false;
+      // Smaller twins: on the boundary, or checked from the other side.
+      if (twins_[h] > static_cast<std::int64_t>(h)) check_circle(h);
     }
-    return true;
-  }
-
-  /// Euler's formula. Follows from the checks before; a safeguard against an error in them.
-  bool check_count() {
-    const std::size_t expected = 2 * report_.distinct_points - 2 - report_.hull_vertices;
-    if (report_.triangles == expected) return true;
-    return fail("there are {} triangles, but {} distinct points with {} on the boundary must have {}",
-                report_.triangles, report_.distinct_points, report_.hull_vertices, expected);
   }
 };
 

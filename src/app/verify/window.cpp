@@ -17,7 +17,6 @@ Window::Window(std::uint64_t most_rows, std::size_t piece_rows)
 
 void Window::check(io::RowSource* neighbors, OpenEdges& edges) {
   check_orientations();
-  collect_half_edges();
   match_half_edges();
   check_edges(neighbors, edges);
 }
@@ -31,50 +30,13 @@ void Window::check_orientations() {
   }
 }
 
-/// A counting sort by the smaller end. A key has the larger end, the direction (1: downward) and the
-/// half-edge.
-void Window::collect_half_edges() {
-  std::fill_n(begins_.data(), vertices + 1, 0);
-  for (std::uint32_t h = 0; h < half_edge_count(); ++h) ++begins_[std::min(origin(h), target(h))];
-  std::uint32_t sum = 0;
-  for (std::uint64_t v = 0; v <= vertices; ++v) {
-    const std::uint32_t count = begins_[v];
-    begins_[v] = sum;
-    sum += count;
-  }
-  for (std::uint32_t h = 0; h < half_edge_count(); ++h) {
-    const std::uint64_t from = origin(h), to = target(h);
-    const std::uint64_t edge = std::max(from, to) << 1 | (from > to ? 1 : 0);
-    keys_[begins_[std::min(from, to)]++] = edge << 32 | h;
-  }
-}
-
 void Window::match_half_edges() {
-  std::fill_n(twins_.data(), half_edge_count(), kNone);
-  std::uint32_t repeated = kNone;  // the first half-edge that repeats one before
-  std::uint32_t begin = 0;
-  for (std::uint64_t v = 0; v < vertices; ++v) {
-    const std::uint32_t end = begins_[v];  // placing the keys moved it there
-    std::sort(keys_.data() + begin, keys_.data() + end);
-    for (std::uint32_t i = begin; i + 1 < end; ++i) {
-      const std::uint64_t key = keys_[i], next = keys_[i + 1];
-      if (key >> 32 == next >> 32) {
-        repeated = std::min(repeated, static_cast<std::uint32_t>(next));
-      } else if (key >> 33 == next >> 33) {
-        twins_[static_cast<std::uint32_t>(key)] = static_cast<std::uint32_t>(next);
-        twins_[static_cast<std::uint32_t>(next)] = static_cast<std::uint32_t>(key);
-      }
-    }
-    begin = end;
-  }
-  if (repeated != kNone) explain_repeated(repeated);
-}
-
-void Window::explain_repeated(std::uint32_t half_edge) const {
-  std::uint32_t earlier = 0;
-  while (origin(earlier) != origin(half_edge) || target(earlier) != target(half_edge)) ++earlier;
-  violate("{} has the edge from point {} to point {}, which {} has too", describe_row(half_edge / 3),
-          ids[origin(half_edge)], ids[target(half_edge)], describe_row(earlier / 3));
+  const std::uint32_t count = 3 * static_cast<std::uint32_t>(rows);
+  const std::uint32_t repeated =
+      half_edges_.match(count, vertices, begins_.data(), keys_.data(), twins_.data());
+  if (repeated == count) return;
+  violate("{} has the edge from point {} to point {}, which {} has too", describe_row(repeated / 3),
+          ids[origin(repeated)], ids[target(repeated)], describe_row(half_edges_.first_like(repeated) / 3));
 }
 
 void Window::check_edges(io::RowSource* neighbors, OpenEdges& edges) {

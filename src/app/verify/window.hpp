@@ -8,6 +8,7 @@
 #include "app/verify/buffer.hpp"
 #include "app/verify/describe.hpp"
 #include "app/verify/exact.hpp"
+#include "app/verify/half_edges.hpp"
 #include "app/verify/open_edges.hpp"
 
 namespace flaunay::verification {
@@ -15,7 +16,7 @@ namespace flaunay::verification {
 /// Arrays for one window after the other. Vertices are named by their numbers in the window.
 class Window {
  public:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr std::uint32_t kNone = HalfEdges<std::uint32_t, std::uint32_t>::kNone;
   /// Bytes per row that the arrays take at most, if no two rows have a vertex in common.
   static constexpr std::uint64_t kRowBytes = 3 * (8 + 16 + 4) + 3 * (4 + 8 + 4);
 
@@ -39,30 +40,23 @@ class Window {
   std::uint64_t exact_evaluations() const { return predicates_.exact_evaluations(); }
 
  private:
-  static std::uint32_t successor(std::uint32_t half_edge) {
-    return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
-  }
-  std::uint32_t origin(std::uint32_t half_edge) const { return corners[successor(half_edge)]; }
-  std::uint32_t target(std::uint32_t half_edge) const { return corners[successor(successor(half_edge))]; }
+  std::uint32_t origin(std::uint32_t half_edge) const { return half_edges_.origin(half_edge); }
+  std::uint32_t target(std::uint32_t half_edge) const { return half_edges_.target(half_edge); }
   const double* place(std::uint32_t vertex) const { return coordinates.data() + 2 * std::size_t{vertex}; }
   Vertex vertex(std::uint32_t i) const { return {ids[i], {place(i)[0], place(i)[1]}}; }
   std::string describe_row(std::uint32_t t) const {
     return describe_triangle(first_row + t, vertex(corners[3 * t]), vertex(corners[3 * t + 1]),
                              vertex(corners[3 * t + 2]));
   }
-  std::uint32_t half_edge_count() const { return static_cast<std::uint32_t>(3 * rows); }
 
   void check_orientations();
-  void collect_half_edges();
   void match_half_edges();
-  std::uint32_t half_edge_of(std::uint64_t key, std::uint32_t smaller) const;
-  [[noreturn]] void explain_repeated(std::uint32_t half_edge) const;
   void check_edges(io::RowSource* neighbors, OpenEdges& edges);
   void check_pair(std::uint32_t half_edge, std::uint32_t twin);
 
-  Buffer<std::uint32_t>
-      begins_;                  // of each vertex: where its keys begin; while keys are placed, the next place
-  Buffer<std::uint64_t> keys_;  // of half-edges, collected by their smaller end
+  HalfEdges<std::uint32_t, std::uint32_t> half_edges_{corners.data()};
+  Buffer<std::uint32_t> begins_;  // see HalfEdges::match
+  Buffer<std::uint64_t> keys_;
   Buffer<std::uint32_t> twins_;   // of each half-edge; kNone if there is none in the window
   Buffer<std::int64_t> claimed_;  // a piece of the neighbours
   std::size_t piece_rows_;
