@@ -9,14 +9,13 @@
 namespace flaunay::call {
 namespace {
 
-void count_sorting(const geometry::PointSets& sets, const std::vector<std::size_t>& offsets,
-                   research::Work& work) {
+void count_sorting(const std::vector<std::size_t>& offsets, research::Work& work) {
+  research::OperationCounts& start = work.start[static_cast<std::size_t>(research::Component::cut)];
   std::uint64_t path = 0;
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    start.arithmetic += geometry::comparisons_to_sort(offsets[s + 1] - offsets[s]);
     path = std::max(path, geometry::depth_of_sort(offsets[s + 1] - offsets[s]));
   }
-  research::OperationCounts& start = work.start[static_cast<std::size_t>(research::Component::cut)];
-  start.arithmetic += sets.comparisons;
   start.critical_path += path;
 }
 
@@ -32,7 +31,7 @@ research::Triangulation run_on_host(const double* coordinates, const Request& re
   phases.progress("triangulate", statistics::kSorted);
   research::Triangulation counted;
   geometry::Mesh mesh = mode(sets, options, phases, counted);
-  if (options.count) count_sorting(sets, request.offsets, counted.work);
+  if (options.count) count_sorting(request.offsets, counted.work);
   phases.end("triangulate");
 
   phases.progress("canonical form", statistics::kTriangulated);

@@ -7,7 +7,7 @@
 
 #include "blocks/pipeline.hpp"
 #include "call/host_modes.hpp"
-#include "modes/dwyer/run.hpp"
+#include "modes/dwyer/dwyer.hpp"
 #include "modes/partition/regions.hpp"
 #include "modes/recursive/run.hpp"
 

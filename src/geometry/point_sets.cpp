@@ -99,7 +99,6 @@ PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offs
       first = false;
       sets.representatives[element.index] = sets.source.back();
     }
-    sets.comparisons += comparisons_to_sort(offsets[s + 1] - offsets[s]);
     sets.set_offsets.push_back(static_cast<std::int32_t>(sets.points.size()));
   }
   return sets;

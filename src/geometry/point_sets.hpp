@@ -18,7 +18,6 @@ struct PointSets {
   std::vector<std::int32_t> set_offsets;      ///< sets + 1 ids
   std::vector<std::int32_t> representatives;  ///< per input point, an index of the input
   Predicates predicates{};
-  std::uint64_t comparisons = 0;  ///< comparisons that a comparison sort takes; see comparisons_to_sort
 };
 
 /// Makes point sets. Throws Error(input) for points that are not finite, whose magnitudes differ too much, or

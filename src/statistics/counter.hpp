@@ -56,4 +56,17 @@ inline void add_beside(OperationCounts& level, const OperationCounts& region) {
   level.critical_path = dearest;
 }
 
+/// Adds what was done for a part of a level's regions to the level; of rounds, it has the most.
+inline void add_part(LevelStatistics& level, const LevelStatistics& part) {
+  level.regions += part.regions;
+  level.internal_points += part.internal_points;
+  level.corners += part.corners;
+  level.candidates += part.candidates;
+  level.survivors += part.survivors;
+  level.path_vertices += part.path_vertices;
+  level.candidate_rounds = std::max(level.candidate_rounds, part.candidate_rounds);
+  level.hull_rounds = std::max(level.hull_rounds, part.hull_rounds);
+  level.seconds += part.seconds;
+}
+
 }  // namespace flaunay::statistics

@@ -5,7 +5,8 @@
 
 #include "flaunay/research.hpp"
 #include "geometry/mesh.hpp"
-#include "geometry/predicates.hpp"
+#include "geometry/point_sets.hpp"
+#include "statistics/phases.hpp"
 
 namespace flaunay::dwyer {
 
@@ -20,5 +21,10 @@ namespace flaunay::dwyer {
 /// Each merge is sequential, so its critical path is as long as its work.
 geometry::Mesh triangulate(const geometry::Predicates& predicates, const geometry::Point* points,
                            std::size_t n, research::Work* work = nullptr);
+
+/// Mode dwyer: triangulates all sets on the calling thread; geometry::finish makes the canonical result. With
+/// Options::count, adds the work to the result. O(n log n).
+geometry::Mesh run(const geometry::PointSets& sets, const research::Options& options,
+                   const statistics::Phases& phases, research::Triangulation& result);
 
 }  // namespace flaunay::dwyer

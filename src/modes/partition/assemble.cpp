@@ -14,13 +14,11 @@
 #include "modes/partition/regions.hpp"
 #include "statistics/phases.hpp"
 
-namespace flaunay {
-namespace partition {
+namespace flaunay::research {
 using namespace geometry;
+using namespace partition;
 
 namespace {
-
-using research::Region;
 
 using Ids = std::vector<std::int32_t>;
 
@@ -30,26 +28,22 @@ constexpr double kRegions = 0.6;
 
 [[noreturn]] void fail(const std::string& reason) { throw Error(ErrorKind::input, reason); }
 
-// Ids of input points.
-class IdMap {
- public:
-  explicit IdMap(const PointSets& sets) : ids_(sets.representatives.size()) {
-    for (std::size_t id = 0; id < sets.source.size(); ++id) {
-      ids_[sets.source[id]] = static_cast<std::int32_t>(id);
-    }
-    for (std::size_t i = 0; i < ids_.size(); ++i) ids_[i] = ids_[sets.representatives[i]];
+// The id of each input point.
+Ids ids_of_input(const PointSets& sets) {
+  Ids ids(sets.representatives.size());
+  for (std::size_t id = 0; id < sets.source.size(); ++id) {
+    ids[sets.source[id]] = static_cast<std::int32_t>(id);
   }
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = ids[sets.representatives[i]];
+  return ids;
+}
 
-  std::int32_t operator()(std::int32_t index) const {
-    if (index < 0 || index >= static_cast<std::int32_t>(ids_.size())) {
-      fail(fmt::format("there is no point {} among {}", index, ids_.size()));
-    }
-    return ids_[index];
+std::int32_t id_of(const Ids& ids, std::int32_t index) {
+  if (index < 0 || static_cast<std::size_t>(index) >= ids.size()) {
+    fail(fmt::format("there is no point {} among {}", index, ids.size()));
   }
-
- private:
-  Ids ids_;
-};
+  return ids[index];
+}
 
 // The points of a region in the order of (x, y).
 struct OrderedRegion {
@@ -59,10 +53,10 @@ struct OrderedRegion {
   Ids rank;  // per position in Region::points, the rank of the point
 };
 
-OrderedRegion in_order(const PointSets& sets, const IdMap& id_of, const Region& region) {
+OrderedRegion in_order(const PointSets& sets, const Ids& ids_of_input, const Region& region) {
   const std::size_t n = region.points.size();
-  Ids ids(n), order(n);
-  std::transform(region.points.begin(), region.points.end(), ids.begin(), id_of);
+  Ids ids, order(n);
+  for (const std::int32_t index : region.points) ids.push_back(id_of(ids_of_input, index));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&ids](std::int32_t a, std::int32_t b) { return ids[a] < ids[b]; });
   OrderedRegion ordered;
@@ -105,9 +99,9 @@ std::vector<BorderEdge> border_of(const OrderedRegion& region, const Ids& positi
   return border;
 }
 
-void append_region(const PointSets& sets, const IdMap& id_of, const Region& region, const Ids& solution,
+void append_region(const PointSets& sets, const Ids& ids_of_input, const Region& region, const Ids& solution,
                    Ids& triangles) {
-  const OrderedRegion ordered = in_order(sets, id_of, region);
+  const OrderedRegion ordered = in_order(sets, ids_of_input, region);
   const std::size_t n = ordered.points.size();
   Mesh mesh = checked_mesh(sets.predicates, ordered.points.data(), n, ordered.names.data(),
                            ranks_of(ordered, solution));
@@ -128,8 +122,9 @@ void named(const std::string& name, const Part& part) {
 
 }  // namespace
 
-Triangulation assemble(const double* coordinates, std::size_t n, const research::Partition& partition,
-                       const std::vector<std::vector<std::int32_t>>& solutions, const Options& options) {
+flaunay::Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
+                                const std::vector<std::vector<std::int32_t>>& solutions,
+                                const flaunay::Options& options) {
   const std::size_t regions = partition.regions.size();
   if (solutions.size() != regions)
     fail(fmt::format("{} solutions for {} regions", solutions.size(), regions));
@@ -138,39 +133,28 @@ Triangulation assemble(const double* coordinates, std::size_t n, const research:
   const PointSets sets = ingest(coordinates, {0, n});
   phases.end("sort");
 
-  const IdMap id_of(sets);
+  const Ids ids = ids_of_input(sets);
   Ids triangles;
   for (std::size_t r = 0; r < regions; ++r) {
     phases.progress("regions",
                     kSorted + (kRegions - kSorted) * static_cast<double>(r) / static_cast<double>(regions));
     named(fmt::format("region {}", r),
-          [&] { append_region(sets, id_of, partition.regions[r], solutions[r], triangles); });
+          [&] { append_region(sets, ids, partition.regions[r], solutions[r], triangles); });
   }
   Mesh mesh;
   named("the parts do not make a whole", [&] {
-    for (const std::int32_t index : partition.triangles) triangles.push_back(id_of(index));
+    for (const std::int32_t index : partition.triangles) triangles.push_back(id_of(ids, index));
     mesh = checked_mesh(sets.predicates, sets.points.data(), sets.points.size(), sets.source.data(),
                         std::move(triangles));
   });
   phases.end("regions");
 
   phases.progress("canonical form", kRegions);
-  Triangulation result = finish(sets, std::move(mesh.triangles), std::move(mesh.twins), options);
+  flaunay::Triangulation result = finish(sets, std::move(mesh.triangles), std::move(mesh.twins), options);
   phases.end("canonical form");
   phases.write(result.statistics);
   phases.progress("canonical form", 1);
   return result;
 }
 
-}  // namespace partition
-
-namespace research {
-
-flaunay::Triangulation assemble(const double* coordinates, std::size_t n, const Partition& partition,
-                                const std::vector<std::vector<std::int32_t>>& solutions,
-                                const flaunay::Options& options) {
-  return partition::assemble(coordinates, n, partition, solutions, options);
-}
-
-}  // namespace research
-}  // namespace flaunay
+}  // namespace flaunay::research

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <mutex>
 #include <numeric>
 
 #include "flaunay/flaunay.hpp"
@@ -158,31 +157,6 @@ class RegionCutter {
   std::vector<char> is_border_;  // per half-edge
 };
 
-// The failed region with the smallest number.
-class Failure {
- public:
-  void note(std::size_t region, std::exception_ptr exception) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (exception_ && region_ < region) return;
-    region_ = region;
-    exception_ = std::move(exception);
-  }
-  void rethrow() const {
-    if (!exception_) return;
-    try {
-      std::rethrow_exception(exception_);
-    } catch (const Error& error) {
-      throw Error(ErrorKind::internal,
-                  fmt::format("region {}: {}; please report the input", region_, error.what()));
-    }
-  }
-
- private:
-  std::mutex mutex_;
-  std::size_t region_ = 0;
-  std::exception_ptr exception_;
-};
-
 Ids largest_first(const RegionArrays& regions) {
   Ids order(regions.size());
   std::iota(order.begin(), order.end(), 0);
@@ -236,17 +210,24 @@ Ids solve_regions(const Predicates& predicates, const Point* points, const Regio
   std::vector<Work> works(counts != nullptr ? regions.size() : 0);
   const Ids order = largest_first(regions);
   std::vector<Ids> solutions(regions.size());
-  Failure failure;
+  std::vector<std::exception_ptr> failures(regions.size());
   host::Threads(static_cast<std::size_t>(threads)).share_each(order.size(), [&](std::size_t k) {
     const auto r = static_cast<std::size_t>(order[k]);
     try {
       solutions[r] =
           solve_region(predicates, points, regions, r, triangulate, counts != nullptr ? &works[r] : nullptr);
     } catch (...) {
-      failure.note(r, std::current_exception());
+      failures[r] = std::current_exception();
     }
   });
-  failure.rethrow();
+  for (std::size_t r = 0; r < failures.size(); ++r) {
+    try {
+      if (failures[r]) std::rethrow_exception(failures[r]);
+    } catch (const Error& error) {
+      throw Error(ErrorKind::internal,
+                  fmt::format("region {}: {}; please report the input", r, error.what()));
+    }
+  }
   for (const Work& done : works) add_beside(*counts, sum_of(done));
 
   std::size_t total = 0;

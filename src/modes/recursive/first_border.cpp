@@ -23,7 +23,11 @@ std::vector<HullPoint> planar_hull(const Predicates& predicates, const HullPoint
   counter.critical_path(search_comparisons(points.internal.size()));
   const LowerHull hull = lower_hull(predicates, points, variant, counter, ignored);
   Prune prune(predicates, points.line, hull.path, true, counter);
-  std::vector<HullPoint> on_hull = pick(points.internal, prune.run(points).internal);
+  const std::vector<Held> held = prune.run(points).internal;
+  std::vector<HullPoint> on_hull;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i].kept == Kept::yes) on_hull.push_back(points.internal[i]);
+  }
   add_beside(work, counter.counts());
   return on_hull;
 }

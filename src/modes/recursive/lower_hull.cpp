@@ -1,7 +1,6 @@
 #include "modes/recursive/lower_hull.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "flattened/limits.h"
 #include "geometry/sort.hpp"
@@ -16,14 +15,6 @@ namespace {
 // Counts the projections of points. Internal points are projected first; corners only when they are needed.
 void count_projections(const std::vector<HullPoint>& points, Counter& counter) {
   counter.arithmetic(kernel::PROJECT_OPERATIONS * points.size());
-}
-
-LowerHull by_prune(const Predicates& predicates, const HullPoints& points, Counter& counter,
-                   LevelStatistics& statistics) {
-  PrunedHull hull = pruned_hull(predicates, points, counter, statistics);
-  statistics.survivors = hull.survivors;
-  statistics.hull_rounds = hull.rounds;
-  return {std::move(hull.path), std::move(hull.corners)};
 }
 
 Path by_quickhull(const Predicates& predicates, const HullPoints& points, std::size_t balanced_from,
@@ -75,14 +66,6 @@ Path by_monotone_chain(const Predicates& predicates, const HullPoints& points, C
   return path;
 }
 
-// Adds the statistics of a region to those of its level.
-void accumulate(LevelStatistics& level, const LevelStatistics& region) {
-  level.candidates += region.candidates;
-  level.survivors += region.survivors;
-  level.candidate_rounds = std::max(level.candidate_rounds, region.candidate_rounds);
-  level.hull_rounds = std::max(level.hull_rounds, region.hull_rounds);
-}
-
 }  // namespace
 
 LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hull variant, Counter& counter,
@@ -92,7 +75,7 @@ LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hul
   count_projections(points.internal, counter);
   counter.critical_path(kernel::PROJECT_OPERATIONS);
   if (variant == Hull::prune) {
-    hull = by_prune(predicates, points, counter, own);
+    hull = pruned_hull(predicates, points, counter, own);
   } else {
     hull.corners.assign(points.corners.size(), Kept::yes);
     const std::size_t balanced_from =
@@ -101,7 +84,7 @@ LowerHull lower_hull(const Predicates& predicates, const HullPoints& points, Hul
                     ? by_monotone_chain(predicates, points, counter)
                     : by_quickhull(predicates, points, balanced_from, counter, own);
   }
-  accumulate(statistics, own);
+  add_part(statistics, own);
   return hull;
 }
 

@@ -2,18 +2,11 @@
 // variants.
 #pragma once
 
-#include <vector>
-
 #include "modes/recursive/line.hpp"
 #include "modes/recursive/prune.hpp"
 #include "statistics/counter.hpp"
 
 namespace flaunay::recursive {
-
-struct LowerHull {
-  Path path;
-  std::vector<Kept> corners;  ///< Kept::no for corners that are known not to be on the path
-};
 
 /// Computes the strict lower hull by the given variant; all variants give the same hull. No vertex lies on or
 /// above the segment between its neighbours. If several points have equal projections, the one of smaller s

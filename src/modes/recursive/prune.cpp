@@ -35,14 +35,14 @@ Path chord_path(const Predicates& predicates, const HullPoints& points, Counter&
   counter.arithmetic(2 * kernel::PROJECT_OPERATIONS);
   statistics.candidates += thin.internal.size();
   if (thin.internal.size() > kernel::MANY_CANDIDATES) {
-    PrunedHull hull = pruned_hull(predicates, thin, counter, statistics);
-    statistics.candidate_rounds += hull.rounds;
+    LevelStatistics of_candidates;
+    LowerHull hull = pruned_hull(predicates, thin, counter, of_candidates);
+    statistics.candidates += of_candidates.candidates;
+    statistics.candidate_rounds = of_candidates.candidate_rounds + of_candidates.hull_rounds;
     return std::move(hull.path);
   }
-  int rounds = 0;
   Quickhull quickhull(predicates, points.line, kernel::MOST_QUICKHULL_ROUNDS, counter);
-  Path path = quickhull.run(points.first, points.last, thin.internal, rounds);
-  statistics.candidate_rounds += rounds;
+  Path path = quickhull.run(points.first, points.last, thin.internal, statistics.candidate_rounds);
   quickhull.strict(path);
   return path;
 }
@@ -157,32 +157,24 @@ std::size_t Prune::walk(std::size_t low, double u) {
   return low;
 }
 
-std::vector<HullPoint> pick(const std::vector<HullPoint>& points, const std::vector<Held>& held) {
-  std::vector<HullPoint> picked;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (held[i].kept == Kept::yes) picked.push_back(points[i]);
-  }
-  return picked;
-}
-
-PrunedHull pruned_hull(const Predicates& predicates, const HullPoints& points, Counter& counter,
-                       LevelStatistics& statistics) {
+LowerHull pruned_hull(const Predicates& predicates, const HullPoints& points, Counter& counter,
+                      LevelStatistics& statistics) {
   const Path chords = chord_path(predicates, points, counter, statistics);
   const auto [internal, corners] = Prune(predicates, points.line, chords, false, counter).run(points);
   BelowChords below(chords.size());
   group(points.internal, internal, below);
   group(points.corners, corners, below);
 
-  PrunedHull hull;
+  LowerHull hull;
   for (const Held& held : corners) hull.corners.push_back(held.kept);
-  for (const std::vector<Below>& segment : below) hull.survivors += segment.size();
+  for (const std::vector<Below>& segment : below) statistics.survivors += segment.size();
   // Corners that are kept are projected once more.
   counter.arithmetic(kernel::PROJECT_OPERATIONS * static_cast<std::uint64_t>(std::count(
                                                       hull.corners.begin(), hull.corners.end(), Kept::yes)));
-  counter.critical_path(log2_ceiling(chords.size()) * scan_depth(hull.survivors));
+  counter.critical_path(log2_ceiling(chords.size()) * scan_depth(statistics.survivors));
 
   Quickhull quickhull(predicates, points.line, kernel::MOST_QUICKHULL_ROUNDS, counter);
-  hull.path = quickhull.go_on(chords, std::move(below), hull.rounds);
+  hull.path = quickhull.go_on(chords, std::move(below), statistics.hull_rounds);
   quickhull.strict(hull.path);
   return hull;
 }

@@ -58,26 +58,20 @@ class Prune {
   std::vector<double> bands_;  // per path vertex: higher points are not below the chord to the next vertex
 };
 
-/// A hull computed by prune and quickhull.
-struct PrunedHull {
+struct LowerHull {
   Path path;
-  std::vector<Kept> corners;
-  std::size_t survivors = 0;
-  int rounds = 0;  ///< rounds of quickhull on the survivors
+  std::vector<Kept> corners;  ///< Kept::no for corners that are known not to be on the path
 };
 
 /// Computes the strict lower hull. Takes one candidate per bucket and computes the path of the candidates, in
 /// the same way as long as they are many. Quickhull then refines that path by the points below its chords.
-/// statistics: candidates and their rounds are added. The projections of internal points must be known; they
-/// are not counted.
-PrunedHull pruned_hull(const geometry::Predicates& predicates, const HullPoints& points,
-                       statistics::Counter& counter, statistics::LevelStatistics& statistics);
+/// statistics: receives the numbers of candidates, survivors and rounds. The projections of internal points
+/// must be known; they are not counted.
+LowerHull pruned_hull(const geometry::Predicates& predicates, const HullPoints& points,
+                      statistics::Counter& counter, statistics::LevelStatistics& statistics);
 
 /// The last vertex whose u is not greater than the given one; the first vertex if there is none. Takes
 /// search_comparisons(path.size()) comparisons, which the caller counts.
 std::size_t search_path(const Path& path, double u);
-
-/// The points that are flagged Kept::yes.
-std::vector<HullPoint> pick(const std::vector<HullPoint>& points, const std::vector<Held>& held);
 
 }  // namespace flaunay::recursive
