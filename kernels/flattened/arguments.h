@@ -24,6 +24,21 @@
   global const int* restrict PREFIX##path, global const double2* restrict PREFIX##path_projections, \
   global const int* restrict PREFIX##path_region
 
+// The vertices of paths that are made.
+#define NEW_PATH_VERTICES(PREFIX) \
+  global int* restrict PREFIX##new_path, global double2* restrict PREFIX##new_projections, \
+  global int* restrict PREFIX##new_region
+
+// The points of quickhull, and the path vertices whose chords they are below.
+#define HULL_POINTS(PREFIX) \
+  global const int* restrict PREFIX##ids, global const int* restrict PREFIX##segment, \
+  global const double2* restrict PREFIX##projections
+
+// Those that are made.
+#define NEW_HULL_POINTS(PREFIX) \
+  global int* restrict PREFIX##new_ids, global int* restrict PREFIX##new_segment, \
+  global double2* restrict PREFIX##new_projections
+
 // What becomes of elements that may be on a path.
 #define CANDIDATES(PREFIX) \
   global int* restrict PREFIX##ids, global int* restrict PREFIX##chord, global double* restrict PREFIX##depth, \
@@ -33,6 +48,16 @@
 #define CORNERS_TO_JOIN(PREFIX) \
   global const int* restrict PREFIX##corner_ids, global const int* restrict PREFIX##corner_owners, \
   global const double2* restrict PREFIX##corner_projections
+
+// Those corners in another order.
+#define NEW_CORNERS(PREFIX) \
+  global int* restrict PREFIX##new_ids, global int* restrict PREFIX##new_owners, \
+  global double2* restrict PREFIX##new_projections
+
+// The children of all regions, and the corners of those that go on and of those that retire.
+#define CHILDREN(PREFIX) \
+  global const int* restrict PREFIX##child_region, global const int* restrict PREFIX##child_base, \
+  global int* restrict PREFIX##corners, global int* restrict PREFIX##corner_region, global int* restrict PREFIX##retired
 
 // The corners of large regions, and the vertices that they are.
 #define STRIP_CORNERS(PREFIX) \

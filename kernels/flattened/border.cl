@@ -6,6 +6,7 @@
 // upper side in descending order; the smallest and the largest id are on both sides. If a set is collinear, all its
 // points are on both sides. Each kernel is one pass, with one work-item per point, set or border vertex.
 
+#include "flattened/arguments.h"
 #include "flattened/axes.h"
 #include "flattened/codes.h"
 #include "operations/counting.h"
@@ -143,10 +144,7 @@ kernel void border_write(int n, global const int* restrict ids, global const int
 
 // Corner k of a border: (before, vertex, after).
 kernel void border_corners(int n, global const int* restrict hull, global const uint* restrict hull_offsets,
-                           global const int* restrict set_of_id, global const int* restrict collinear,
-                           global const int* restrict child_region, global const int* restrict child_base,
-                           global int* restrict corners, global int* restrict corner_region,
-                           global int* restrict retired_corners) {
+                           global const int* restrict set_of_id, global const int* restrict collinear, CHILDREN()) {
   const int k = get_global_id(0);
   if (k < n) {
     const int s = set_of_id[hull[k]];
@@ -157,7 +155,7 @@ kernel void border_corners(int n, global const int* restrict hull, global const 
       const int after = hull[k == last ? first : k + 1];
       const int to = child_base[s] + (k - first);
       const int region = child_region[s];
-      global int* restrict target = region >= 0 ? corners : retired_corners;
+      global int* restrict target = region >= 0 ? corners : retired;
       target[3 * to] = before;
       target[3 * to + 1] = hull[k];
       target[3 * to + 2] = after;

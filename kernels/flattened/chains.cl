@@ -50,11 +50,11 @@ static inline int thin_region(int i, int regions, global const int* offsets) {
 // Place i gets the lowest of its part of the region's list, the first of several. Parts are as equal as they can be; if
 // there are fewer points than places, points are taken twice. Without internal points it gets the first end of the
 // region's hull, which is -1 for a set without points.
-kernel void thin_lists(int n, int regions, global const int* restrict offsets, global const int* restrict x_list,
-                       global const int* restrict y_list, global const double2* restrict projections,
-                       global const int* restrict axis, global const int* restrict first_end,
-                       global int* restrict thin_offsets, global int* restrict thin_ids,
-                       global int* restrict thin_regions, global double2* restrict thin_projections) {
+kernel void thin_lists(int n, int regions, global const int* restrict offsets, LISTS(),
+                       global const double2* restrict projections, global const int* restrict axis,
+                       global const int* restrict first_end, global int* restrict thin_offsets,
+                       global int* restrict thin_ids, global int* restrict thin_regions,
+                       global double2* restrict thin_projections) {
   const int i = get_global_id(0);
   if (i < n) {
     const int r = thin_region(i, regions, offsets);
@@ -93,10 +93,9 @@ static inline int rank_in_list(int i, int low, int high, int axis) { return axis
 // they are -1, as is all of its list.
 kernel void sequence_of_lists(int n, global const int* restrict offsets, global const int* restrict list,
                               global const int* restrict regions, global const double2* restrict list_projections,
-                              global const int* restrict first_end, global const int* restrict last_end,
-                              global const int* restrict axis, global const double* restrict cut,
-                              global const double2* restrict points, global int* restrict begins,
-                              global int* restrict ids, global double2* restrict projections COUNTERS) {
+                              global const int* restrict first_end, global const int* restrict last_end, CUTS(),
+                              global int* restrict begins, global int* restrict ids,
+                              global double2* restrict projections COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int r = regions[i];
@@ -151,48 +150,40 @@ kernel void keep_bounds(int n, int points_count, global const uint* restrict kep
 // The kept corners' vertices, as they come.
 kernel void gather_kept_corners(int n, int regions, int points_count, global const int2* restrict before,
                                 global const int* restrict positions, global const int* restrict corner_regions,
-                                global const int* restrict corners, global const int* restrict axis,
-                                global const double* restrict cut, global const double2* restrict points,
-                                global int* restrict ids, global int* restrict owners,
-                                global double2* restrict projections COUNTERS) {
+                                global const int* restrict corners, CUTS(), NEW_CORNERS() COUNTERS) {
   const int c = get_global_id(0);
   if (c < n) {
     const int corner = positions[before[regions].x + c] - points_count;
     const int id = corners[3 * corner + 1];
     const int r = corner_regions[corner];
-    ids[c] = id;
-    owners[c] = r;
-    projections[c] = project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
+    new_ids[c] = id;
+    new_owners[c] = r;
+    new_projections[c] = project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
   }
 }
 
 // In the order of (region, u), where no region has many.
-kernel void place_kept_corners(int n, global const int2* restrict before, global const int* restrict ids,
-                               global const int* restrict owners, global const double2* restrict projections,
-                               global int* restrict new_ids, global int* restrict new_owners,
-                               global double2* restrict new_projections) {
+kernel void place_kept_corners(int n, global const int2* restrict before, CORNERS_TO_JOIN(), NEW_CORNERS()) {
   const int c = get_global_id(0);
   if (c < n) {
-    const int r = owners[c];
+    const int r = corner_owners[c];
     const int begin = before[r].y;
     const int end = before[r + 1].y;
-    const double2 p = projections[c];
+    const double2 p = corner_projections[c];
     int to = begin;
-    for (int k = begin; k < end; ++k) to += projections[k].y < p.y || (k < c && projections[k].y == p.y);
-    new_ids[to] = ids[c];
+    for (int k = begin; k < end; ++k) to += corner_projections[k].y < p.y || (k < c && corner_projections[k].y == p.y);
+    new_ids[to] = corner_ids[c];
     new_owners[to] = r;
     new_projections[to] = p;
   }
 }
 
 // Merges MERGED_RUNS runs, each in the order of (region, u), into one.
-kernel void merge_corner_runs(int n, int run, global const int* restrict ids, global const int* restrict owners,
-                              global const double2* restrict projections, global int* restrict new_ids,
-                              global int* restrict new_owners, global double2* restrict new_projections) {
+kernel void merge_corner_runs(int n, int run, CORNERS_TO_JOIN(), NEW_CORNERS()) {
   const int c = get_global_id(0);
   if (c < n) {
-    const int r = owners[c];
-    const double2 p = projections[c];
+    const int r = corner_owners[c];
+    const double2 p = corner_projections[c];
     const int own = c / run;
     const int first = own - own % MERGED_RUNS;
     int to = c;
@@ -202,8 +193,8 @@ kernel void merge_corner_runs(int n, int run, global const int* restrict ids, gl
       int low = begin, high = min(n, begin + run);
       while (low < high) {
         const int middle = low + (high - low) / 2;
-        const int s = owners[middle];
-        const double u = projections[middle].y;
+        const int s = corner_owners[middle];
+        const double u = corner_projections[middle].y;
         const int is_before = s != r ? s < r : u != p.y ? u < p.y : other < own;
         if (is_before) {
           low = middle + 1;
@@ -214,7 +205,7 @@ kernel void merge_corner_runs(int n, int run, global const int* restrict ids, gl
       // Elements of runs before this one are before it already.
       to += other < own ? low - min(n, begin + run) : low - begin;
     }
-    new_ids[to] = ids[c];
+    new_ids[to] = corner_ids[c];
     new_owners[to] = r;
     new_projections[to] = p;
   }
@@ -397,11 +388,9 @@ static inline int first_past(hull_frame* frame, sequence s, int low, int high, h
 
 // A work-group takes a region. The sequences become the hulls; other_ids and other_projections are as large as they
 // are.
-kernel void hull_chains(int regions, filter_bound bound, global const int* restrict begins,
-                        global const int* restrict axis, global const double* restrict cut,
-                        global const double2* restrict points, global int* ids, global double2* projections,
-                        global int* other_ids, global double2* other_projections, global uint* restrict sizes,
-                        global volatile uint* restrict undecided COUNTERS) {
+kernel void hull_chains(int regions, filter_bound bound, global const int* restrict begins, CUTS(), global int* ids,
+                        global double2* projections, global int* other_ids, global double2* other_projections,
+                        global uint* restrict sizes, global volatile uint* restrict undecided COUNTERS) {
   local int hull_size[LARGEST_TILE_GROUP], kept_left[LARGEST_TILE_GROUP], first_right[LARGEST_TILE_GROUP];
   local int past[LARGEST_TILE_GROUP];
   const int r = get_group_id(0), me = get_local_id(0), group = get_local_size(0);
@@ -481,9 +470,7 @@ kernel void hull_chains(int regions, filter_bound bound, global const int* restr
 // A work-group takes a region. band: see chord_bands in prune.cl.
 kernel void write_paths(int regions, global const int* restrict begins, global const int* restrict offsets,
                         global const int* restrict axis, global const int* restrict ids,
-                        global const double2* restrict projections, global int* restrict path,
-                        global int* restrict path_regions, global double2* restrict path_projections,
-                        global double* restrict band) {
+                        global const double2* restrict projections, NEW_PATH_VERTICES(), global double* restrict band) {
   const int r = get_group_id(0);
   if (r >= regions) return;
   const int from = begins[r];
@@ -491,9 +478,9 @@ kernel void write_paths(int regions, global const int* restrict begins, global c
   const int count = offsets[r + 1] - to;
   for (int k = get_local_id(0); k < count; k += get_local_size(0)) {
     const double2 p = projections[from + k];
-    path[to + k] = ids[from + k];
-    path_regions[to + k] = r;
-    path_projections[to + k] = p;
+    new_path[to + k] = ids[from + k];
+    new_region[to + k] = r;
+    new_projections[to + k] = p;
     band[to + k] = k + 1 < count ? chord_band(p, projections[from + k + 1], is_planar(axis[r])) : INFINITY;
   }
 }

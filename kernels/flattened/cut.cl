@@ -5,12 +5,12 @@
 // chosen axis. By default that is the axis of the longer interquartile range, which keeps regions round and borders
 // short. find_ends finds the ends of the hulls among the border's corners, with one work-group per region.
 
+#include "flattened/arguments.h"
 #include "flattened/hull_height.h"
 #include "operations/counting.h"
 #include "operations/limits.h"
 
-kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets,
-                        global const int* restrict x_list, global const int* restrict y_list,
+kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets, LISTS(),
                         global const double2* restrict points, global int* restrict axis, global double* restrict cut,
                         global volatile int* restrict largest COUNTERS) {
   const int r = get_global_id(0);
@@ -45,9 +45,7 @@ static inline int before_along(int i, int j, int direction, int axis, double cut
 // A work-group takes a region. Each work-item walks corners that are a group apart, and the best of them are compared
 // in pairs.
 kernel void find_ends(int regions, global const int* restrict corner_offsets, global const int* restrict corners,
-                      global const int* restrict axis, global const double* restrict cut,
-                      global const double2* restrict points, global int* restrict first_end,
-                      global int* restrict last_end COUNTERS) {
+                      CUTS(), global int* restrict first_end, global int* restrict last_end COUNTERS) {
   local int best[2][LARGEST_TILE_GROUP];
   const int r = get_group_id(0), me = get_local_id(0), group = get_local_size(0);
   const int low = r < regions ? corner_offsets[r] : 0;

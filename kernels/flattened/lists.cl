@@ -5,15 +5,14 @@
 // work-item per point. list_counts, list_bounds and list_split then write the children's lists, stably. They are one
 // pass each, with one work-item per chunk, and a scan (scan.cl) follows the first.
 
+#include "flattened/arguments.h"
 #include "flattened/axes.h"
 #include "flattened/codes.h"
 #include "operations/counting.h"
 
 // broken[0] gets BROKEN_PATH if a point on the cut line is not on the path, which would be a bug.
-kernel void point_sides(int n, global const int* restrict list, global const int* restrict regions,
-                        global const int* restrict axis, global const double* restrict cut,
-                        global const double2* restrict points, global uchar* restrict side,
-                        global volatile int* restrict broken COUNTERS) {
+kernel void point_sides(int n, global const int* restrict list, global const int* restrict regions, CUTS(),
+                        global uchar* restrict side, global volatile int* restrict broken COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int id = list[i];

@@ -146,11 +146,8 @@ kernel void corner_codes(int n, int points_count, filter_bound bound, global con
 }
 
 kernel void corner_codes_exact(global const uint* restrict count, global const int* restrict list,
-                               global const int* restrict corners, global const int* restrict regions,
-                               global const int* restrict axis, global const double* restrict cut,
-                               global const double2* restrict points, global const int* restrict path_offsets,
-                               global const int* restrict path, global const int* restrict places,
-                               global uchar* restrict codes COUNTERS) {
+                               global const int* restrict corners, global const int* restrict regions, CUTS(), PATHS(),
+                               global const int* restrict places, global uchar* restrict codes COUNTERS) {
   const int length = count[0];
   for (int k = get_global_id(0); k < length; k += get_global_size(0)) {
     const int i = list[k];
@@ -213,8 +210,7 @@ kernel void corner_counts(int n, global const uchar* restrict codes, global uint
 
 // internal[k] = 1 for a path vertex that was an internal point; it becomes a border vertex. n: at least the number of
 // path vertices.
-kernel void path_internal(int n, int regions, global const int* restrict path_offsets, global const int* restrict path,
-                          global uchar* restrict side, global uint* restrict internal) {
+kernel void path_internal(int n, int regions, PATHS(), global uchar* restrict side, global uint* restrict internal) {
   const int k = get_global_id(0);
   if (k < n) {
     const int id = k < path_offsets[regions] ? path[k] : -1;
@@ -235,12 +231,8 @@ static inline void put_corner(int child, int to, int before, int vertex, int aft
 }
 
 kernel void emit_corners(int n, global const int* restrict old_corners, global const int* restrict regions,
-                         global const int* restrict corner_offsets, global const int* restrict path,
-                         global const int* restrict path_offsets, global const int* restrict places,
-                         global const uchar* restrict codes, global const uint2* restrict scanned,
-                         global const int* restrict child_region, global const int* restrict child_base,
-                         global int* restrict corners, global int* restrict corner_region,
-                         global int* restrict retired) {
+                         global const int* restrict corner_offsets, PATHS(), global const int* restrict places,
+                         global const uchar* restrict codes, global const uint2* restrict scanned, CHILDREN()) {
   const int i = get_global_id(0);
   if (i < n) {
     const int r = regions[i];
@@ -272,11 +264,8 @@ kernel void emit_corners(int n, global const int* restrict old_corners, global c
 
 // An internal point on the path: (previous, m, next) on the left, (next, m, previous) on the right, behind the
 // corners that come from corners.
-kernel void emit_path(int n, global const int* restrict path, global const int* restrict path_region,
-                      global const int* restrict path_offsets, global const uint* restrict internal,
-                      global const int* restrict corner_offsets, global const uint2* restrict scanned,
-                      global const int* restrict child_region, global const int* restrict child_base,
-                      global int* restrict corners, global int* restrict corner_region, global int* restrict retired) {
+kernel void emit_path(int n, PATHS(), global const int* restrict path_region, global const uint* restrict internal,
+                      global const int* restrict corner_offsets, global const uint2* restrict scanned, CHILDREN()) {
   const int k = get_global_id(0);
   if (k < n && internal[k + 1] != internal[k]) {
     const int r = path_region[k];

@@ -1,12 +1,11 @@
 // The projections of every region's internal points for its cut line. One pass, with one work-item per point.
 
+#include "flattened/arguments.h"
 #include "flattened/hull_height.h"
 #include "operations/counting.h"
 
 // The internal points' projections, in the places of the list that is sorted along their region's cut line.
-kernel void project_points(int n, global const int* restrict regions, global const int* restrict x_list,
-                           global const int* restrict y_list, global const int* restrict axis,
-                           global const double* restrict cut, global const double2* restrict points,
+kernel void project_points(int n, global const int* restrict regions, LISTS(), CUTS(),
                            global double2* restrict projections COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {

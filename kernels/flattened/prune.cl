@@ -70,8 +70,7 @@ static inline int held_against(int id, double2 p, int* low, int last, int axis, 
 
 // band[v]: a height above which nothing can be below the chord from path vertex v to the next. Behind a path's last
 // vertex there is no chord, and nothing is above it.
-kernel void chord_bands(int n, int regions, global const int* restrict path_offsets,
-                        global const int* restrict path_region, global const double2* restrict path_projections,
+kernel void chord_bands(int n, int regions, PATHS(), global const int* restrict path_region,
                         global const int* restrict axis, global double* restrict band COUNTERS) {
   const int v = get_global_id(0);
   const int vertices = path_offsets[regions];
@@ -174,9 +173,7 @@ kernel void prune_corners(int n, int points_count, int rough, filter_bound bound
 kernel void begin_paths(int n, int points_count, int kept, global const int* restrict positions,
                         global const int* restrict point_offsets, global const int* restrict corner_offsets,
                         global const int* restrict first_end, global const int* restrict last_end, CUTS(),
-                        global int* restrict path, global double2* restrict path_projections,
-                        global int* restrict path_region, global int* restrict first,
-                        global int2* restrict before COUNTERS) {
+                        NEW_PATH_VERTICES(), global int* restrict first, global int2* restrict before COUNTERS) {
   const int r = get_global_id(0);
   if (r <= n) {
     const int point_count = positions_below(point_offsets[r], kept, positions);
@@ -190,11 +187,11 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
     if (r < n) {
       for (int side = 0; side < 2; ++side) {
         const int id = side ? last_end[r] : first_end[r];
-        path[2 * r + side] = id;
+        new_path[2 * r + side] = id;
         // Sets without points have no ends.
-        path_projections[2 * r + side] =
+        new_projections[2 * r + side] =
             id < 0 ? (double2)(0.0) : project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
-        path_region[2 * r + side] = r;
+        new_region[2 * r + side] = r;
       }
     }
   }
@@ -205,8 +202,7 @@ kernel void gather_points(int n, int points_count, int regions_count, global con
                           global const int2* restrict before, global const int* restrict regions,
                           global const double2* restrict point_projections, LISTS(),
                           global const int* restrict corner_regions, global const int* restrict corners, CUTS(),
-                          global int* restrict ids, global int* restrict segment,
-                          global double2* restrict projections COUNTERS) {
+                          NEW_HULL_POINTS() COUNTERS) {
   const int k = get_global_id(0);
   if (k < n) {
     const int i = positions[k];
@@ -223,9 +219,9 @@ kernel void gather_points(int n, int points_count, int regions_count, global con
       p = project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
       to = k - before[regions_count].x + before[r + 1].x;
     }
-    ids[to] = id;
-    segment[to] = 2 * r;
-    projections[to] = p;
+    new_ids[to] = id;
+    new_segment[to] = 2 * r;
+    new_projections[to] = p;
   }
 }
 
@@ -240,8 +236,7 @@ kernel void chord_keys(int n, global const int* restrict positions, global const
 kernel void gather_below(int n, int points_count, global const ulong* restrict keys,
                          global const int* restrict elements, global const int* restrict path_region,
                          global const double* restrict element_depth, global const double2* restrict point_projections,
-                         LISTS(), global const int* restrict corners, CUTS(), global int* restrict ids,
-                         global int* restrict segment, global double2* restrict projections,
+                         LISTS(), global const int* restrict corners, CUTS(), NEW_HULL_POINTS(),
                          global double* restrict depth COUNTERS) {
   const int k = get_global_id(0);
   if (k < n) {
@@ -250,14 +245,14 @@ kernel void gather_below(int n, int points_count, global const ulong* restrict k
     const int r = path_region[v];
     const int a = axis[r];
     if (i < points_count) {
-      ids[k] = a == AXIS_Y ? x_list[i] : y_list[i];
-      projections[k] = point_projections[i];
+      new_ids[k] = a == AXIS_Y ? x_list[i] : y_list[i];
+      new_projections[k] = point_projections[i];
     } else {
       const int id = corners[3 * (i - points_count) + 1];
-      ids[k] = id;
-      projections[k] = project(to_frame(points[id], a), cut[r], is_planar(a));
+      new_ids[k] = id;
+      new_projections[k] = project(to_frame(points[id], a), cut[r], is_planar(a));
     }
-    segment[k] = v;
+    new_segment[k] = v;
     depth[k] = element_depth[i];
   }
 }

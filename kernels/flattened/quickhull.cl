@@ -28,9 +28,7 @@
 #include "operations/segmented_arg_reduce.h"
 
 // projections[i]: of point i, as path_projections. flags: 1 strictly below the chord, 0 not, or FLAG_UNDECIDED.
-kernel void hull_depths(int n, filter_bound bound, global const int* restrict segment,
-                        global const double2* restrict projections, global const double2* restrict path_projections,
-                        global const int* restrict path_region, global const int* restrict axis,
+kernel void hull_depths(int n, filter_bound bound, HULL_POINTS(), PATH_VERTICES(), global const int* restrict axis,
                         global double* restrict depth, global uchar* restrict flags COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -62,8 +60,7 @@ static inline int comes_first(double p, double q) {
 // of equal u, the one with the lower projection, so that the others of that u can be dropped.
 static inline int is_deeper(int s, int i, int j, global const int* restrict ids, global const double* restrict depth,
                             global const double2* restrict projections, global const int* restrict path_region,
-                            global const int* restrict axis, global const double* restrict cut,
-                            global const double2* restrict points) {
+                            CUTS()) {
   if (depth[i] != depth[j]) return depth[i] > depth[j];
   if (projections[i].y != projections[j].y) return comes_first(projections[i].y, projections[j].y);
   if (ids[i] == ids[j]) return i < j;
@@ -74,8 +71,7 @@ static inline int is_deeper(int s, int i, int j, global const int* restrict ids,
 #define DEEPER(s, i, j) is_deeper(s, i, j, ids, depth, projections, path_region, axis, cut, points)
 SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, global const uchar* restrict flags, global const int* restrict ids,
                      global const double* restrict depth, global const double2* restrict projections,
-                     global const int* restrict path_region, global const int* restrict axis,
-                     global const double* restrict cut, global const double2* restrict points)
+                     global const int* restrict path_region, CUTS())
 
 // Whether points i and i + 1 are a pair: places 2k and 2k + 1 of one segment, both below its chord. Pairs of equal u
 // have no slope.
@@ -90,9 +86,9 @@ static inline int is_pair(int i, int n, global const int* restrict segment, glob
 SEGMENTED_ARG_REDUCE(random_pairs, SLOPED_PAIR, COMES_FIRST, global const int* restrict first,
                      global const uchar* restrict flags, global const double2* restrict projections)
 
-kernel void tilted_depths(int n, global const int* restrict segment, global const double2* restrict projections,
-                          global const double2* restrict path_projections, global const int* restrict pair,
-                          global const double* restrict depth, global double* restrict tilted COUNTERS) {
+kernel void tilted_depths(int n, HULL_POINTS(), global const double2* restrict path_projections,
+                          global const int* restrict pair, global const double* restrict depth,
+                          global double* restrict tilted COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
     const int s = segment[i];
@@ -109,10 +105,9 @@ kernel void tilted_depths(int n, global const int* restrict segment, global cons
 }
 
 // Drops points that are certainly not below a chord to the new vertex. Undecided points stay, which does no harm.
-kernel void drop_pairs(int n, filter_bound bound, global const int* restrict segment, global const int* restrict first,
-                       global const double2* restrict projections, global const int* restrict path_region,
-                       global const int* restrict axis, global const int* restrict deepest,
-                       global uchar* restrict flags COUNTERS) {
+kernel void drop_pairs(int n, filter_bound bound, HULL_POINTS(), global const int* restrict first,
+                       global const int* restrict path_region, global const int* restrict axis,
+                       global const int* restrict deepest, global uchar* restrict flags COUNTERS) {
   const int i = get_global_id(0);
   if (i < n && is_pair(i, n, segment, first, flags)) {
     const int s = segment[i];
@@ -136,8 +131,7 @@ kernel void split_counts(int n, global const int* restrict deepest, global uint*
 }
 
 // Which half of its segment a kept point goes to. Points that share u with the new vertex are above it and are dropped.
-kernel void side_flags(int n, global const int* restrict segment, global const double2* restrict projections,
-                       global const uchar* restrict flags, global const int* restrict deepest,
+kernel void side_flags(int n, HULL_POINTS(), global const uchar* restrict flags, global const int* restrict deepest,
                        global uint2* restrict sides COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -152,11 +146,8 @@ kernel void side_flags(int n, global const int* restrict segment, global const d
   }
 }
 
-kernel void advance_points(int n, global const int* restrict ids, global const int* restrict segment,
-                           global const double2* restrict projections, global const int* restrict first,
-                           global const uint2* restrict sides, global const uint* restrict splits,
-                           global int* restrict new_ids, global int* restrict new_segment,
-                           global double2* restrict new_projections) {
+kernel void advance_points(int n, HULL_POINTS(), global const int* restrict first, global const uint2* restrict sides,
+                           global const uint* restrict splits, NEW_HULL_POINTS()) {
   const int i = get_global_id(0);
   if (i < n) {
     const uint2 before = sides[i];
@@ -173,11 +164,9 @@ kernel void advance_points(int n, global const int* restrict ids, global const i
 }
 
 // sizes: the new number of points and of path vertices.
-kernel void advance_paths(int n, int points_count, global const int* restrict ids,
-                          global const double2* restrict projections, global const int* restrict deepest,
+kernel void advance_paths(int n, int points_count, HULL_POINTS(), global const int* restrict deepest,
                           global const int* restrict first, global const uint2* restrict sides,
-                          global const uint* restrict splits, PATH_VERTICES(), global int* restrict new_path,
-                          global double2* restrict new_projections, global int* restrict new_region,
+                          global const uint* restrict splits, PATH_VERTICES(), NEW_PATH_VERTICES(),
                           global int* restrict new_first, global uint* restrict sizes) {
   const int v = get_global_id(0);
   if (v < n) {
@@ -216,11 +205,8 @@ kernel void find_path_offsets(int n, global const int* restrict path_region, glo
 // flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours. Of two neighbours
 // with equal u, the one whose projection is not the lower one is above. kept: where the vertices stood in the path of
 // the round before; those whose neighbours are the same need no second look.
-kernel void path_flags(int n, filter_bound bound, int first_round, global const int* restrict kept,
-                       global const int* restrict path, global const double2* restrict path_projections,
-                       global const int* restrict path_region, global const int* restrict path_offsets,
-                       global const int* restrict axis, global const double* restrict cut,
-                       global const double2* restrict points, global uchar* restrict flags COUNTERS) {
+kernel void path_flags(int n, filter_bound bound, int first_round, global const int* restrict kept, PATHS(),
+                       global const int* restrict path_region, CUTS(), global uchar* restrict flags COUNTERS) {
   const int k = get_global_id(0);
   if (k < n) {
     const int r = path_region[k];
@@ -247,17 +233,14 @@ kernel void path_flags(int n, filter_bound bound, int first_round, global const 
 }
 
 // A path's vertices as points below the chord between its ends, to begin again with: see begin_paths in prune.cl.
-kernel void restart_paths(int n, global const int* restrict path_offsets, global const int* restrict path,
-                          global const double2* restrict path_projections, global int* restrict ends,
-                          global double2* restrict end_projections, global int* restrict end_region,
-                          global int* restrict first) {
+kernel void restart_paths(int n, PATHS(), NEW_PATH_VERTICES(), global int* restrict first) {
   const int r = get_global_id(0);
   if (r < n) {
     for (int side = 0; side < 2; ++side) {
       const int v = side ? path_offsets[r + 1] - 1 : path_offsets[r];
-      ends[2 * r + side] = path[v];
-      end_projections[2 * r + side] = path_projections[v];
-      end_region[2 * r + side] = r;
+      new_path[2 * r + side] = path[v];
+      new_projections[2 * r + side] = path_projections[v];
+      new_region[2 * r + side] = r;
       first[2 * r + side] = path_offsets[r + side];
     }
     if (r == n - 1) first[2 * n] = path_offsets[n];
@@ -269,10 +252,7 @@ kernel void restart_segments(int n, global const int* restrict path_region, glob
   if (v < n) segment[v] = 2 * path_region[v];
 }
 
-kernel void compact_path(int n, global const int* restrict kept, global const int* restrict path,
-                         global const double2* restrict path_projections, global const int* restrict path_region,
-                         global int* restrict new_path, global double2* restrict new_projections,
-                         global int* restrict new_region) {
+kernel void compact_path(int n, global const int* restrict kept, PATH_VERTICES(), NEW_PATH_VERTICES()) {
   const int k = get_global_id(0);
   if (k < n) {
     const int from = kept[k];

@@ -150,8 +150,7 @@ static inline void flip(rings* g, int m, int e, int f) {
 // that cross it are flipped. Each is the diagonal of a convex quadrilateral, since all their ends are on one circle;
 // broken[0] gets BROKEN_BORDER if that does not hold.
 kernel void restore_border(int n, global const int* restrict missing, global const uint* restrict large_offsets,
-                           global const int* restrict corners, global const int* restrict corner_vertex,
-                           global const int* restrict vertices, global const double2* restrict places,
+                           STRIP_CORNERS(), global const double2* restrict places,
                            global const double2* restrict points, filter_bounds bounds, global ring_edge* edges,
                            global int* vertex_edge, global int* border_edge,
                            global volatile int* restrict broken COUNTERS) {

@@ -123,9 +123,9 @@ void check_chains(Runtime& runtime, const Coordinates& coordinates, const std::v
                                         .axis = level.axis,
                                         .ids = sequences.ids,
                                         .projections = sequences.projections,
-                                        .path = path,
-                                        .path_regions = path_regions,
-                                        .path_projections = path_projections,
+                                        .new_path_vertices = {.new_path = path,
+                                                              .new_projections = path_projections,
+                                                              .new_region = path_regions},
                                         .band = band});
     EXPECT_TRUE(same(testing::download(runtime, path, vertices), paths.vertices));
     EXPECT_TRUE(same(testing::download(runtime, path_regions, vertices), paths.regions));
@@ -223,8 +223,8 @@ TEST(Chains, ThinLists) {
       const auto thin_projections = testing::guarded<cl_double2>(runtime, ids.size());
       runtime.map(ids.size(), kernels::thin_lists{.regions = regions,
                                                   .offsets = testing::upload(runtime, offsets),
-                                                  .x_list = testing::upload(runtime, x_list),
-                                                  .y_list = testing::upload(runtime, y_list),
+                                                  .lists = {.x_list = testing::upload(runtime, x_list),
+                                                            .y_list = testing::upload(runtime, y_list)},
                                                   .projections = testing::upload(runtime, projections),
                                                   .axis = testing::upload(runtime, axis),
                                                   .first_end = testing::upload(runtime, first_end),
@@ -266,7 +266,10 @@ TEST(Chains, KeptCornersAreSorted) {
       struct Arrays {
         Buffer<cl_int> ids, owners;
         Buffer<cl_double2> projections;
+        operator kernels::corners_to_join() const { return {ids, owners, projections}; }
+        operator kernels::new_corners() const { return {ids, owners, projections}; }
       };
+
       const auto fresh = [&] {
         return Arrays{testing::guarded<cl_int>(runtime, count), testing::guarded<cl_int>(runtime, count),
                       testing::guarded<cl_double2>(runtime, count)};
@@ -275,21 +278,12 @@ TEST(Chains, KeptCornersAreSorted) {
                          testing::upload(runtime, projections)};
       const Arrays compared = fresh();
       runtime.map(count, kernels::place_kept_corners{.before = testing::upload(runtime, before),
-                                                     .ids = given.ids,
-                                                     .owners = given.owners,
-                                                     .projections = given.projections,
-                                                     .new_ids = compared.ids,
-                                                     .new_owners = compared.owners,
-                                                     .new_projections = compared.projections});
+                                                     .corners_to_join = given,
+                                                     .new_corners = compared});
       Arrays now = given, then = fresh();
       for (std::size_t run = 1; run < count; run *= kernel::MERGED_RUNS) {
-        runtime.map(count, kernels::merge_corner_runs{.run = run,
-                                                      .ids = now.ids,
-                                                      .owners = now.owners,
-                                                      .projections = now.projections,
-                                                      .new_ids = then.ids,
-                                                      .new_owners = then.owners,
-                                                      .new_projections = then.projections});
+        runtime.map(count,
+                    kernels::merge_corner_runs{.run = run, .corners_to_join = now, .new_corners = then});
         std::swap(now, then);
       }
       for (const Arrays& sorted : {compared, now}) {
@@ -349,19 +343,19 @@ void check_sequences_of_lists(Runtime& runtime, const std::vector<std::size_t>& 
     const auto found_begins = testing::guarded<cl_int>(runtime, begins.size());
     const auto found_ids = testing::guarded<cl_int>(runtime, ids.size());
     const auto found_projections = testing::guarded<cl_double2>(runtime, ids.size());
-    runtime.launch(list.size(), group, list.size(),
-                   kernels::sequence_of_lists{.offsets = testing::upload(runtime, offsets),
-                                              .list = testing::upload(runtime, list),
-                                              .regions = testing::upload(runtime, regions),
-                                              .list_projections = testing::upload(runtime, list_projections),
-                                              .first_end = testing::upload(runtime, first_end),
-                                              .last_end = testing::upload(runtime, last_end),
-                                              .axis = level.axis,
-                                              .cut = level.cut,
-                                              .points = testing::upload(runtime, places),
-                                              .begins = found_begins,
-                                              .ids = found_ids,
-                                              .projections = found_projections});
+    runtime.launch(
+        list.size(), group, list.size(),
+        kernels::sequence_of_lists{
+            .offsets = testing::upload(runtime, offsets),
+            .list = testing::upload(runtime, list),
+            .regions = testing::upload(runtime, regions),
+            .list_projections = testing::upload(runtime, list_projections),
+            .first_end = testing::upload(runtime, first_end),
+            .last_end = testing::upload(runtime, last_end),
+            .cuts = {.axis = level.axis, .cut = level.cut, .points = testing::upload(runtime, places)},
+            .begins = found_begins,
+            .ids = found_ids,
+            .projections = found_projections});
     ASSERT_TRUE(same(testing::download(runtime, found_begins, begins.size()), begins));
     ASSERT_TRUE(same(testing::download(runtime, found_ids, ids.size()), ids));
     ASSERT_TRUE(same(testing::download(runtime, found_projections, ids.size()), projections));
@@ -461,18 +455,16 @@ void check_gathered_corners(Runtime& runtime, const KeptElements& kept, FixtureR
     const auto found_projections = testing::guarded<cl_double2>(runtime, ids.size());
     runtime.launch(
         ids.size(), group, ids.size(),
-        kernels::gather_kept_corners{.regions = kept.regions,
-                                     .points_count = kept.points(),
-                                     .before = testing::upload(runtime, kept.before),
-                                     .positions = testing::upload(runtime, kept.positions),
-                                     .corner_regions = testing::upload(runtime, kept.corner_regions),
-                                     .corners = testing::upload(runtime, corners),
-                                     .axis = level.axis,
-                                     .cut = level.cut,
-                                     .points = testing::upload(runtime, places),
-                                     .ids = found_ids,
-                                     .owners = found_owners,
-                                     .projections = found_projections});
+        kernels::gather_kept_corners{
+            .regions = kept.regions,
+            .points_count = kept.points(),
+            .before = testing::upload(runtime, kept.before),
+            .positions = testing::upload(runtime, kept.positions),
+            .corner_regions = testing::upload(runtime, kept.corner_regions),
+            .corners = testing::upload(runtime, corners),
+            .cuts = {.axis = level.axis, .cut = level.cut, .points = testing::upload(runtime, places)},
+            .new_corners = {
+                .new_ids = found_ids, .new_owners = found_owners, .new_projections = found_projections}});
     ASSERT_TRUE(same(testing::download(runtime, found_ids, ids.size()), ids));
     ASSERT_TRUE(same(testing::download(runtime, found_owners, ids.size()), owners));
     ASSERT_TRUE(same(testing::download(runtime, found_projections, ids.size()), projections));

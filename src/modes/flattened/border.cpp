@@ -92,11 +92,7 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
                                                     .hull_offsets = hull_sizes,
                                                     .set_of_id = table.set_of_id,
                                                     .collinear = collinear,
-                                                    .child_region = children.region,
-                                                    .child_base = children.base,
-                                                    .corners = level.corner_ids,
-                                                    .corner_region = level.corner_regions,
-                                                    .retired_corners = retired.corner_ids});
+                                                    .children = children.list(level, retired)});
 
   // The lists of level 0: internal points in the order of ids, which is that of x, and in the order of y.
   for (const bool by_y : {false, true}) {

@@ -19,6 +19,13 @@ struct KeptCorners {
   std::size_t count = 0;
   Buffer<cl_int> ids{}, owners{};
   Buffer<cl_double2> projections{};
+
+  operator kernels::corners_to_join() const {
+    return {.corner_ids = ids, .corner_owners = owners, .corner_projections = projections};
+  }
+  operator kernels::new_corners() const {
+    return {.new_ids = ids, .new_owners = owners, .new_projections = projections};
+  }
 };
 
 // What prune kept of a level's elements. The numbers stay on the device.
@@ -52,8 +59,7 @@ Level thinned(Workspace& work, const Level& level, Arena& arena) {
   work.runtime.note_elements(kernel::BUCKET);
   work.runtime.map(thin.points, kernels::thin_lists{.regions = level.regions,
                                                     .offsets = level.point_offsets,
-                                                    .x_list = level.x_list,
-                                                    .y_list = level.y_list,
+                                                    .lists = level,
                                                     .projections = level.projections,
                                                     .axis = level.axis,
                                                     .first_end = level.first_end,
@@ -72,9 +78,7 @@ Sequences sequences_of(Workspace& work, const PointTable& table, const Level& li
                                                            .list_projections = list.projections,
                                                            .first_end = list.first_end,
                                                            .last_end = list.last_end,
-                                                           .axis = list.axis,
-                                                           .cut = list.cut,
-                                                           .points = table.points,
+                                                           .cuts = list.cuts(table),
                                                            .begins = made.begins,
                                                            .ids = made.ids,
                                                            .projections = made.projections});
@@ -119,31 +123,16 @@ KeptCorners sorted_corners(Workspace& work, const PointTable& table, const Level
                                                   .positions = kept.positions,
                                                   .corner_regions = level.corner_regions,
                                                   .corners = level.corner_ids,
-                                                  .axis = level.axis,
-                                                  .cut = level.cut,
-                                                  .points = table.points,
-                                                  .ids = now.ids,
-                                                  .owners = now.owners,
-                                                  .projections = now.projections});
+                                                  .cuts = level.cuts(table),
+                                                  .new_corners = now});
   KeptCorners then = allocate_corners(arena, count);
   if (most <= kernel::COUNTED_CORNERS) {
-    runtime.map(count, kernels::place_kept_corners{.before = kept.before,
-                                                   .ids = now.ids,
-                                                   .owners = now.owners,
-                                                   .projections = now.projections,
-                                                   .new_ids = then.ids,
-                                                   .new_owners = then.owners,
-                                                   .new_projections = then.projections});
+    runtime.map(count, kernels::place_kept_corners{
+                           .before = kept.before, .corners_to_join = now, .new_corners = then});
     return then;
   }
   for (std::size_t run = 1; run < count; run *= kernel::MERGED_RUNS) {
-    runtime.map(count, kernels::merge_corner_runs{.run = run,
-                                                  .ids = now.ids,
-                                                  .owners = now.owners,
-                                                  .projections = now.projections,
-                                                  .new_ids = then.ids,
-                                                  .new_owners = then.owners,
-                                                  .new_projections = then.projections});
+    runtime.map(count, kernels::merge_corner_runs{.run = run, .corners_to_join = now, .new_corners = then});
     std::swap(now, then);
   }
   return now;
@@ -157,16 +146,12 @@ void join(Workspace& work, const Level& level, const Paths& paths, const Kept& k
                                          .begins = joined.begins,
                                          .positions = kept.positions,
                                          .regions = level.point_regions,
-                                         .lists = {.x_list = level.x_list, .y_list = level.y_list},
+                                         .lists = level,
                                          .point_projections = level.projections,
                                          .axis = level.axis,
-                                         .paths = {.path_offsets = paths.offsets,
-                                                   .path = paths.vertices,
-                                                   .path_projections = paths.projections},
+                                         .paths = paths,
                                          .path_regions = paths.regions,
-                                         .corners_to_join = {.corner_ids = corners.ids,
-                                                             .corner_owners = corners.owners,
-                                                             .corner_projections = corners.projections},
+                                         .corners_to_join = corners,
                                          .ids = joined.ids,
                                          .projections = joined.projections});
 }
@@ -179,10 +164,7 @@ ChordPaths hulls_of(Workspace& work, const PointTable& table, const Level& level
   const std::size_t group = region_group(work, sequences.room / regions);
   ChordPaths made;
   Paths& paths = made.paths;
-  paths.size = sequences.room;
-  paths.vertices = arena.allocate<cl_int>(paths.size);
-  paths.projections = arena.allocate<cl_double2>(paths.size);
-  paths.regions = arena.allocate<cl_int>(paths.size);
+  paths = allocate_paths(arena, sequences.room);
   paths.offsets = arena.allocate<cl_int>(regions + 1);
   made.band = arena.allocate<cl_double>(paths.size);
   chain_hulls(work, table, level, sequences, group, paths.offsets.as<cl_uint>());
@@ -194,9 +176,7 @@ ChordPaths hulls_of(Workspace& work, const PointTable& table, const Level& level
                                       .axis = level.axis,
                                       .ids = sequences.ids,
                                       .projections = sequences.projections,
-                                      .path = paths.vertices,
-                                      .path_regions = paths.regions,
-                                      .path_projections = paths.projections,
+                                      .new_path_vertices = paths,
                                       .band = made.band});
   return made;
 }
@@ -220,9 +200,7 @@ void chain_hulls(Workspace& work, const PointTable& table, const Level& level, c
       kernels::hull_chains{.regions = level.regions,
                            .bound = work.bounds.hull,
                            .begins = sequences.begins,
-                           .axis = level.axis,
-                           .cut = level.cut,
-                           .points = table.points,
+                           .cuts = level.cuts(table),
                            .ids = sequences.ids,
                            .projections = sequences.projections,
                            .other_ids = work.scratch().allocate<cl_int>(sequences.room),

@@ -13,8 +13,7 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
   work.runtime.map(level.regions, kernels::cut_regions{.alternate_axis = alternate_axis,
                                                        .level = depth,
                                                        .point_offsets = level.point_offsets,
-                                                       .x_list = level.x_list,
-                                                       .y_list = level.y_list,
+                                                       .lists = level,
                                                        .points = table.points,
                                                        .axis = level.axis,
                                                        .cut = level.cut,
@@ -27,9 +26,7 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
                       kernels::find_ends{.regions = level.regions,
                                          .corner_offsets = level.corner_offsets,
                                          .corners = level.corner_ids,
-                                         .axis = level.axis,
-                                         .cut = level.cut,
-                                         .points = table.points,
+                                         .cuts = level.cuts(table),
                                          .first_end = level.first_end,
                                          .last_end = level.last_end});
 }

@@ -10,11 +10,8 @@ void decide_depths(Workspace& work, const PointTable& table, const Level& level,
                                                                     .own_path = false,
                                                                     .ids = ids,
                                                                     .chord = chord,
-                                                                    .path = paths.vertices,
-                                                                    .path_region = paths.regions,
-                                                                    .axis = level.axis,
-                                                                    .cut = level.cut,
-                                                                    .points = table.points,
+                                                                    .path_vertices = paths,
+                                                                    .cuts = level.cuts(table),
                                                                     .flags = flags,
                                                                     .undecided = work.undecided});
 }
@@ -25,11 +22,8 @@ void decide_vertices(Workspace& work, const PointTable& table, const Level& leve
                                                                          .own_path = true,
                                                                          .ids = paths.vertices,
                                                                          .chord = paths.vertices,
-                                                                         .path = paths.vertices,
-                                                                         .path_region = paths.regions,
-                                                                         .axis = level.axis,
-                                                                         .cut = level.cut,
-                                                                         .points = table.points,
+                                                                         .path_vertices = paths,
+                                                                         .cuts = level.cuts(table),
                                                                          .flags = flags,
                                                                          .undecided = work.undecided});
 }

@@ -7,23 +7,6 @@ namespace flaunay::flattened {
 using namespace geometry;
 using namespace statistics;
 
-namespace {
-
-// Adds the statistics of a step to those of its level: one region, or all regions of the level at once.
-void accumulate(LevelStatistics& sum, const LevelStatistics& part) {
-  sum.regions += part.regions;
-  sum.internal_points += part.internal_points;
-  sum.corners += part.corners;
-  sum.candidates += part.candidates;
-  sum.survivors += part.survivors;
-  sum.path_vertices += part.path_vertices;
-  sum.candidate_rounds = std::max(sum.candidate_rounds, part.candidate_rounds);
-  sum.hull_rounds = std::max(sum.hull_rounds, part.hull_rounds);
-  sum.seconds += part.seconds;
-}
-
-}  // namespace
-
 Recursion::Recursion(Workspace& work, PointTable& table, const research::Options& options,
                      std::array<Arena*, 2> arenas, double levels_end)
     : work_(work), table_(table), options_(options), arenas_(arenas), levels_end_(levels_end) {}
@@ -65,7 +48,7 @@ Level Recursion::step(const Level& level, int depth) {
   statistics.seconds = work_.runtime.working_clock() - begin;
   auto& levels = work_.levels;
   if (levels.size() <= static_cast<std::size_t>(depth)) levels.resize(depth + 1);
-  accumulate(levels[depth], statistics);
+  add_part(levels[depth], statistics);
   return children;
 }
 
@@ -99,12 +82,7 @@ int Recursion::levels_to(std::size_t internal_points) const {
 void Recursion::recursive() {
   // One arena holds the regions from the first one down to the current one as a stack.
   work_.children = arenas_[0];
-  const std::vector<cl_int> point_offsets = read_all(work_, level_.point_offsets, level_.regions + 1);
-  const std::vector<cl_int> corner_offsets = read_all(work_, level_.corner_offsets, level_.regions + 1);
-  for (std::size_t r = 0; r < level_.regions; ++r) {
-    Arena::Scope scope(*work_.children);
-    recurse(single_region(level_, r, point_offsets, corner_offsets), 0);
-  }
+  recurse_each(level_, 0);
 }
 
 void Recursion::recurse(const Level& region, int depth) {
@@ -115,43 +93,30 @@ void Recursion::recurse(const Level& region, int depth) {
   if (children.regions == 1) {
     recurse(children, depth + 1);
   } else if (children.regions > 1) {
-    const std::vector<cl_int> point_offsets = read_all(work_, children.point_offsets, children.regions + 1);
-    const std::vector<cl_int> corner_offsets = read_all(work_, children.corner_offsets, children.regions + 1);
-    for (std::size_t r = 0; r < children.regions; ++r) {
-      Arena::Scope child_scope(*work_.children);
-      recurse(single_region(children, r, point_offsets, corner_offsets), depth + 1);
-    }
+    recurse_each(children, depth + 1);
   }
 }
 
-Level Recursion::single_region(const Level& level, std::size_t region,
-                               const std::vector<cl_int>& point_offsets,
-                               const std::vector<cl_int>& corner_offsets) {
+void Recursion::recurse_each(const Level& level, int depth) {
   host::Runtime& runtime = work_.runtime;
-  Arena& arena = *work_.children;
-  const std::size_t first_point = point_offsets[region];
-  const std::size_t first_corner = corner_offsets[region];
-  Level single;
-  single.regions = 1;
-  single.points = point_offsets[region + 1] - point_offsets[region];
-  single.corners = corner_offsets[region + 1] - corner_offsets[region];
-  single.x_list = arena.allocate<cl_int>(single.points);
-  single.y_list = arena.allocate<cl_int>(single.points);
-  single.point_regions = arena.allocate<cl_int>(single.points);
-  single.point_offsets = arena.allocate<cl_int>(2);
-  single.corner_ids = arena.allocate<cl_int>(3 * single.corners);
-  single.corner_regions = arena.allocate<cl_int>(single.corners);
-  single.corner_offsets = arena.allocate<cl_int>(2);
-  runtime.copy(level.x_list, first_point, single.x_list, 0, single.points);
-  runtime.copy(level.y_list, first_point, single.y_list, 0, single.points);
-  runtime.copy(level.corner_ids, 3 * first_corner, single.corner_ids, 0, 3 * single.corners);
-  runtime.fill(single.point_regions, single.points, cl_int{0});
-  runtime.fill(single.corner_regions, single.corners, cl_int{0});
-  const cl_int point_bounds[2] = {0, static_cast<cl_int>(single.points)};
-  const cl_int corner_bounds[2] = {0, static_cast<cl_int>(single.corners)};
-  runtime.write(single.point_offsets, 0, 2, point_bounds);
-  runtime.write(single.corner_offsets, 0, 2, corner_bounds);
-  return single;
+  const std::vector<cl_int> point_offsets = read_all(work_, level.point_offsets, level.regions + 1);
+  const std::vector<cl_int> corner_offsets = read_all(work_, level.corner_offsets, level.regions + 1);
+  for (std::size_t r = 0; r < level.regions; ++r) {
+    Arena::Scope scope(*work_.children);
+    const std::size_t first_point = point_offsets[r], first_corner = corner_offsets[r];
+    const Level single = allocate_level(*work_.children, 1, point_offsets[r + 1] - first_point,
+                                        corner_offsets[r + 1] - first_corner);
+    runtime.copy(level.x_list, first_point, single.x_list, 0, single.points);
+    runtime.copy(level.y_list, first_point, single.y_list, 0, single.points);
+    runtime.copy(level.corner_ids, 3 * first_corner, single.corner_ids, 0, 3 * single.corners);
+    runtime.fill(single.point_regions, single.points, cl_int{0});
+    runtime.fill(single.corner_regions, single.corners, cl_int{0});
+    const cl_int point_bounds[2] = {0, static_cast<cl_int>(single.points)};
+    const cl_int corner_bounds[2] = {0, static_cast<cl_int>(single.corners)};
+    runtime.write(single.point_offsets, 0, 2, point_bounds);
+    runtime.write(single.corner_offsets, 0, 2, corner_bounds);
+    recurse(single, depth);
+  }
 }
 
 RegionArrays Recursion::read_regions() {

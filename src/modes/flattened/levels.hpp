@@ -51,8 +51,7 @@ class Recursion {
   /// internal points.
   Level step(const Level& level, int depth);
   void recurse(const Level& region, int depth);
-  Level single_region(const Level& level, std::size_t region, const std::vector<cl_int>& point_offsets,
-                      const std::vector<cl_int>& corner_offsets);
+  void recurse_each(const Level& level, int depth);
   /// share: that of the recursion which is done.
   void report(int depth, double share);
   double share_without(std::size_t points_left) const;

@@ -32,9 +32,7 @@ ListSplit begin_split(Workspace& work, const PointTable& table, const Level& lev
   host::Runtime& runtime = work.runtime;
   runtime.map(level.points, kernels::point_sides{.list = level.x_list,
                                                  .regions = level.point_regions,
-                                                 .axis = level.axis,
-                                                 .cut = level.cut,
-                                                 .points = table.points,
+                                                 .cuts = level.cuts(table),
                                                  .side = table.side,
                                                  .broken = work.broken});
   ListSplit split;

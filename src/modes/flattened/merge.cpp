@@ -17,18 +17,15 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   work.add_depth(Component::split, 1 + scan_depth(level.points));
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
-  runtime.map(level.corners,
-              kernels::corner_codes{.points_count = level.points,
-                                    .bound = work.bounds.orient,
-                                    .kept = paths.flags,
-                                    .corners = level.corner_ids,
-                                    .regions = level.corner_regions,
-                                    .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
-                                    .paths = {.path_offsets = paths.offsets,
-                                              .path = paths.vertices,
-                                              .path_projections = paths.projections},
-                                    .places = places,
-                                    .codes = codes});
+  runtime.map(level.corners, kernels::corner_codes{.points_count = level.points,
+                                                   .bound = work.bounds.orient,
+                                                   .kept = paths.flags,
+                                                   .corners = level.corner_ids,
+                                                   .regions = level.corner_regions,
+                                                   .cuts = level.cuts(table),
+                                                   .paths = paths,
+                                                   .places = places,
+                                                   .codes = codes});
   {
     Arena::Scope list_scope(scratch);
     const auto list = pack_undecided(work, codes, level.corners);
@@ -36,11 +33,8 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
                                                .list = list,
                                                .corners = level.corner_ids,
                                                .regions = level.corner_regions,
-                                               .axis = level.axis,
-                                               .cut = level.cut,
-                                               .points = table.points,
-                                               .path_offsets = paths.offsets,
-                                               .path = paths.vertices,
+                                               .cuts = level.cuts(table),
+                                               .paths = paths,
                                                .places = places,
                                                .codes = codes});
   }
@@ -49,11 +43,9 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   host::exclusive_scan(runtime, corner_sides, level.corners, corner_sides);
 
   const auto internal = scratch.allocate<cl_uint>(paths.size + 1);
-  runtime.map(paths.size, kernels::path_internal{.regions = level.regions,
-                                                 .path_offsets = paths.offsets,
-                                                 .path = paths.vertices,
-                                                 .side = table.side,
-                                                 .internal = internal});
+  runtime.map(paths.size,
+              kernels::path_internal{
+                  .regions = level.regions, .paths = paths, .side = table.side, .internal = internal});
   host::exclusive_scan(runtime, internal, paths.size, internal);
   const ListSplit split = begin_split(work, table, level);
 
@@ -63,27 +55,17 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   runtime.map(level.corners, kernels::emit_corners{.old_corners = level.corner_ids,
                                                    .regions = level.corner_regions,
                                                    .corner_offsets = level.corner_offsets,
-                                                   .path = paths.vertices,
-                                                   .path_offsets = paths.offsets,
+                                                   .paths = paths,
                                                    .places = places,
                                                    .codes = codes,
                                                    .scanned = corner_sides,
-                                                   .child_region = child.region,
-                                                   .child_base = child.base,
-                                                   .corners = next.corner_ids,
-                                                   .corner_region = next.corner_regions,
-                                                   .retired = retired.corner_ids});
-  runtime.map(paths.size, kernels::emit_path{.path = paths.vertices,
+                                                   .children = child.list(next, retired)});
+  runtime.map(paths.size, kernels::emit_path{.paths = paths,
                                              .path_region = paths.regions,
-                                             .path_offsets = paths.offsets,
                                              .internal = internal,
                                              .corner_offsets = level.corner_offsets,
                                              .scanned = corner_sides,
-                                             .child_region = child.region,
-                                             .child_base = child.base,
-                                             .corners = next.corner_ids,
-                                             .corner_region = next.corner_regions,
-                                             .retired = retired.corner_ids});
+                                             .children = child.list(next, retired)});
 
   split_lists(work, table, level, split, child, next);
 }

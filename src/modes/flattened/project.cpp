@@ -7,11 +7,8 @@ using namespace statistics;
 void project(Workspace& work, const PointTable& table, Level& level) {
   level.projections = work.scratch().allocate<cl_double2>(level.points);
   work.runtime.map(level.points, kernels::project_points{.regions = level.point_regions,
-                                                         .x_list = level.x_list,
-                                                         .y_list = level.y_list,
-                                                         .axis = level.axis,
-                                                         .cut = level.cut,
-                                                         .points = table.points,
+                                                         .lists = level,
+                                                         .cuts = level.cuts(table),
                                                          .projections = level.projections});
   work.add_depth(Component::hull, kernel::PROJECT_OPERATIONS);
 }

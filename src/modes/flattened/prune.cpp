@@ -21,17 +21,8 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
   host::Runtime& runtime = work.runtime;
   const auto points_count = static_cast<cl_int>(level.points);
   const auto regions = static_cast<cl_int>(level.regions);
-  HullPoints points;
   const auto [positions, kept] = host::pack_positions(runtime, flags, elements, 1);
-  points.size = kept;
-  points.ids = arena.allocate<cl_int>(kept);
-  points.segments = arena.allocate<cl_int>(kept);
-  points.projections = arena.allocate<cl_double2>(kept);
-  points.ends.size = 2 * level.regions;
-  points.ends.vertices = arena.allocate<cl_int>(points.ends.size);
-  points.ends.projections = arena.allocate<cl_double2>(points.ends.size);
-  points.ends.regions = arena.allocate<cl_int>(points.ends.size);
-  points.first = arena.allocate<cl_int>(points.ends.size + 1);
+  const HullPoints points = allocate_hull_points(arena, kept, 2 * level.regions);
   const auto before = work.scratch().allocate<cl_int2>(level.regions + 1);
   const std::size_t group = runtime.sizes().map_group;
   runtime.launch(level.regions + 1, group, regions,
@@ -42,26 +33,21 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
                                       .corner_offsets = level.corner_offsets,
                                       .first_end = level.first_end,
                                       .last_end = level.last_end,
-                                      .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
-                                      .path = points.ends.vertices,
-                                      .path_projections = points.ends.projections,
-                                      .path_region = points.ends.regions,
+                                      .cuts = level.cuts(table),
+                                      .new_path_vertices = points.ends,
                                       .first = points.first,
                                       .before = before});
-  runtime.map(kept,
-              kernels::gather_points{.points_count = points_count,
-                                     .regions_count = regions,
-                                     .positions = positions,
-                                     .before = before,
-                                     .regions = level.point_regions,
-                                     .point_projections = level.projections,
-                                     .lists = {.x_list = level.x_list, .y_list = level.y_list},
-                                     .corner_regions = level.corner_regions,
-                                     .corners = level.corner_ids,
-                                     .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
-                                     .ids = points.ids,
-                                     .segment = points.segments,
-                                     .projections = points.projections});
+  runtime.map(kept, kernels::gather_points{.points_count = points_count,
+                                           .regions_count = regions,
+                                           .positions = positions,
+                                           .before = before,
+                                           .regions = level.point_regions,
+                                           .point_projections = level.projections,
+                                           .lists = level,
+                                           .corner_regions = level.corner_regions,
+                                           .corners = level.corner_ids,
+                                           .cuts = level.cuts(table),
+                                           .new_hull_points = points});
   return points;
 }
 
@@ -79,37 +65,30 @@ void hold_against(Workspace& work, const PointTable& table, const Level& level, 
                   const Buffer<cl_double>& band, bool keep_on, bool rough, const Buffer<cl_int>& ids,
                   const Pruned& pruned) {
   host::Runtime& runtime = work.runtime;
+  const kernels::candidates candidates{
+      .ids = ids, .chord = pruned.chord, .depth = pruned.depth, .flags = pruned.flags};
   runtime.note_elements(kernel::BUCKET);
-  runtime.map(
-      (level.points + kernel::BUCKET - 1) / kernel::BUCKET,
-      kernels::prune_points{
-          .elements = level.points,
-          .keep_on = keep_on,
-          .rough = rough,
-          .bound = work.bounds.hull,
-          .regions = level.point_regions,
-          .lists = {.x_list = level.x_list, .y_list = level.y_list},
-          .projections = level.projections,
-          .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
-          .band = band,
-          .paths = {.path_offsets = paths.offsets,
-                    .path = paths.vertices,
-                    .path_projections = paths.projections},
-          .candidates = {.ids = ids, .chord = pruned.chord, .depth = pruned.depth, .flags = pruned.flags}});
-  runtime.map(
-      level.corners,
-      kernels::prune_corners{
-          .points_count = level.points,
-          .rough = rough,
-          .bound = work.bounds.hull,
-          .corner_regions = level.corner_regions,
-          .corners = level.corner_ids,
-          .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
-          .band = band,
-          .paths = {.path_offsets = paths.offsets,
-                    .path = paths.vertices,
-                    .path_projections = paths.projections},
-          .candidates = {.ids = ids, .chord = pruned.chord, .depth = pruned.depth, .flags = pruned.flags}});
+  runtime.map((level.points + kernel::BUCKET - 1) / kernel::BUCKET,
+              kernels::prune_points{.elements = level.points,
+                                    .keep_on = keep_on,
+                                    .rough = rough,
+                                    .bound = work.bounds.hull,
+                                    .regions = level.point_regions,
+                                    .lists = level,
+                                    .projections = level.projections,
+                                    .cuts = level.cuts(table),
+                                    .band = band,
+                                    .paths = paths,
+                                    .candidates = candidates});
+  runtime.map(level.corners, kernels::prune_corners{.points_count = level.points,
+                                                    .rough = rough,
+                                                    .bound = work.bounds.hull,
+                                                    .corner_regions = level.corner_regions,
+                                                    .corners = level.corner_ids,
+                                                    .cuts = level.cuts(table),
+                                                    .band = band,
+                                                    .paths = paths,
+                                                    .candidates = candidates});
 }
 
 }  // namespace
@@ -121,9 +100,8 @@ void prune(Workspace& work, const PointTable& table, const Level& level, const P
   const auto ids = scratch.allocate<cl_int>(pruned.elements);
   const auto band = scratch.allocate<cl_double>(paths.size);
   work.runtime.map(paths.size, kernels::chord_bands{.regions = level.regions,
-                                                    .path_offsets = paths.offsets,
+                                                    .paths = paths,
                                                     .path_region = paths.regions,
-                                                    .path_projections = paths.projections,
                                                     .axis = level.axis,
                                                     .band = band});
   hold_against(work, table, level, paths, band, keep_on, false, ids, pruned);
@@ -146,41 +124,27 @@ HullPoints gather_below(Workspace& work, const PointTable& table, const Level& l
                         const Pruned& pruned, Arena& arena) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  HullPoints points;
   const auto [positions, kept] = host::pack_positions(runtime, pruned.flags, pruned.elements, 1);
-  points.size = kept;
-  points.ids = arena.allocate<cl_int>(kept);
-  points.segments = arena.allocate<cl_int>(kept);
-  points.projections = arena.allocate<cl_double2>(kept);
+  HullPoints points = allocate_hull_points(arena, kept, paths.size);
   points.depths = arena.allocate<cl_double>(kept);
-  points.ends.size = paths.size;
-  points.ends.vertices = arena.allocate<cl_int>(paths.size);
-  points.ends.projections = arena.allocate<cl_double2>(paths.size);
-  points.ends.regions = arena.allocate<cl_int>(paths.size);
-  runtime.copy(paths.vertices, 0, points.ends.vertices, 0, paths.size);
-  runtime.copy(paths.projections, 0, points.ends.projections, 0, paths.size);
-  runtime.copy(paths.regions, 0, points.ends.regions, 0, paths.size);
-  points.first = arena.allocate<cl_int>(paths.size + 1);
+  copy_paths(work, paths, points.ends);
   {
     Arena::Scope scope(scratch);
     const auto keys = scratch.allocate<cl_ulong>(kept);
     runtime.map(kept, kernels::chord_keys{.positions = positions, .chord = pruned.chord, .keys = keys});
     host::sort_by_key(runtime, keys, positions, kept);
     work.add_depth(Component::hull, log2_ceiling(paths.size) * scan_depth(kept));
-    runtime.map(kept,
-                kernels::gather_below{.points_count = level.points,
-                                      .keys = keys,
-                                      .elements = positions,
-                                      .path_region = paths.regions,
-                                      .element_depth = pruned.depth,
-                                      .point_projections = level.projections,
-                                      .lists = {.x_list = level.x_list, .y_list = level.y_list},
-                                      .corners = level.corner_ids,
-                                      .cuts = {.axis = level.axis, .cut = level.cut, .points = table.points},
-                                      .ids = points.ids,
-                                      .segment = points.segments,
-                                      .projections = points.projections,
-                                      .depth = points.depths});
+    runtime.map(kept, kernels::gather_below{.points_count = level.points,
+                                            .keys = keys,
+                                            .elements = positions,
+                                            .path_region = paths.regions,
+                                            .element_depth = pruned.depth,
+                                            .point_projections = level.projections,
+                                            .lists = level,
+                                            .corners = level.corner_ids,
+                                            .cuts = level.cuts(table),
+                                            .new_hull_points = points,
+                                            .depth = points.depths});
   }
   runtime.launch(paths.size + 1, runtime.sizes().map_group, paths.size,
                  kernels::chord_begins{.kept = kept, .segment = points.segments, .first = points.first});

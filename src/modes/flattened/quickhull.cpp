@@ -12,29 +12,19 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   const std::size_t most_vertices = start.ends.size + start.size;
-  const auto allocate_paths = [&] {
-    Paths paths;
-    paths.vertices = scratch.allocate<cl_int>(most_vertices);
-    paths.projections = scratch.allocate<cl_double2>(most_vertices);
-    paths.regions = scratch.allocate<cl_int>(most_vertices);
-    return paths;
-  };
-  Paths result = allocate_paths();
+  Paths result = allocate_paths(scratch, most_vertices);
   result.offsets = scratch.allocate<cl_int>(level.regions + 1);
 
   Arena::Scope scope(scratch);
   // Two copies of a round's state: each round reads one and writes the other. The first one for points is the
   // input's arrays.
   HullPoints now = start;
-  HullPoints next;
-  next.ids = scratch.allocate<cl_int>(start.size);
-  next.segments = scratch.allocate<cl_int>(start.size);
-  next.projections = scratch.allocate<cl_double2>(start.size);
+  HullPoints next = allocate_hull_points(scratch, start.size, 0);
   next.first = scratch.allocate<cl_int>(most_vertices + 1);
   next.ends = result;
   HullPoints spare = start;
   spare.first = scratch.allocate<cl_int>(most_vertices + 1);
-  spare.ends = allocate_paths();
+  spare.ends = allocate_paths(scratch, most_vertices);
   const auto computed_depth = scratch.allocate<cl_double>(start.size);
   const int balanced_from =
       work.hull == Hull::balanced ? kernel::ROUNDS_BEFORE_BALANCE : kernel::MOST_QUICKHULL_ROUNDS;
@@ -55,10 +45,8 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
       runtime.fill(flags, points, cl_uchar{1});
     } else {
       runtime.map(points, kernels::hull_depths{.bound = work.bounds.hull,
-                                               .segment = now.segments,
-                                               .projections = now.projections,
-                                               .path_projections = paths.projections,
-                                               .path_region = paths.regions,
+                                               .hull_points = now,
+                                               .path_vertices = paths,
                                                .axis = level.axis,
                                                .depth = depth,
                                                .flags = flags});
@@ -75,8 +63,7 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
                                                        .first = now.first,
                                                        .flags = flags,
                                                        .projections = now.projections});
-      runtime.map(points, kernels::tilted_depths{.segment = now.segments,
-                                                 .projections = now.projections,
+      runtime.map(points, kernels::tilted_depths{.hull_points = now,
                                                  .path_projections = paths.projections,
                                                  .pair = pairs,
                                                  .depth = depth,
@@ -91,14 +78,11 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
                                                        .depth = rank,
                                                        .projections = now.projections,
                                                        .path_region = paths.regions,
-                                                       .axis = level.axis,
-                                                       .cut = level.cut,
-                                                       .points = table.points});
+                                                       .cuts = level.cuts(table)});
     if (rounds >= balanced_from) {
       runtime.map(points, kernels::drop_pairs{.bound = work.bounds.hull,
-                                              .segment = now.segments,
+                                              .hull_points = now,
                                               .first = now.first,
-                                              .projections = now.projections,
                                               .path_region = paths.regions,
                                               .axis = level.axis,
                                               .deepest = deepest,
@@ -112,34 +96,22 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
     }
     runtime.map(vertices, kernels::split_counts{.deepest = deepest, .splits = splits});
     host::exclusive_scan(runtime, splits, vertices, splits);
-    runtime.map(points, kernels::side_flags{.segment = now.segments,
-                                            .projections = now.projections,
-                                            .flags = flags,
-                                            .deepest = deepest,
-                                            .sides = sides});
+    runtime.map(points,
+                kernels::side_flags{.hull_points = now, .flags = flags, .deepest = deepest, .sides = sides});
     host::exclusive_scan(runtime, sides, points, sides);
-    runtime.map(points, kernels::advance_points{.ids = now.ids,
-                                                .segment = now.segments,
-                                                .projections = now.projections,
+    runtime.map(points, kernels::advance_points{.hull_points = now,
                                                 .first = now.first,
                                                 .sides = sides,
                                                 .splits = splits,
-                                                .new_ids = next.ids,
-                                                .new_segment = next.segments,
-                                                .new_projections = next.projections});
+                                                .new_hull_points = next});
     runtime.map(vertices, kernels::advance_paths{.points_count = points,
-                                                 .ids = now.ids,
-                                                 .projections = now.projections,
+                                                 .hull_points = now,
                                                  .deepest = deepest,
                                                  .first = now.first,
                                                  .sides = sides,
                                                  .splits = splits,
-                                                 .path_vertices = {.path = paths.vertices,
-                                                                   .path_projections = paths.projections,
-                                                                   .path_region = paths.regions},
-                                                 .new_path = next.ends.vertices,
-                                                 .new_projections = next.ends.projections,
-                                                 .new_region = next.ends.regions,
+                                                 .path_vertices = paths,
+                                                 .new_path_vertices = next.ends,
                                                  .new_first = next.first,
                                                  .sizes = sizes});
     cl_uint new_sizes[2];
@@ -152,9 +124,8 @@ Paths quickhull(Workspace& work, const PointTable& table, const Level& level, co
   }
 
   if (now.ends.vertices.memory() != result.vertices.memory()) {
-    runtime.copy(now.ends.vertices, 0, result.vertices, 0, vertices);
-    runtime.copy(now.ends.projections, 0, result.projections, 0, vertices);
-    runtime.copy(now.ends.regions, 0, result.regions, 0, vertices);
+    now.ends.size = vertices;
+    copy_paths(work, now.ends, result);
   }
   result.size = vertices;
   runtime.map(vertices,
@@ -169,33 +140,17 @@ void restart(Workspace& work, const PointTable& table, const Level& level, Paths
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
-  HullPoints points;
-  points.size = paths.size;
-  points.ids = scratch.allocate<cl_int>(paths.size);
-  points.projections = scratch.allocate<cl_double2>(paths.size);
-  points.segments = scratch.allocate<cl_int>(paths.size);
+  const HullPoints points = allocate_hull_points(scratch, paths.size, 2 * level.regions);
   runtime.copy(paths.vertices, 0, points.ids, 0, paths.size);
   runtime.copy(paths.projections, 0, points.projections, 0, paths.size);
   runtime.map(paths.size,
               kernels::restart_segments{.path_region = paths.regions, .segment = points.segments});
-  points.ends.size = 2 * level.regions;
-  points.ends.vertices = scratch.allocate<cl_int>(points.ends.size);
-  points.ends.projections = scratch.allocate<cl_double2>(points.ends.size);
-  points.ends.regions = scratch.allocate<cl_int>(points.ends.size);
-  points.first = scratch.allocate<cl_int>(points.ends.size + 1);
-  runtime.map(level.regions, kernels::restart_paths{.path_offsets = paths.offsets,
-                                                    .path = paths.vertices,
-                                                    .path_projections = paths.projections,
-                                                    .ends = points.ends.vertices,
-                                                    .end_projections = points.ends.projections,
-                                                    .end_region = points.ends.regions,
-                                                    .first = points.first});
+  runtime.map(level.regions, kernels::restart_paths{
+                                 .paths = paths, .new_path_vertices = points.ends, .first = points.first});
   int rounds = 0;
   const Paths made = quickhull(work, table, level, points, rounds);
   paths.size = made.size;
-  runtime.copy(made.vertices, 0, paths.vertices, 0, made.size);
-  runtime.copy(made.projections, 0, paths.projections, 0, made.size);
-  runtime.copy(made.regions, 0, paths.regions, 0, made.size);
+  copy_paths(work, made, paths);
   runtime.copy(made.offsets, 0, paths.offsets, 0, level.regions + 1);
 }
 
@@ -205,10 +160,7 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   // Each round reads one of two paths and writes the other, and so with the lists of earlier positions.
-  Paths shorter;
-  shorter.vertices = scratch.allocate<cl_int>(paths.size);
-  shorter.projections = scratch.allocate<cl_double2>(paths.size);
-  shorter.regions = scratch.allocate<cl_int>(paths.size);
+  Paths shorter = allocate_paths(scratch, paths.size);
   shorter.offsets = scratch.allocate<cl_int>(level.regions + 1);
   Buffer<cl_int> kept = scratch.allocate<cl_int>(paths.size);
   Buffer<cl_int> kept_before = scratch.allocate<cl_int>(paths.size);
@@ -223,13 +175,9 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
     runtime.map(paths.size, kernels::path_flags{.bound = work.bounds.hull,
                                                 .first_round = first_round,
                                                 .kept = kept_before,
-                                                .path = paths.vertices,
-                                                .path_projections = paths.projections,
+                                                .paths = paths,
                                                 .path_region = paths.regions,
-                                                .path_offsets = paths.offsets,
-                                                .axis = level.axis,
-                                                .cut = level.cut,
-                                                .points = table.points,
+                                                .cuts = level.cuts(table),
                                                 .flags = flags});
     {
       Arena::Scope scope(scratch);
@@ -239,13 +187,8 @@ Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths
     host::pack_positions(runtime, flags, paths.size, 1, kept, kept_count);
     shorter.size = runtime.read_one(kept_count, 0);
     if (shorter.size == paths.size) return paths;
-    runtime.map(shorter.size, kernels::compact_path{.kept = kept,
-                                                    .path = paths.vertices,
-                                                    .path_projections = paths.projections,
-                                                    .path_region = paths.regions,
-                                                    .new_path = shorter.vertices,
-                                                    .new_projections = shorter.projections,
-                                                    .new_region = shorter.regions});
+    runtime.map(shorter.size,
+                kernels::compact_path{.kept = kept, .path_vertices = paths, .new_path_vertices = shorter});
     runtime.map(shorter.size,
                 kernels::find_path_offsets{.path_region = shorter.regions, .path_offsets = shorter.offsets});
     std::swap(paths, shorter);

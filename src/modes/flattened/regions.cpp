@@ -54,22 +54,21 @@ Buffer<cl_int> find_borders(Workspace& work, const PointTable& table, const Leve
                             const points::Blocks& blocks, const points::Rings& rings,
                             const Buffer<cl_int>& corner_vertex) {
   host::Runtime& runtime = work.runtime;
+  const kernels::strip_corners strip_corners{.corners = level.corner_ids,
+                                             .corner_region = level.corner_regions,
+                                             .corner_vertex = corner_vertex,
+                                             .vertices = blocks.source};
   const auto border_edge = work.scratch().allocate<cl_int>(level.corners);
   const auto missing = work.scratch().allocate<cl_int>(level.regions);
   runtime.fill(missing, level.regions, cl_int{0});
-  runtime.map(level.corners, kernels::border_edges{.strip_corners = {.corners = level.corner_ids,
-                                                                     .corner_region = level.corner_regions,
-                                                                     .corner_vertex = corner_vertex,
-                                                                     .vertices = blocks.source},
+  runtime.map(level.corners, kernels::border_edges{.strip_corners = strip_corners,
                                                    .vertex_edge = rings.vertex_edge,
                                                    .edges = rings.edges,
                                                    .border_edge = border_edge,
                                                    .missing = missing});
   runtime.map(level.regions, kernels::restore_border{.missing = missing,
                                                      .large_offsets = level.corner_offsets.as<cl_uint>(),
-                                                     .corners = level.corner_ids,
-                                                     .corner_vertex = corner_vertex,
-                                                     .vertices = blocks.source,
+                                                     .strip_corners = strip_corners,
                                                      .places = blocks.vertices,
                                                      .points = table.points,
                                                      .bounds = work.bounds,

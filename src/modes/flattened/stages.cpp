@@ -16,6 +16,42 @@ std::size_t region_group(const Workspace& work, std::size_t elements) {
   return group;
 }
 
+Level allocate_level(Arena& arena, std::size_t regions, std::size_t points, std::size_t corners) {
+  Level level;
+  level.regions = regions;
+  level.points = points;
+  level.corners = corners;
+  level.x_list = arena.allocate<cl_int>(points);
+  level.y_list = arena.allocate<cl_int>(points);
+  level.point_regions = arena.allocate<cl_int>(points);
+  level.point_offsets = arena.allocate<cl_int>(regions + 1);
+  level.corner_ids = arena.allocate<cl_int>(3 * corners);
+  level.corner_regions = arena.allocate<cl_int>(corners);
+  level.corner_offsets = arena.allocate<cl_int>(regions + 1);
+  return level;
+}
+
+Paths allocate_paths(Arena& arena, std::size_t size) {
+  return {size, arena.allocate<cl_int>(size), arena.allocate<cl_double2>(size), arena.allocate<cl_int>(size)};
+}
+
+void copy_paths(Workspace& work, const Paths& from, const Paths& to) {
+  work.runtime.copy(from.vertices, 0, to.vertices, 0, from.size);
+  work.runtime.copy(from.projections, 0, to.projections, 0, from.size);
+  work.runtime.copy(from.regions, 0, to.regions, 0, from.size);
+}
+
+HullPoints allocate_hull_points(Arena& arena, std::size_t size, std::size_t vertices) {
+  HullPoints points;
+  points.size = size;
+  points.ids = arena.allocate<cl_int>(size);
+  points.segments = arena.allocate<cl_int>(size);
+  points.projections = arena.allocate<cl_double2>(size);
+  points.ends = allocate_paths(arena, vertices);
+  points.first = arena.allocate<cl_int>(vertices + 1);
+  return points;
+}
+
 Buffer<cl_int> pack_undecided(Workspace& work, const Buffer<cl_uchar>& flags, std::size_t n) {
   const auto list = work.scratch().allocate<cl_int>(n);
   host::pack_positions(work.runtime, flags, n, kernel::FLAG_UNDECIDED, list, work.list_length);

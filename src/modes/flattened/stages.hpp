@@ -11,6 +11,9 @@
 #include "geometry/magnitudes.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "host/runtime.hpp"
+#include "launchers/flattened/merge.cl.hpp"
+#include "launchers/flattened/prune.cl.hpp"
+#include "launchers/flattened/quickhull.cl.hpp"
 #include "modes/flattened/counting.hpp"
 #include "tuning/tuning.hpp"
 
@@ -76,7 +79,14 @@ struct Level {
   /// The projections of internal points, in the order of the list that is sorted along the region's cut line.
   Buffer<cl_double2> projections{};
   Buffer<cl_int> first_end{}, last_end{};  ///< ends of each region's hull
+
+  operator kernels::lists() const { return {.x_list = x_list, .y_list = y_list}; }
+  kernels::cuts cuts(const PointTable& table) const {
+    return {.axis = axis, .cut = cut, .points = table.points};
+  }
 };
+/// Memory for a level's lists and corners.
+Level allocate_level(Arena& arena, std::size_t regions, std::size_t points, std::size_t corners);
 
 /// Regions without internal points.
 struct RetiredRegions {
@@ -95,7 +105,21 @@ struct Paths {
   Buffer<cl_int> offsets{};  ///< regions + 1
   /// The flags that prune gave to internal points and corners; points with flag 0 are not on the path.
   Buffer<cl_uchar> flags{};
+
+  operator kernels::paths() const {
+    return {.path_offsets = offsets, .path = vertices, .path_projections = projections};
+  }
+  operator kernels::path_vertices() const {
+    return {.path = vertices, .path_projections = projections, .path_region = regions};
+  }
+  operator kernels::new_path_vertices() const {
+    return {.new_path = vertices, .new_projections = projections, .new_region = regions};
+  }
 };
+/// Memory for so many vertices, without offsets.
+Paths allocate_paths(Arena& arena, std::size_t size);
+/// Copies the vertices, without offsets.
+void copy_paths(Workspace& work, const Paths& from, const Paths& to);
 
 /// The convex hulls of all sets, and what the host must know about them.
 struct Borders {
@@ -196,7 +220,16 @@ struct HullPoints {
   Buffer<cl_double> depths{};        ///< depths below the chords, if known; then all points are below them
   Paths ends{};                      ///< the paths; their offsets are not needed
   Buffer<cl_int> first{};            ///< segments + 1: where the points of each segment begin
+
+  operator kernels::hull_points() const {
+    return {.ids = ids, .segment = segments, .projections = projections};
+  }
+  operator kernels::new_hull_points() const {
+    return {.new_ids = ids, .new_segment = segments, .new_projections = projections};
+  }
 };
+/// Memory for so many points, without depths, and for paths of so many vertices.
+HullPoints allocate_hull_points(Arena& arena, std::size_t size, std::size_t vertices);
 /// Collects the elements that prune kept, and copies the paths, for quickhull; into `arena`. Waits once.
 HullPoints gather_below(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
                         const Pruned& pruned, Arena& arena);
@@ -214,6 +247,14 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
 /// the retired regions), and where its corners begin.
 struct Children {
   Buffer<cl_int> region{}, base{};
+
+  kernels::children list(const Level& next, const RetiredRegions& retired) const {
+    return {.child_region = region,
+            .child_base = base,
+            .corners = next.corner_ids,
+            .corner_region = next.corner_regions,
+            .retired = retired.corner_ids};
+  }
 };
 /// Prefix sums of what regions give to their children: internal points per region, corners that come from
 /// corners, and corners that come from path vertices that were internal points.

@@ -77,22 +77,21 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
                                                     .free_lists = free_lists});
   }
 
+  const kernels::strip_corners strip_corners{.corners = large_corners,
+                                             .corner_region = corner_region,
+                                             .corner_vertex = corner_vertex,
+                                             .vertices = vertices};
   const auto border_edge = scratch.allocate<cl_int>(corners);
   const auto missing = scratch.allocate<cl_int>(large_count);
   runtime.fill(missing, large_count, cl_int{0});
-  runtime.map(corners, kernels::border_edges{.strip_corners = {.corners = large_corners,
-                                                               .corner_region = corner_region,
-                                                               .corner_vertex = corner_vertex,
-                                                               .vertices = vertices},
+  runtime.map(corners, kernels::border_edges{.strip_corners = strip_corners,
                                              .vertex_edge = vertex_edge,
                                              .edges = edges,
                                              .border_edge = border_edge,
                                              .missing = missing});
   runtime.map(large_count, kernels::restore_border{.missing = missing,
                                                    .large_offsets = large_offsets,
-                                                   .corners = large_corners,
-                                                   .corner_vertex = corner_vertex,
-                                                   .vertices = vertices,
+                                                   .strip_corners = strip_corners,
                                                    .places = places,
                                                    .points = table.points,
                                                    .bounds = work.bounds,
@@ -102,10 +101,7 @@ void strips(Workspace& work, const PointTable& table, const RetiredRegions& reti
                                                    .broken = work.broken});
   for (const cl_int write : {0, 1}) {
     runtime.map(corners, kernels::count_fans{.write = write,
-                                             .strip_corners = {.corners = large_corners,
-                                                               .corner_region = corner_region,
-                                                               .corner_vertex = corner_vertex,
-                                                               .vertices = vertices},
+                                             .strip_corners = strip_corners,
                                              .edges = edges,
                                              .border_edge = border_edge,
                                              .large = large,
