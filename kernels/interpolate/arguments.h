@@ -10,4 +10,10 @@
   global const double2* restrict PREFIX##points, global const int* restrict PREFIX##source, \
   global const face* restrict PREFIX##faces
 
+// The edges of a triangulation, by vertex.
+#define EDGES(PREFIX) \
+  int PREFIX##room, global const int* restrict PREFIX##vertices, global const uint* restrict PREFIX##firsts, \
+  global const int* restrict PREFIX##neighbors, global const double* restrict PREFIX##weights, \
+  global const double* restrict PREFIX##inverses
+
 #endif

@@ -18,6 +18,7 @@
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
+#include "interpolate/arguments.h"
 #include "mesh/halfedges.h"
 #include "mesh/records.h"
 #include "mesh/stars.h"
@@ -111,12 +112,9 @@ static inline double2 solved(global const double* inverse, double x, double y) {
 }
 
 // values: rows of `columns` numbers by point, as are all arrays of gradients by vertex.
-kernel void start_gradients(int n, int columns, int room, global const int* restrict vertices,
-                            global const uint* restrict firsts, global const int* restrict neighbors,
-                            global const double* restrict weights, global const double* restrict inverses,
-                            global const double2* restrict points, global const int* restrict source,
-                            global const double* restrict values, global double2* restrict start,
-                            global double2* restrict gradients) {
+kernel void start_gradients(int n, int columns, EDGES(), global const double2* restrict points,
+                            global const int* restrict source, global const double* restrict values,
+                            global double2* restrict start, global double2* restrict gradients) {
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     const double2 at = points[v];
@@ -146,12 +144,9 @@ kernel void start_gradients(int n, int columns, int room, global const int* rest
 
 // before: the approximation before `gradients`, which the next one replaces; if this is the second one, it is not read
 // but 0. start: the first one.
-kernel void improve_gradients(int n, int columns, int room, int is_second, double factor,
-                              global const int* restrict vertices, global const uint* restrict firsts,
-                              global const int* restrict neighbors, global const double* restrict weights,
-                              global const double* restrict inverses, global const double2* restrict points,
-                              global const double2* restrict start, global const double2* restrict gradients,
-                              global double2* restrict before) {
+kernel void improve_gradients(int n, int columns, EDGES(), int is_second, double factor,
+                              global const double2* restrict points, global const double2* restrict start,
+                              global const double2* restrict gradients, global double2* restrict before) {
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     const double2 at = points[v];

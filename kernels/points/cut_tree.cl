@@ -13,6 +13,7 @@
 // below cost one pass each, all in two launches.
 
 #include "operations/search.h"
+#include "points/arguments.h"
 #include "points/records.h"
 #include "points/sampled_cuts.h"
 #include "predicates/order.h"
@@ -50,9 +51,7 @@ kernel void draw_samples(int n, int tree_count, global const int* restrict first
 
 // Two work-items per chunk, one per axis. elements, spare and order hold the order along x and then the one along y. Of
 // equal points the one drawn first comes first, here and in all that follows.
-kernel void sort_chunks(int n, int tree_count, global const int* restrict first_chunks,
-                        global const sampled_tree* restrict trees, int all_samples, global const coordinate2* samples,
-                        global keyed* elements, global keyed* spare, global int* order) {
+kernel void sort_chunks(int n, SAMPLED_CHUNKS(), global keyed* elements, global keyed* spare, global int* order) {
   const int w = get_global_id(0);
   if (w < n) {
     const int c = w / 2, axis = w % 2;
@@ -83,9 +82,7 @@ static inline int taken_from_low(int taken, int run, global const int* low, glob
 
 // Merges pairs of runs of 2^doublings chunks each. Two work-items per chunk of the result, one per axis. Trees that are
 // sorted already are copied.
-kernel void merge_runs(int n, int tree_count, global const int* restrict first_chunks,
-                       global const sampled_tree* restrict trees, int all_samples, int doublings,
-                       global const coordinate2* samples, global const int* from, global int* to) {
+kernel void merge_runs(int n, SAMPLED_CHUNKS(), int doublings, global const int* from, global int* to) {
   const int w = get_global_id(0);
   if (w < n) {
     const int c = w / 2, axis = w % 2;
@@ -118,9 +115,7 @@ static inline int goes_low(int sample, sample_cut cut, global const coordinate2*
 
 // Writes the nodes of a level, if they are larger than chunks. Counts how many samples of each chunk of the other order
 // than the one along the axis go low. order: along x, then along y.
-kernel void count_low(int n, int tree_count, global const int* restrict first_chunks,
-                      global const sampled_tree* restrict trees, int all_samples, int level,
-                      global const coordinate2* samples, global const int* order, global cut_node* restrict nodes,
+kernel void count_low(int n, SAMPLED_CHUNKS(), int level, global const int* order, global cut_node* restrict nodes,
                       global uint* restrict counts) {
   const int c = get_global_id(0);
   if (c < n) {
@@ -143,10 +138,8 @@ kernel void count_low(int n, int tree_count, global const int* restrict first_ch
 
 // Of nodes that are larger than chunks, halves to their places in both orders; what else there is, as it is. The order
 // along the axis falls apart by position, the other one by a stable split.
-kernel void split_chunks(int n, int tree_count, global const int* restrict first_chunks,
-                         global const sampled_tree* restrict trees, int all_samples, int level,
-                         global const coordinate2* samples, global const uint* restrict scanned, global const int* from,
-                         global int* to) {
+kernel void split_chunks(int n, SAMPLED_CHUNKS(), int level, global const uint* restrict scanned,
+                         global const int* from, global int* to) {
   const int c = get_global_id(0);
   if (c < n) {
     const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);
@@ -189,9 +182,7 @@ static inline void split_run(int begin, int size, sample_cut cut, global const c
 }
 
 // Cuts the nodes of a chunk's samples and all nodes below. Both orders are then that of the leaves.
-kernel void cut_chunks(int n, int tree_count, global const int* restrict first_chunks,
-                       global const sampled_tree* restrict trees, int all_samples, global const coordinate2* samples,
-                       global int* order, global int* spare, global cut_node* restrict nodes) {
+kernel void cut_chunks(int n, SAMPLED_CHUNKS(), global int* order, global int* spare, global cut_node* restrict nodes) {
   const int c = get_global_id(0);
   if (c < n) {
     const sample_chunk chunk = chunk_of(c, tree_count, first_chunks, trees);

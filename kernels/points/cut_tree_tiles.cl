@@ -16,6 +16,7 @@
 #include "operations/limits.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
+#include "points/arguments.h"
 #include "points/limits.h"
 #include "points/records.h"
 #include "points/sampled_cuts.h"
@@ -76,10 +77,7 @@ static inline int merged_place(int i, int run, int size, local const int* order,
 
 // Two work-groups per tile, one per axis. order holds the order along x and then the one along y; ranks, for each
 // sample, its places in both. Of equal points the one drawn first comes first, here and in all that follows.
-kernel void sort_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
-                       global const sampled_tree* restrict trees, int all_samples,
-                       global const coordinate2* restrict samples, global int* restrict order,
-                       global int* restrict ranks) {
+kernel void sort_tiles(int tiles, SAMPLED_CHUNKS(), global int* restrict order, global int* restrict ranks) {
   local coordinate2 points[LARGEST_SAMPLE_TILE];
   local int orders[2 * LARGEST_SAMPLE_TILE];
   const int me = get_local_id(0), group = get_local_size(0);
@@ -173,9 +171,7 @@ static inline int goes_below(int sample, node_part part, global const int* ranks
 
 // Writes the nodes of a level, if they are larger than tiles. Counts how many samples of each tile of the other order
 // than the one along the axis go low. order: along x, then along y.
-kernel void count_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
-                        global const sampled_tree* restrict trees, int all_samples, int level,
-                        global const coordinate2* restrict samples, global const int* restrict order,
+kernel void count_tiles(int tiles, SAMPLED_CHUNKS(), int level, global const int* restrict order,
                         global const int* restrict ranks, global cut_node* restrict nodes,
                         global uint* restrict counts) {
   local uint sums[LARGEST_TILE_GROUP];
@@ -200,9 +196,7 @@ kernel void count_tiles(int tiles, int tree_count, global const int* restrict fi
 
 // Of nodes that are larger than tiles, halves to their places in both orders; what else there is, as it is. The order
 // along the axis falls apart by position, the other one by a stable split.
-kernel void split_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
-                        global const sampled_tree* restrict trees, int all_samples, int level,
-                        global const coordinate2* restrict samples, global const uint* restrict counts,
+kernel void split_tiles(int tiles, SAMPLED_CHUNKS(), int level, global const uint* restrict counts,
                         global const int* restrict from, global const int* restrict ranks, global int* restrict to) {
   local uint sums[LARGEST_TILE_GROUP];
   const int me = get_local_id(0), group = get_local_size(0);
@@ -234,11 +228,8 @@ static inline int is_below(int2 sample, int2 cut) { return (cut.x ? sample.y : s
 
 // Cuts the nodes of a tile's samples and all nodes below. sorted: all samples as they were sorted along x, from which
 // ranks lead back to samples. order: both orders are then that of the leaves.
-kernel void cut_tiles(int tiles, int tree_count, global const int* restrict first_chunks,
-                      global const sampled_tree* restrict trees, int all_samples,
-                      global const coordinate2* restrict samples, global const int* restrict sorted,
-                      global const int* restrict ranks, global const int* from, global cut_node* restrict nodes,
-                      global int* order) {
+kernel void cut_tiles(int tiles, SAMPLED_CHUNKS(), global const int* restrict sorted, global const int* restrict ranks,
+                      global const int* from, global cut_node* restrict nodes, global int* order) {
   local int2 by_axis[2 * LARGEST_SAMPLE_TILE];
   local int2 moved[LARGEST_SAMPLE_TILE];
   local int2 cuts[LARGEST_SAMPLE_TILE / 2];

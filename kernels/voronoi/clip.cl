@@ -397,9 +397,7 @@ kernel void clip_slots(int n, CLIPPED_DIAGRAM(), filter_bound side_bound, filter
 // n points. centres: where the circles of triangles in the fan of a cocircular polygon are the same, the centre of the
 // first is copied to the others, by its first vertex, which has them all.
 kernel void join_centres(int n, global const double* restrict input, global const int* restrict triangles,
-                         global const int* restrict ahead, global const uint* restrict offsets,
-                         global const int* restrict slots, global const uint* restrict codes,
-                         global double* restrict centres) {
+                         global const int* restrict ahead, SLOTS(), global double* restrict centres) {
   const int p = get_global_id(0);
   if (p < n) {
     const uint first = offsets[p], end = offsets[p + 1];
@@ -454,11 +452,7 @@ static inline uint corners_between(int edge, int other, int clip) {
 }
 
 // n slots. counts: how many corners each has, but for cells without kept edges.
-kernel void count_corners(int n, int points, int triangle_count, int hull_count, int clip,
-                          global const int* restrict triangles, global const int* restrict ahead,
-                          global const int* restrict hull, global const uint* restrict offsets,
-                          global const int* restrict slots, global const uint* restrict codes,
-                          global uint* restrict counts) {
+kernel void count_corners(int n, CLIPPED_DIAGRAM(), SLOTS(), global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) {
     const uint code = codes[i];
@@ -499,12 +493,7 @@ static inline int is_all_nearest(uint first, uint end, int points, int triangle_
 }
 
 // n points.
-kernel void count_whole(int n, int triangle_count, int hull_count, int clip, filter_bound nearness_bound,
-                        global const double* restrict corners, global const double* restrict input,
-                        global const int* restrict triangles, global const int* restrict ahead,
-                        global const int* restrict hull, global const uint* restrict offsets,
-                        global const int* restrict slots, global const uint* restrict codes,
-                        global uint* restrict counts) {
+kernel void count_whole(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound, SLOTS(), global uint* restrict counts) {
   const int p = get_global_id(0);
   if (p < n) {
     const uint first = offsets[p], end = offsets[p + 1];
@@ -551,9 +540,8 @@ static inline double2 unscaled(double2 p, scaling scale) {
 
 // n slots. box: around the polygon. unscale: to the coordinates of the caller.
 kernel void write_corners(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound, vertex_box box, scaling unscale,
-                          global const double* restrict centres, global const uint* restrict offsets,
-                          global const int* restrict slots, global const uint* restrict codes,
-                          global const uint* restrict places, global double* restrict vertices) {
+                          global const double* restrict centres, SLOTS(), global const uint* restrict places,
+                          global double* restrict vertices) {
   const int i = get_global_id(0);
   if (i < n) {
     fetch(&centres[2 * (max(0, slots[min(n - 1, i + SLOTS_AHEAD)]) / 3)]);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "host/launch/vector_operations.hpp"
-#include "launchers/points/cut_tree.cl.hpp"
 #include "points/limits.h"
 #include "points/records.h"
 #include "tuning/tuning.hpp"
@@ -86,14 +85,16 @@ void CutTrees::sort_chunks(const Buffer<cl_double2>& samples, const Buffer<cl_in
   Arena::Scope scope(runtime_.arena());
   const auto elements = runtime_.arena().allocate<cl_uint2>(2 * samples_);
   const auto spare = runtime_.arena().allocate<cl_uint2>(2 * samples_);
-  launch(2, kernels::sort_chunks{.tree_count = trees_.size(),
-                                 .first_chunks = first_chunks_,
-                                 .trees = trees_,
-                                 .all_samples = samples_,
-                                 .samples = samples,
-                                 .elements = elements,
-                                 .spare = spare,
-                                 .order = order});
+  launch(2, kernels::sort_chunks{
+                .sampled_chunks = chunks_of(samples), .elements = elements, .spare = spare, .order = order});
+}
+
+kernels::sampled_chunks CutTrees::chunks_of(const Buffer<cl_double2>& samples) const {
+  return {.tree_count = trees_.size(),
+          .first_chunks = first_chunks_,
+          .trees = trees_,
+          .all_samples = samples_,
+          .samples = samples};
 }
 
 Buffer<cl_int> CutTrees::cut(const Buffer<cl_double2>& samples, const Buffer<kernel::cut_node>& nodes) const {
@@ -103,48 +104,28 @@ Buffer<cl_int> CutTrees::cut(const Buffer<cl_double2>& samples, const Buffer<ker
   sort_chunks(samples, order);
   auto other = runtime_.arena().allocate<cl_int>(2 * samples_);
   for (int doublings = 0; doublings < levels_above_chunks_; ++doublings) {
-    launch(2, kernels::merge_runs{.tree_count = trees_.size(),
-                                  .first_chunks = first_chunks_,
-                                  .trees = trees_,
-                                  .all_samples = samples_,
-                                  .doublings = doublings,
-                                  .samples = samples,
-                                  .from = order,
-                                  .to = other});
+    launch(2, kernels::merge_runs{
+                  .sampled_chunks = chunks_of(samples), .doublings = doublings, .from = order, .to = other});
     std::swap(order, other);
   }
   const auto counts = runtime_.arena().allocate<cl_uint>(chunks_ + 1);
   for (int level = 0; level < levels_above_chunks_; ++level) {
-    launch(1, kernels::count_low{.tree_count = trees_.size(),
-                                 .first_chunks = first_chunks_,
-                                 .trees = trees_,
-                                 .all_samples = samples_,
+    launch(1, kernels::count_low{.sampled_chunks = chunks_of(samples),
                                  .level = level,
-                                 .samples = samples,
                                  .order = order,
                                  .nodes = nodes,
                                  .counts = counts});
     host::exclusive_scan(runtime_, counts, chunks_, counts);
-    launch(1, kernels::split_chunks{.tree_count = trees_.size(),
-                                    .first_chunks = first_chunks_,
-                                    .trees = trees_,
-                                    .all_samples = samples_,
+    launch(1, kernels::split_chunks{.sampled_chunks = chunks_of(samples),
                                     .level = level,
-                                    .samples = samples,
                                     .scanned = counts,
                                     .from = order,
                                     .to = other});
     std::swap(order, other);
   }
   // There were as many merges as splits, so `order` is the array that was allocated outside of the scope.
-  launch(1, kernels::cut_chunks{.tree_count = trees_.size(),
-                                .first_chunks = first_chunks_,
-                                .trees = trees_,
-                                .all_samples = samples_,
-                                .samples = samples,
-                                .order = order,
-                                .spare = other,
-                                .nodes = nodes});
+  launch(1, kernels::cut_chunks{
+                .sampled_chunks = chunks_of(samples), .order = order, .spare = other, .nodes = nodes});
   return order;
 }
 

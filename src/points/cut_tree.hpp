@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/runtime.hpp"
+#include "launchers/points/cut_tree.cl.hpp"
 #include "points/records.h"
 
 namespace flaunay::points {
@@ -54,7 +55,9 @@ class CutTrees {
  private:
   template <typename Kernel>
   void launch(std::size_t items_per_chunk, const Kernel& kernel) const;
+  kernels::sampled_chunks chunks_of(const host::Buffer<cl_double2>& samples) const;
   void sort_chunks(const host::Buffer<cl_double2>& samples, const host::Buffer<cl_int>& order) const;
+
   // For devices with many lanes; see cut_tree_tiles.cpp.
   template <typename Kernel>
   void launch_tiles(std::size_t groups_per_tile, const Kernel& kernel) const;

@@ -33,14 +33,9 @@ CutTrees::Sorted CutTrees::sort_tiles(const Buffer<cl_double2>& samples) const {
   Arena& arena = runtime_.arena();
   Sorted all{arena.allocate<cl_int>(2 * samples_), arena.allocate<cl_int>(2 * samples_),
              arena.allocate<cl_int>(2 * samples_)};
-  launch_tiles(2, kernels::sort_tiles{.tiles = chunks_,
-                                      .tree_count = trees_.size(),
-                                      .first_chunks = first_chunks_,
-                                      .trees = trees_,
-                                      .all_samples = samples_,
-                                      .samples = samples,
-                                      .order = all.order,
-                                      .ranks = all.ranks});
+  launch_tiles(
+      2, kernels::sort_tiles{
+             .tiles = chunks_, .sampled_chunks = chunks_of(samples), .order = all.order, .ranks = all.ranks});
   for (int widenings = 0; widenings * kernel::MERGED_RUNS_BITS < levels_above_chunks_; ++widenings) {
     runtime_.map(2 * samples_, kernels::merge_tiles{.tree_count = trees_.size(),
                                                     .first_samples = first_samples_,
@@ -66,23 +61,15 @@ Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
   auto from = sorted, to = spare, other = order;
   for (int level = 0; level < levels_above_chunks_; ++level) {
     launch_tiles(1, kernels::count_tiles{.tiles = chunks_,
-                                         .tree_count = trees_.size(),
-                                         .first_chunks = first_chunks_,
-                                         .trees = trees_,
-                                         .all_samples = samples_,
+                                         .sampled_chunks = chunks_of(samples),
                                          .level = level,
-                                         .samples = samples,
                                          .order = from,
                                          .ranks = ranks,
                                          .nodes = nodes,
                                          .counts = counts});
     launch_tiles(1, kernels::split_tiles{.tiles = chunks_,
-                                         .tree_count = trees_.size(),
-                                         .first_chunks = first_chunks_,
-                                         .trees = trees_,
-                                         .all_samples = samples_,
+                                         .sampled_chunks = chunks_of(samples),
                                          .level = level,
-                                         .samples = samples,
                                          .counts = counts,
                                          .from = from,
                                          .ranks = ranks,
@@ -91,11 +78,7 @@ Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
     std::swap(to, other);
   }
   launch_tiles(1, kernels::cut_tiles{.tiles = chunks_,
-                                     .tree_count = trees_.size(),
-                                     .first_chunks = first_chunks_,
-                                     .trees = trees_,
-                                     .all_samples = samples_,
-                                     .samples = samples,
+                                     .sampled_chunks = chunks_of(samples),
                                      .sorted = sorted,
                                      .ranks = ranks,
                                      .from = from,

@@ -276,15 +276,11 @@ TEST(SmallCutTrees, GroupsBehindTheLastTileDoNothing) {
              spare = testing::guarded<cl_int>(runtime, 2 * m);
   const auto nodes = testing::guarded<kernel::cut_node>(runtime, 4);
   const auto counts = testing::guarded<cl_uint>(runtime, tiles);
-  runtime.launch(2 * groups * group, group,
-                 kernels::sort_tiles{.tiles = tiles,
-                                     .tree_count = 1,
-                                     .first_chunks = zero,
-                                     .trees = trees,
-                                     .all_samples = m,
-                                     .samples = points,
-                                     .order = order,
-                                     .ranks = ranks});
+  const kernels::sampled_chunks chunks{
+      .tree_count = 1, .first_chunks = zero, .trees = trees, .all_samples = m, .samples = points};
+  runtime.launch(
+      2 * groups * group, group,
+      kernels::sort_tiles{.tiles = tiles, .sampled_chunks = chunks, .order = order, .ranks = ranks});
   EXPECT_EQ(testing::download(runtime, order, 2 * m),
             (std::vector<cl_int>{0, 2, 1, 3, 5, 7, 4, 6, 0, 1, 2, 3, 4, 5, 6, 7}));
   runtime.map(2 * samples.size(), kernels::merge_tiles{.tree_count = 1,
@@ -300,12 +296,8 @@ TEST(SmallCutTrees, GroupsBehindTheLastTileDoNothing) {
             (std::vector<cl_int>{0, 5, 2, 7, 4, 1, 6, 3, 0, 1, 2, 3, 4, 5, 6, 7}));
   runtime.launch(groups * group, group,
                  kernels::count_tiles{.tiles = tiles,
-                                      .tree_count = 1,
-                                      .first_chunks = zero,
-                                      .trees = trees,
-                                      .all_samples = m,
+                                      .sampled_chunks = chunks,
                                       .level = 0,
-                                      .samples = points,
                                       .order = sorted,
                                       .ranks = ranks,
                                       .nodes = nodes,
@@ -313,12 +305,8 @@ TEST(SmallCutTrees, GroupsBehindTheLastTileDoNothing) {
   EXPECT_EQ(testing::download(runtime, counts, tiles), (std::vector<cl_uint>{2, 2}));
   runtime.launch(groups * group, group,
                  kernels::split_tiles{.tiles = tiles,
-                                      .tree_count = 1,
-                                      .first_chunks = zero,
-                                      .trees = trees,
-                                      .all_samples = m,
+                                      .sampled_chunks = chunks,
                                       .level = 0,
-                                      .samples = points,
                                       .counts = counts,
                                       .from = sorted,
                                       .ranks = ranks,
@@ -327,11 +315,7 @@ TEST(SmallCutTrees, GroupsBehindTheLastTileDoNothing) {
             (std::vector<cl_int>{0, 5, 2, 7, 4, 1, 6, 3, 0, 2, 5, 7, 1, 3, 4, 6}));
   runtime.launch(groups * group, group,
                  kernels::cut_tiles{.tiles = tiles,
-                                    .tree_count = 1,
-                                    .first_chunks = zero,
-                                    .trees = trees,
-                                    .all_samples = m,
-                                    .samples = points,
+                                    .sampled_chunks = chunks,
                                     .sorted = sorted,
                                     .ranks = ranks,
                                     .from = spare,

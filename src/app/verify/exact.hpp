@@ -33,12 +33,9 @@ class ExactPredicates {
  public:
   /// +1 if a, b, c turn left (counter-clockwise), -1 if they turn right, 0 if they are collinear.
   int orient2d(const double* a, const double* b, const double* c) {
-    const double left = (a[0] - c[0]) * (b[1] - c[1]);
-    const double right = (a[1] - c[1]) * (b[0] - c[0]);
-    const double determinant = left - right;
-    const double magnitude = std::fabs(left) + std::fabs(right);
-    if (magnitude >= 0x1p-900 && std::fabs(determinant) > 4 * kEpsilon * magnitude) {
-      return determinant > 0 ? 1 : -1;
+    const Area area(a, b, c);
+    if (area.magnitude >= 0x1p-900 && std::fabs(area.value) > 4 * kEpsilon * area.magnitude) {
+      return area.value > 0 ? 1 : -1;
     }
     ++exact_evaluations_;
     return exact_orient2d(a, b, c);

@@ -29,6 +29,15 @@ struct Edges {
   Buffer<cl_uint> firsts{};
   Buffer<cl_int> neighbors{};
   Buffer<cl_double> weights{}, inverses{};
+
+  operator kernels::edges() const {
+    return {.room = room,
+            .vertices = vertices,
+            .firsts = firsts,
+            .neighbors = neighbors,
+            .weights = weights,
+            .inverses = inverses};
+  }
 };
 
 std::size_t vertices_at_most(const Locator& locator) { return locator.points.size(); }
@@ -80,12 +89,7 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
   Buffer<cl_double2> now = result, before = arena.allocate<cl_double2>(numbers);
   if (iterations % 2 == 0) std::swap(now, before);
   runtime.map(n, kernels::start_gradients{.columns = table.columns,
-                                          .room = edges.room,
-                                          .vertices = edges.vertices,
-                                          .firsts = edges.firsts,
-                                          .neighbors = edges.neighbors,
-                                          .weights = edges.weights,
-                                          .inverses = edges.inverses,
+                                          .edges = edges,
                                           .points = locator.points,
                                           .source = locator.source,
                                           .values = table.values,
@@ -95,14 +99,9 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
   for (std::size_t i = 1; i < iterations; ++i) {
     factor = i == 1 ? 1 / (1 - kRadius * kRadius / 2) : 1 / (1 - factor * kRadius * kRadius / 4);
     runtime.map(n, kernels::improve_gradients{.columns = table.columns,
-                                              .room = edges.room,
+                                              .edges = edges,
                                               .is_second = i == 1,
                                               .factor = factor,
-                                              .vertices = edges.vertices,
-                                              .firsts = edges.firsts,
-                                              .neighbors = edges.neighbors,
-                                              .weights = edges.weights,
-                                              .inverses = edges.inverses,
                                               .points = locator.points,
                                               .start = start,
                                               .gradients = now,

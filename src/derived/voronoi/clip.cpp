@@ -52,6 +52,8 @@ struct Slots {
   Buffer<cl_int> slots{};
   Buffer<cl_uint> codes{};  ///< what is inside of the polygon, if write_slots decided it, otherwise 0
   Buffer<cl_int> ahead{};
+
+  operator kernels::slots() const { return {.offsets = offsets, .slots = slots, .codes = codes}; }
 };
 
 Slots make_slots(host::Runtime& runtime, const DeviceMesh& mesh, const Buffer<cl_uchar>& flats,
@@ -154,33 +156,13 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
   runtime.map(n, kernels::join_centres{.input = mesh.coordinates,
                                        .triangles = mesh.triangles,
                                        .ahead = slots.ahead,
-                                       .offsets = slots.offsets,
-                                       .slots = slots.slots,
-                                       .codes = slots.codes,
+                                       .slots = slots,
                                        .centres = centres});
-  runtime.map(slots.most, kernels::count_corners{.points = n,
-                                                 .triangle_count = triangles,
-                                                 .hull_count = hull,
-                                                 .clip = clip.size,
-                                                 .triangles = mesh.triangles,
-                                                 .ahead = slots.ahead,
-                                                 .hull = mesh.hull,
-                                                 .offsets = slots.offsets,
-                                                 .slots = slots.slots,
-                                                 .codes = slots.codes,
-                                                 .counts = places});
-  runtime.map_in_small_groups(n, kernels::count_whole{.triangle_count = triangles,
-                                                      .hull_count = hull,
-                                                      .clip = clip.size,
+  runtime.map(slots.most,
+              kernels::count_corners{.clipped_diagram = diagram, .slots = slots, .counts = places});
+  runtime.map_in_small_groups(n, kernels::count_whole{.clipped_diagram = diagram,
                                                       .nearness_bound = clip.nearness_bound,
-                                                      .corners = clip.corners,
-                                                      .input = mesh.coordinates,
-                                                      .triangles = mesh.triangles,
-                                                      .ahead = slots.ahead,
-                                                      .hull = mesh.hull,
-                                                      .offsets = slots.offsets,
-                                                      .slots = slots.slots,
-                                                      .codes = slots.codes,
+                                                      .slots = slots,
                                                       .counts = places});
   host::exclusive_scan(runtime, places, slots.most, places);
   runtime.map(n, kernels::find_cells{.offsets = slots.offsets, .places = places, .cells = result.offsets});
@@ -190,9 +172,7 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
                                                                  .box = clip.box,
                                                                  .unscale = clip.unscale,
                                                                  .centres = centres,
-                                                                 .offsets = slots.offsets,
-                                                                 .slots = slots.slots,
-                                                                 .codes = slots.codes,
+                                                                 .slots = slots,
                                                                  .places = places,
                                                                  .vertices = vertices});
   runtime.map(n, kernels::measure_clipped{.scale = clip.scale,
