@@ -843,7 +843,8 @@ static void test_bad_options(void) {
   const flaunay_options bad[] = {{.mode = 17},  {.cut = 17},          {.hull = 17},
                                  {.parts = 64}, {.reserved = {0, 1}}, {.hull = FLAUNAY_HULL_MONOTONE_CHAIN},
                                  {.finish = 2}};
-  const char* const texts[] = {"17", "17", "17", "0x40", "flaunay_options", "monotone-chain", "finish 2"};
+  const char* const texts[] = {
+      "17", "17", "17", "0x40", "flaunay_options", "monotone-chain", "2 is no flaunay_finish"};
   for (int k = 0; k < 7; ++k) {
     CHECK(fails(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, &bad[k], &mesh), FLAUNAY_ERROR_USAGE,
                 texts[k]));

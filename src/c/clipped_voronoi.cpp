@@ -1,6 +1,4 @@
 // The C interface to clipped Voronoi cells and to relaxation.
-#include <CL/cl.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -26,12 +24,12 @@ struct flaunay_device_clipped_voronoi {
 
 namespace {
 
-template <typename Handle>
-auto& buffer_of(Handle& cells, unsigned part) {
+template <typename Result>
+auto& buffer_of(Result& cells, unsigned part) {
 #define BUFFER(type, name, ...) &DeviceClippedVoronoi::name,
   static constexpr std::array kBuffers = {FLAUNAY_CLIPPED_VORONOI_ARRAYS(BUFFER)};
 #undef BUFFER
-  return c::buffer_of(cells.cpp, kBuffers, part, "clipped Voronoi cells");
+  return c::buffer_of(cells, kBuffers, part, "clipped Voronoi cells");
 }
 
 }  // namespace
@@ -64,20 +62,7 @@ size_t flaunay_clipped_voronoi_vertex_count(const flaunay_clipped_voronoi* cells
 FLAUNAY_CLIPPED_VORONOI_ARRAYS(ACCESSOR)
 #undef ACCESSOR
 
-flaunay_status flaunay_device_clipped_voronoi_create(flaunay_device_clipped_voronoi** cells) {
-  return create(cells, [] { return std::make_unique<flaunay_device_clipped_voronoi>(); });
-}
-
-void flaunay_device_clipped_voronoi_destroy(flaunay_device_clipped_voronoi* cells) { delete cells; }
-
-flaunay_status flaunay_device_clipped_voronoi_set_buffer(flaunay_device_clipped_voronoi* cells, unsigned part,
-                                                         cl_mem memory) {
-  return guarded([&] { buffer_of(required(cells, "the clipped cells"), part) = c::to_buffer(memory); });
-}
-
-cl_mem flaunay_device_clipped_voronoi_buffer(const flaunay_device_clipped_voronoi* cells, unsigned part) {
-  return read(cells, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
-}
+FLAUNAY_DEVICE_RESULT(clipped_voronoi, "the clipped cells")
 
 size_t flaunay_device_clipped_voronoi_vertex_count(const flaunay_device_clipped_voronoi* cells) {
   return read(cells, [](const auto& handle) { return handle.cpp.vertex_count; });
@@ -116,9 +101,6 @@ flaunay_status flaunay_relax_device(flaunay_triangulator* triangulator, const fl
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     DeviceBuffer buffer = c::to_buffer(required(relaxed, "the pointer to the buffer of relaxed points"));
     cpp.relax(c::to_points(points), corners, corner_count, iterations, buffer, queued);
-    if (*relaxed == nullptr && buffer.memory() != nullptr) {
-      clRetainMemObject(buffer.memory());
-      *relaxed = buffer.memory();
-    }
+    c::give(buffer, *relaxed);
   });
 }

@@ -25,12 +25,12 @@ struct flaunay_device_constraints {
 
 namespace {
 
-template <typename Handle>
-auto& buffer_of(Handle& edges, unsigned part) {
+template <typename Result>
+auto& buffer_of(Result& edges, unsigned part) {
   static constexpr std::array kBuffers = {&DeviceConstraintEdges::constrained,
                                           &DeviceConstraintEdges::piece_edges,
                                           &DeviceConstraintEdges::constraint_edges};
-  return c::buffer_of(edges.cpp, kBuffers, part, "constraint edges");
+  return c::buffer_of(edges, kBuffers, part, "constraint edges");
 }
 
 flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
@@ -43,13 +43,6 @@ flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   FLAUNAY_CONSTRAINED_ARRAYS(VIEW)
 #undef VIEW
   return view;
-}
-
-// The enumerator of a number, of which there are `count` from 0.
-template <typename Enum>
-Enum to_enum(int value, int count, const char* name) {
-  if (value >= 0 && value < count) return static_cast<Enum>(value);
-  throw Error(ErrorKind::usage, fmt::format("{} is no {}", value, name));
 }
 
 static_assert(FLAUNAY_CROSSINGS_SPLIT == static_cast<int>(Crossings::split));
@@ -89,13 +82,17 @@ Result to_options(const Given& given, const flaunay_options* options) {
   }
   Result result;
   static_cast<Options&>(result) = plain;
-  result.crossings = to_enum<Crossings>(given.crossings, 2, "flaunay_crossings");
+  result.crossings = c::to_enum<Crossings>(given.crossings, FLAUNAY_CROSSINGS_SPLIT, "flaunay_crossings");
   result.labels = given.labels != 0;
   return result;
 }
 
-Outside to_outside(int outside) { return to_enum<Outside>(outside, 3, "flaunay_outside"); }
-FillRule to_fill_rule(int rule) { return to_enum<FillRule>(rule, 3, "flaunay_fill_rule"); }
+Outside to_outside(int outside) {
+  return c::to_enum<Outside>(outside, FLAUNAY_OUTSIDE_HOLES, "flaunay_outside");
+}
+FillRule to_fill_rule(int rule) {
+  return c::to_enum<FillRule>(rule, FLAUNAY_FILL_RULE_WINDING, "flaunay_fill_rule");
+}
 
 ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
   auto result = to_options<ConstrainedOptions>(given, options);
@@ -109,7 +106,7 @@ PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_o
   if (given.has_outside != 0) result.outside = to_outside(given.outside);
   if (given.has_fill_rule != 0) result.fill_rule = to_fill_rule(given.fill_rule);
   result.map = given.map != 0;
-  result.overlaps = to_enum<Overlaps>(given.overlaps, 2, "flaunay_overlaps");
+  result.overlaps = c::to_enum<Overlaps>(given.overlaps, FLAUNAY_OVERLAPS_ERROR, "flaunay_overlaps");
   return result;
 }
 
@@ -188,20 +185,7 @@ const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_c
   return read(result, [](const auto& handle) { return &handle.arrays; });
 }
 
-flaunay_status flaunay_device_constraints_create(flaunay_device_constraints** edges) {
-  return create(edges, [] { return std::make_unique<flaunay_device_constraints>(); });
-}
-
-void flaunay_device_constraints_destroy(flaunay_device_constraints* edges) { delete edges; }
-
-flaunay_status flaunay_device_constraints_set_buffer(flaunay_device_constraints* edges, unsigned part,
-                                                     cl_mem memory) {
-  return guarded([&] { buffer_of(required(edges, "the constraint edges"), part) = c::to_buffer(memory); });
-}
-
-cl_mem flaunay_device_constraints_buffer(const flaunay_device_constraints* edges, unsigned part) {
-  return read(edges, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
-}
+FLAUNAY_DEVICE_RESULT(constraints, "the constraint edges")
 
 size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges) {
   return read(edges, [](const auto& handle) { return handle.cpp.edge_count; });

@@ -1,5 +1,6 @@
 #include "c/handles.hpp"
 
+#include <CL/cl.h>
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -19,50 +20,18 @@ using research::Mode;
 
 using call::kMostCountable;
 
-// Enumerators of C and C++ have the same values, so a mode is found by its value.
 static_assert(FLAUNAY_MODE_BLOCKS == static_cast<int>(Mode::blocks) &&
               FLAUNAY_MODE_DWYER == static_cast<int>(Mode::dwyer));
-
-Mode to_mode(int mode) {
-  for (const research::ModeInfo& info : research::list_modes()) {
-    if (static_cast<int>(info.mode) == mode) return info.mode;
-  }
-  throw_usage(fmt::format("there is no mode {}", mode));
-}
-
-Cut to_cut(int cut) {
-  switch (cut) {
-    case FLAUNAY_CUT_INTERQUARTILE:
-      return Cut::interquartile;
-    case FLAUNAY_CUT_ALTERNATE:
-      return Cut::alternate;
-  }
-  throw_usage(fmt::format("there is no cut {}", cut));
-}
-
-Hull to_hull(int hull) {
-  switch (hull) {
-    case FLAUNAY_HULL_PRUNE:
-      return Hull::prune;
-    case FLAUNAY_HULL_QUICKHULL:
-      return Hull::quickhull;
-    case FLAUNAY_HULL_BALANCED:
-      return Hull::balanced;
-    case FLAUNAY_HULL_MONOTONE_CHAIN:
-      return Hull::monotone_chain;
-  }
-  throw_usage(fmt::format("there is no variant of hulls {}", hull));
-}
-
-Finish to_finish(int finish) {
-  switch (finish) {
-    case FLAUNAY_FINISH_BLOCKS:
-      return Finish::blocks;
-    case FLAUNAY_FINISH_LEVELS:
-      return Finish::levels;
-  }
-  throw_usage(fmt::format("there is no finish {}", finish));
-}
+static_assert(FLAUNAY_CUT_ALTERNATE == static_cast<int>(Cut::alternate));
+static_assert(FLAUNAY_HULL_QUICKHULL == static_cast<int>(Hull::quickhull) &&
+              FLAUNAY_HULL_BALANCED == static_cast<int>(Hull::balanced) &&
+              FLAUNAY_HULL_MONOTONE_CHAIN == static_cast<int>(Hull::monotone_chain));
+static_assert(FLAUNAY_FINISH_LEVELS == static_cast<int>(Finish::levels));
+static_assert(FLAUNAY_FLOAT32 == static_cast<int>(Precision::float32));
+static_assert(FLAUNAY_INTERPOLATION_NEAREST == static_cast<int>(Interpolation::nearest) &&
+              FLAUNAY_INTERPOLATION_CLOUGH_TOCHER == static_cast<int>(Interpolation::clough_tocher) &&
+              FLAUNAY_INTERPOLATION_SIBSON == static_cast<int>(Interpolation::sibson) &&
+              FLAUNAY_INTERPOLATION_LAPLACE == static_cast<int>(Interpolation::laplace));
 
 // Bit k of flaunay_part stands for the k-th array.
 constexpr unsigned bit_of(std::size_t k) { return 1u << k; }
@@ -141,25 +110,8 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
   InterpolationOptions result;
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_interpolation_options");
-  switch (options->method) {
-    case FLAUNAY_INTERPOLATION_LINEAR:
-      result.method = Interpolation::linear;
-      break;
-    case FLAUNAY_INTERPOLATION_NEAREST:
-      result.method = Interpolation::nearest;
-      break;
-    case FLAUNAY_INTERPOLATION_CLOUGH_TOCHER:
-      result.method = Interpolation::clough_tocher;
-      break;
-    case FLAUNAY_INTERPOLATION_SIBSON:
-      result.method = Interpolation::sibson;
-      break;
-    case FLAUNAY_INTERPOLATION_LAPLACE:
-      result.method = Interpolation::laplace;
-      break;
-    default:
-      throw Error(ErrorKind::usage, fmt::format("{} is no flaunay_interpolation", options->method));
-  }
+  result.method =
+      to_enum<Interpolation>(options->method, FLAUNAY_INTERPOLATION_LAPLACE, "flaunay_interpolation");
   if (options->columns != 0) result.columns = options->columns;
   if (options->has_fill != 0) result.fill = options->fill;
   result.gradients = options->gradients;
@@ -189,10 +141,10 @@ research::Options to_options(const flaunay_options* options) {
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_options");
   check_parts(options->parts);
-  result.mode = to_mode(options->mode);
-  result.cut = to_cut(options->cut);
-  result.hull = to_hull(options->hull);
-  result.finish = to_finish(options->finish);
+  result.mode = to_enum<Mode>(options->mode, FLAUNAY_MODE_DWYER, "flaunay_mode");
+  result.cut = to_enum<Cut>(options->cut, FLAUNAY_CUT_ALTERNATE, "flaunay_cut");
+  result.hull = to_enum<Hull>(options->hull, FLAUNAY_HULL_MONOTONE_CHAIN, "flaunay_hull");
+  result.finish = to_enum<Finish>(options->finish, FLAUNAY_FINISH_LEVELS, "flaunay_finish");
   if (options->parts != 0) {
     for_each_array([&](const auto& array, std::size_t k) {
       if (array.option != nullptr) result.*array.option = (options->parts & bit_of(k)) != 0;
@@ -235,13 +187,13 @@ std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets
 }
 
 Precision to_precision(int precision) {
-  switch (precision) {
-    case FLAUNAY_FLOAT64:
-      return Precision::float64;
-    case FLAUNAY_FLOAT32:
-      return Precision::float32;
-  }
-  throw_usage(fmt::format("there is no precision {}", precision));
+  return to_enum<Precision>(precision, FLAUNAY_FLOAT32, "flaunay_precision");
+}
+
+void give(const DeviceBuffer& made, cl_mem& place) {
+  if (place != nullptr || made.memory() == nullptr) return;
+  clRetainMemObject(made.memory());
+  place = made.memory();
 }
 
 DevicePoints to_points(const flaunay_device_points* points) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -27,6 +28,14 @@ void check_reserved(const Struct& given, const char* name) {
                             "a later version",
                             name, version()));
   }
+}
+
+/// The enumerator of a number: C and C++ have the same numbers, from 0 to `last`. Throws Error(usage), which
+/// names the type of C.
+template <typename Enum>
+Enum to_enum(int value, int last, const char* name) {
+  if (value >= 0 && value <= last) return static_cast<Enum>(value);
+  throw Error(ErrorKind::usage, fmt::format("{} is no {}", value, name));
 }
 
 /// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.
@@ -68,6 +77,23 @@ auto& buffer_of(Result& result, const Buffers& buffers, unsigned part, const cha
   throw Error(ErrorKind::usage, fmt::format("{} is not one part of {}", part, name));
 }
 
+/// Defines flaunay_device_NAME_create, _destroy, _set_buffer and _buffer, in a file that has
+/// buffer_of(result, part). what: the result's name in messages.
+#define FLAUNAY_DEVICE_RESULT(name, what)                                                                  \
+  flaunay_status flaunay_device_##name##_create(flaunay_device_##name** result) {                          \
+    return flaunay::c::create(result, [] { return std::make_unique<flaunay_device_##name>(); });           \
+  }                                                                                                        \
+  void flaunay_device_##name##_destroy(flaunay_device_##name* result) { delete result; }                   \
+  flaunay_status flaunay_device_##name##_set_buffer(flaunay_device_##name* result, unsigned part,          \
+                                                    cl_mem memory) {                                       \
+    return flaunay::c::guarded(                                                                            \
+        [&] { buffer_of(flaunay::c::required(result, what).cpp, part) = flaunay::c::to_buffer(memory); }); \
+  }                                                                                                        \
+  cl_mem flaunay_device_##name##_buffer(const flaunay_device_##name* result, unsigned part) {              \
+    return flaunay::c::read(result,                                                                        \
+                            [&](const auto& handle) { return buffer_of(handle.cpp, part).memory(); });     \
+  }
+
 /// Null: one set. Throws Error(usage) unless the offsets go from 0 to n without decreasing.
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n);
 
@@ -83,6 +109,9 @@ Enqueue to_enqueue(const flaunay_enqueue* enqueue);
 inline DeviceBuffer to_buffer(cl_mem memory) {
   return memory != nullptr ? DeviceBuffer(memory) : DeviceBuffer();
 }
+
+/// Hands a buffer over that was made because the caller had none at this place.
+void give(const DeviceBuffer& made, cl_mem& place);
 
 /// A vector's elements; null if there are none.
 template <typename T>

@@ -1,6 +1,4 @@
 // The C interface to locators and their queries.
-#include <CL/cl.h>
-
 #include <algorithm>
 #include <memory>
 
@@ -44,10 +42,7 @@ flaunay_status write_on_device(flaunay_locator* locator, const flaunay_enqueue* 
     Locator& cpp = required(locator, "the locator").cpp;
     DeviceBuffer buffer = c::to_buffer(required(place, "the pointer to the buffer of results"));
     compute(cpp, buffer, queued);
-    if (*place == nullptr && buffer.memory() != nullptr) {
-      clRetainMemObject(buffer.memory());
-      *place = buffer.memory();
-    }
+    c::give(buffer, *place);
   });
 }
 

@@ -196,23 +196,7 @@ const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* tria
   return read(triangulation, [](const auto& handle) { return &handle.view; });
 }
 
-flaunay_status flaunay_device_triangulation_create(flaunay_device_triangulation** triangulation) {
-  return create(triangulation, [] { return std::make_unique<flaunay_device_triangulation>(); });
-}
-
-void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangulation) {
-  delete triangulation;
-}
-
-flaunay_status flaunay_device_triangulation_set_buffer(flaunay_device_triangulation* triangulation,
-                                                       unsigned part, cl_mem memory) {
-  return guarded(
-      [&] { buffer_of(required(triangulation, "the triangulation").cpp, part) = c::to_buffer(memory); });
-}
-
-cl_mem flaunay_device_triangulation_buffer(const flaunay_device_triangulation* triangulation, unsigned part) {
-  return read(triangulation, [&](const auto& handle) { return buffer_of(handle.cpp, part).memory(); });
-}
+FLAUNAY_DEVICE_RESULT(triangulation, "the triangulation")
 
 unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation) {
   return read(triangulation, [](const auto& handle) { return c::to_bits(handle.cpp.parts); });

@@ -23,12 +23,12 @@ struct flaunay_device_voronoi {
 
 namespace {
 
-template <typename Handle>
-auto& buffer_of(Handle& voronoi, unsigned part) {
+template <typename Result>
+auto& buffer_of(Result& voronoi, unsigned part) {
 #define BUFFER(type, name, ...) &DeviceVoronoi::name,
   static constexpr std::array kBuffers = {FLAUNAY_VORONOI_ARRAYS(BUFFER)};
 #undef BUFFER
-  return c::buffer_of(voronoi.cpp, kBuffers, part, "a Voronoi diagram");
+  return c::buffer_of(voronoi, kBuffers, part, "a Voronoi diagram");
 }
 
 }  // namespace
@@ -64,20 +64,7 @@ size_t flaunay_voronoi_corner_count(const flaunay_voronoi* voronoi) {
 FLAUNAY_VORONOI_ARRAYS(ACCESSOR)
 #undef ACCESSOR
 
-flaunay_status flaunay_device_voronoi_create(flaunay_device_voronoi** voronoi) {
-  return create(voronoi, [] { return std::make_unique<flaunay_device_voronoi>(); });
-}
-
-void flaunay_device_voronoi_destroy(flaunay_device_voronoi* voronoi) { delete voronoi; }
-
-flaunay_status flaunay_device_voronoi_set_buffer(flaunay_device_voronoi* voronoi, unsigned part,
-                                                 cl_mem memory) {
-  return guarded([&] { buffer_of(required(voronoi, "the Voronoi diagram"), part) = c::to_buffer(memory); });
-}
-
-cl_mem flaunay_device_voronoi_buffer(const flaunay_device_voronoi* voronoi, unsigned part) {
-  return read(voronoi, [&](const auto& handle) { return buffer_of(handle, part).memory(); });
-}
+FLAUNAY_DEVICE_RESULT(voronoi, "the Voronoi diagram")
 
 flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* triangulator,
                                               const flaunay_device_points* points,
