@@ -15,8 +15,8 @@
 //    levels the host goes on, one region after the other (src/constrained/domains/domain.cpp). finish_regions says
 //    which regions are left.
 // 5. Holes. drop_holes marks the regions of the triangles that contain seeds, which seeds.cl has found.
-// 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets and
-//    write_depths do the rest.
+// 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets, number_labels and
+//    write_labels do the rest.
 
 #include "arithmetic/bit_account.h"
 #include "arithmetic/language.h"
@@ -336,15 +336,16 @@ kernel void write_left(int n, TRIANGULATION(), global const uchar* restrict cons
   }
 }
 
-kernel void number_depths(int n, global const uint* restrict numbers, global const int* restrict depths,
-                          global int* restrict left_depths) {
+// labels: of regions.
+kernel void number_labels(int n, global const uint* restrict numbers, global const int* restrict labels,
+                          global int* restrict left_labels) {
   const int r = get_global_id(0);
-  if (r < n && numbers[r] != numbers[r + 1]) left_depths[numbers[r]] = depths[r];
+  if (r < n && numbers[r] != numbers[r + 1]) left_labels[numbers[r]] = labels[r];
 }
 
-// depths: by region.
-kernel void write_depths(int n, global const int* restrict regions, global const int* restrict depths,
-                         global int* restrict triangle_depths) {
+// labels: of regions.
+kernel void write_labels(int n, global const int* restrict regions, global const int* restrict labels,
+                         global int* restrict triangle_labels) {
   const int t = get_global_id(0);
-  if (t < n) triangle_depths[t] = depths[regions[t]];
+  if (t < n) triangle_labels[t] = labels[regions[t]];
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "call/areas.hpp"
@@ -22,23 +21,16 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-Ids checked_segments(const Constraints& constraints) {
+void check(const Constraints& constraints) {
   call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
   call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
   call::expect(
       (constraints.seeds != nullptr && constraints.seed_attributes != nullptr) || constraints.seed_count == 0,
       "the seeds or their attributes are null");
-  return {constraints.segments, constraints.segments + 2 * constraints.segment_count};
 }
 
-ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
-                                         const std::vector<std::size_t>& offsets,
-                                         const Constraints& constraints, const ConstrainedOptions& options);
-
-}  // namespace
-
-std::vector<double> call::with_added(const double* coordinates, std::size_t n,
-                                     const std::vector<double>& added) {
+// The coordinates of n points and of those that splitting added. Empty if there are none of these.
+std::vector<double> with_added(const double* coordinates, std::size_t n, const std::vector<double>& added) {
   std::vector<double> all;
   if (added.empty()) return all;
   all.assign(coordinates, coordinates + 2 * n);
@@ -46,29 +38,17 @@ std::vector<double> call::with_added(const double* coordinates, std::size_t n,
   return all;
 }
 
-void call::take(constrained::Result&& made, ConstrainedTriangulation& result) {
-  const std::size_t segments = made.segment_edges.size() / 2, sets = result.triangle_offsets.size() - 1;
-  result.triangles = std::move(made.triangles);
-  result.neighbors = std::move(made.neighbors);
-  result.halfedges = std::move(made.halfedges);
-  result.constrained = std::move(made.constrained);
-  result.constraint_edges = std::move(made.constraint_edges);
-  result.piece_edges = std::move(made.segment_edges);
-  result.piece_offsets.resize(segments + 1);
-  std::iota(result.piece_offsets.begin(), result.piece_offsets.end(), 0);
-  result.edge_segments = constrained::first_pieces(result.constraint_edges.size() / 2, result.piece_edges);
-  result.added_offsets.assign(sets + 1, 0);
+// Adds a phase that began at this time to the statistics.
+void end_phase(const char* name, double begin, Statistics& statistics) {
+  const double seconds = host::now() - begin;
+  statistics.seconds += seconds;
+  statistics.phases.push_back({name, seconds});
 }
 
-ConstrainedTriangulation call::constrain(Implementation& self, const double* coordinates,
-                                         const std::vector<std::size_t>& offsets,
-                                         const Constraints& constraints, const ConstrainedOptions& options) {
-  geometry::check_offsets(offsets);
-  geometry::check_coordinates(coordinates, offsets.back());
-  if (options.crossings == Crossings::split) {
-    return constrain_split(self, coordinates, offsets, constraints, options);
-  }
-  const Ids segments = checked_segments(constraints);
+// Triangulates sets with segments. All triangles are kept, without labels; there are neighbours.
+ConstrainedTriangulation constrain(call::Implementation& self, const double* coordinates,
+                                   const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                                   const ConstrainedOptions& options) {
   Options plain = options;
   plain.neighbors = true;
   plain.halfedges = plain.areas = false;
@@ -77,13 +57,10 @@ ConstrainedTriangulation call::constrain(Implementation& self, const double* coo
       call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain);
 
   const double begin = host::now();
-  constrained::Result edges = call::insert_segments(self, coordinates, offsets, result, segments, options);
-  take(std::move(edges), result);
+  call::insert_segments(self, coordinates, offsets, constraints, options, result);
   end_phase("constrain", begin, result.statistics);
   return result;
 }
-
-namespace {
 
 // Triangulates all points with the pieces as segments, and then numbers the added points after all others.
 ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
@@ -94,9 +71,9 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   const double begin = host::now();
   constrained::SplitLimits limits;
   limits.pieces = std::min(limits.pieces, host::memory_left().bytes / kBytesPerPiece);
-  constrained::Split split = constrained::split(coordinates, offsets, checked_segments(constraints), limits);
-  ConstrainedOptions without = options;
-  without.crossings = Crossings::error;
+  constrained::Split split = constrained::split(
+      coordinates, offsets, {constraints.segments, constraints.segments + 2 * constraints.segment_count},
+      limits);
   ConstrainedTriangulation result;
   const auto end_split = [&](double seconds) {
     result.statistics.seconds += seconds;
@@ -104,7 +81,7 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   };
   if (split.is_as_it_was()) {
     const double seconds = host::now() - begin;
-    result = call::constrain(self, coordinates, offsets, constraints, without);
+    result = constrain(self, coordinates, offsets, constraints, options);
     end_split(seconds);
     return result;
   }
@@ -115,7 +92,7 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   Constraints pieces = constraints;
   pieces.segments = split.pieces.data();
   pieces.segment_count = split.pieces.size() / 2;
-  result = call::constrain(self, all.coordinates.data(), all.offsets, pieces, without);
+  result = constrain(self, all.coordinates.data(), all.offsets, pieces, options);
   for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
     for (std::int32_t& v : *vertices) v = all.index[v];
   }
@@ -158,68 +135,36 @@ void carry_markers(const Constraints& constraints, std::size_t n, ConstrainedTri
   }
 }
 
-}  // namespace
-
-void call::end_phase(const char* name, double begin, Statistics& statistics) {
-  const double seconds = host::now() - begin;
-  statistics.seconds += seconds;
-  statistics.phases.push_back({name, seconds});
-}
-
-void call::finish(const double* coordinates, std::size_t n, const Options& options,
-                  ConstrainedTriangulation& result) {
+// Makes half-edges and areas, or leaves out neighbours, as the options say, and counts the triangles.
+// coordinates: of all points, those that splitting added too.
+void finish(const double* coordinates, const Options& options, ConstrainedTriangulation& result) {
   // Otherwise all triangles were kept.
   if (result.halfedges.size() != result.triangles.size()) geometry::write_halfedges(options, result);
   if (!options.neighbors) result.neighbors.clear();
   if (options.areas) {
-    const std::vector<double> all = with_added(coordinates, n, result.added_points);
-    write_areas({all.empty() ? coordinates : all.data(), nullptr, result.representatives.size()}, options,
-                result);
+    call::write_areas({coordinates, nullptr, result.representatives.size()}, options, result);
   }
   result.statistics.triangles = result.triangles.size() / 3;
 }
 
-void call::leave_polygons(const double* coordinates, const std::vector<std::size_t>& offsets,
-                          const Constraints& constraints, const constrained::Curves& curves,
-                          const ConstrainedOptions& options, Overlaps overlaps,
-                          ConstrainedTriangulation& result) {
-  const std::vector<double> added = with_added(coordinates, offsets.back(), result.added_points);
-  const double* const all = added.empty() ? coordinates : added.data();
-  constrained::HostRegions regions = constrained::find_regions_on_host(result);
-  constrained::MapLabels labels =
-      constrained::label_map(all, result, regions.of_triangles, regions.left.size(), constraints.segments,
-                             curves, options.fill_rule, overlaps);
-  if (options.outside != Outside::keep) {
-    for (std::size_t r = 0; r < regions.left.size(); ++r) regions.left[r] = labels.polygons[r] >= 0 ? 1 : 0;
-  }
-  regions.depths = std::move(labels.depths);
-  result.polygons.resize(regions.of_triangles.size());
-  for (std::size_t t = 0; t < result.polygons.size(); ++t) {
-    result.polygons[t] = labels.polygons[regions.of_triangles[t]];
-  }
-  constrained::leave_on_host(all, offsets, constraints, options.labels, regions, result);
-}
+}  // namespace
 
 ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
                                                    const std::vector<std::size_t>& offsets,
                                                    const Constraints& constraints,
-                                                   const ConstrainedOptions& options, bool are_closed) {
-  const Rings& rings = constraints.rings;
-  ConstrainedTriangulation result = constrain(self, coordinates, offsets, constraints, options);
+                                                   const ConstrainedOptions& options,
+                                                   const DomainRequest& request) {
+  geometry::check_offsets(offsets);
+  geometry::check_coordinates(coordinates, offsets.back());
+  check(constraints);
+  ConstrainedTriangulation result = options.crossings == Crossings::split
+                                        ? constrain_split(self, coordinates, offsets, constraints, options)
+                                        : constrain(self, coordinates, offsets, constraints, options);
   const double begin = host::now();
   carry_markers(constraints, offsets.back(), result);
-  const std::vector<double> added = with_added(coordinates, offsets.back(), result.added_points);
-  const double* const all = added.empty() ? coordinates : added.data();
-  const constrained::DomainRequest request = request_of(options, are_closed);
-  if (!rings.segment_offsets.empty() && request.needs_depths()) {
-    leave_polygons(coordinates, offsets, constraints, constrained::curves_of(rings), options, Overlaps::first,
-                   result);
-    result.polygons.clear();
-  } else {
-    apply_domains(self, all, offsets, constraints, request, result);
-  }
-  write_attributes(self, all, offsets, constraints, result);
-  finish(coordinates, offsets.back(), options, result);
+  const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
+  apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints, request, result);
+  finish(all.empty() ? coordinates : all.data(), options, result);
   end_phase("domains", begin, result.statistics);
   return result;
 }
@@ -229,10 +174,13 @@ ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
                                                    const Constraints& constraints,
                                                    const ConstrainedOptions& options) {
   return call::take_turn(*implementation_, [&] {
-    if (!constraints.rings.segment_offsets.empty()) {
-      constrained::check_rings(constraints.rings, constraints.segment_count, options.fill_rule);
-    }
-    return call::constrain_and_leave(*implementation_, coordinates, offsets, constraints, options, false);
+    const Rings& rings = constraints.rings;
+    const bool has_rings = !rings.segment_offsets.empty();
+    if (has_rings) constrained::check_rings(rings, constraints.segment_count, options.fill_rule);
+    const constrained::Curves curves = has_rings ? constrained::curves_of(rings) : constrained::Curves();
+    call::DomainRequest request = call::request_of(options, false);
+    if (has_rings) request.curves = &curves;
+    return call::constrain_and_leave(*implementation_, coordinates, offsets, constraints, options, request);
   });
 }
 

@@ -1,161 +1,177 @@
 #include "call/domains.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "call/frame.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
-
-using host::Buffer;
-
 namespace {
 
-template <typename T>
-auto view_of(host::Runtime& runtime, const std::vector<T>& values) {
-  return runtime.view(values.data(), values.size());
-}
+// The triangles that are left.
+struct Left {
+  std::vector<std::int32_t> triangles, neighbors;
+  std::vector<std::uint8_t> constrained;
+  std::vector<std::size_t> triangle_offsets;
+  std::vector<std::int32_t> seeds;  // per triangle, or -1
+};
 
-// What holes are found by.
-constrained::DomainMesh view_triangles(host::Runtime& runtime, const double* coordinates,
-                                       const std::vector<std::size_t>& offsets,
-                                       const ConstrainedTriangulation& result) {
+// What places are found by.
+constrained::DomainMesh triangles_of(Frame& call, const double* coordinates,
+                                     const std::vector<std::size_t>& offsets,
+                                     const ConstrainedTriangulation& result) {
   constrained::DomainMesh mesh;
   mesh.triangle_offsets = result.triangle_offsets;
   mesh.points = offsets.back();
-  mesh.coordinates = runtime.view(coordinates, 2 * (mesh.points + result.added_points.size() / 2));
-  mesh.triangles = view_of(runtime, result.triangles);
-  mesh.constrained = view_of(runtime, result.constrained);
+  mesh.coordinates = call.in(coordinates, 2 * mesh.points + result.added_points.size());
+  mesh.triangles = call.in(result.triangles);
+  mesh.constrained = call.in(result.constrained);
   return mesh;
 }
 
-constrained::DomainMesh view(host::Runtime& runtime, const double* coordinates,
-                             const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                             const ConstrainedTriangulation& result) {
-  constrained::DomainMesh mesh = view_triangles(runtime, coordinates, offsets, result);
+constrained::DomainMesh mesh_of(Frame& call, const double* coordinates,
+                                const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                                const ConstrainedTriangulation& result) {
+  constrained::DomainMesh mesh = triangles_of(call, coordinates, offsets, result);
   mesh.segments = constraints.segment_count;
   mesh.edges = result.constraint_edges.size() / 2;
-  mesh.neighbors = view_of(runtime, result.neighbors);
-  mesh.representatives = view_of(runtime, result.representatives);
-  mesh.segment_ends = runtime.view(constraints.segments, 2 * mesh.segments);
-  mesh.piece_offsets = view_of(runtime, result.piece_offsets);
-  mesh.piece_edges = view_of(runtime, result.piece_edges);
-  mesh.constraint_edges = view_of(runtime, result.constraint_edges);
+  mesh.neighbors = call.in(result.neighbors);
+  mesh.representatives = call.in(result.representatives);
+  mesh.segment_ends = call.in(constraints.segments, 2 * mesh.segments);
+  mesh.piece_offsets = call.in(result.piece_offsets);
+  mesh.piece_edges = call.in(result.piece_edges);
+  mesh.constraint_edges = call.in(result.constraint_edges);
   return mesh;
 }
 
-// Replaces the triangles by those that are left.
-void leave(host::Runtime& runtime, const constrained::DomainMesh& mesh, constrained::Regions& regions,
-           ConstrainedTriangulation& result) {
-  const constrained::LeftPlaces places = place_left(runtime, mesh, regions);
-  const std::size_t left = places.triangle_offsets.back();
-  if (left == mesh.triangle_count()) return;
-  std::vector<std::int32_t> triangles, neighbors;
-  std::vector<std::uint8_t> constrained;
-  runtime.resize(triangles, 3 * left);
-  runtime.resize(neighbors, 3 * left);
-  runtime.resize(constrained, 3 * left);
-  const host::Runtime::Settled settled(runtime);
-  const constrained::LeftBuffers buffers{runtime.output(triangles), runtime.output(neighbors),
-                                         runtime.output(constrained), runtime.arena().allocate<cl_int>(left)};
-  write_left(runtime, mesh, places, buffers, regions);
-  runtime.fetch_later(buffers.triangles, triangles);
-  runtime.fetch_later(buffers.neighbors, neighbors);
-  runtime.fetch_later(buffers.constrained, constrained);
-  runtime.finish();
-  regions.of_triangles = buffers.regions;
-  result.triangles = std::move(triangles);
-  result.neighbors = std::move(neighbors);
-  result.constrained = std::move(constrained);
-  result.triangle_offsets = places.triangle_offsets;
+// Labels regions by the polygons that curves bound.
+void find_polygons(host::Runtime& runtime, const double* coordinates, const Constraints& constraints,
+                   const DomainRequest& request, const ConstrainedTriangulation& result,
+                   constrained::Regions& regions) {
+  constrained::MapLabels labels = constrained::label_map(
+      coordinates, result, points::download(runtime, regions.of_triangles, result.triangles.size() / 3),
+      regions.count, constraints.segments, *request.curves, request.rules.fill, request.overlaps);
+  if (request.rules.outside != Outside::keep) {
+    std::vector<cl_uchar> left;
+    for (const std::int32_t polygon : labels.polygons) left.push_back(polygon >= 0 ? 1 : 0);
+    runtime.write_kept(regions.left, std::move(left));
+  }
+  regions.depths = runtime.upload(runtime.arena(), std::move(labels.depths));
+  regions.polygons = runtime.upload(runtime.arena(), std::move(labels.polygons));
 }
 
-void write_labels(host::Runtime& runtime, const constrained::Regions& regions,
-                  ConstrainedTriangulation& result) {
-  const std::size_t triangles = result.triangles.size() / 3;
-  runtime.resize(result.depths, triangles);
-  runtime.resize(result.regions, triangles);
-  const Buffer<cl_int> depths = runtime.output(result.depths), of = runtime.output(result.regions);
-  constrained::write_depths(runtime, triangles, regions.of_triangles, regions.depths, depths);
-  runtime.copy(regions.of_triangles, 0, of, 0, triangles);
-  runtime.fetch_later(depths, result.depths);
-  runtime.fetch_later(of, result.regions);
-  runtime.finish();
+// The triangles of places.
+std::vector<std::int32_t> find_places(Frame& call, Engine& with_doubles, const constrained::DomainMesh& mesh,
+                                      const constrained::Places& places, const double* coordinates,
+                                      const std::vector<std::size_t>& offsets,
+                                      const ConstrainedTriangulation& result) {
+  const auto find = [&](host::Runtime& runtime, const constrained::DomainMesh& of) {
+    return constrained::find_places(runtime, of, places, coordinates, offsets, result.added_offsets);
+  };
+  if (&with_doubles == &call.engine) return find(call.runtime, mesh);
+  Frame other(with_doubles);
+  return find(other.runtime, triangles_of(other, coordinates, offsets, result));
 }
 
-// Whether the host is quicker than any device.
-bool is_small(const Implementation& self, const Triangulation& result) {
-  // About two triangles per point.
-  return !self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points;
+// Labels regions by the last seed in each, or by -1.
+void label_seeds(host::Runtime& runtime, const std::vector<std::int32_t>& triangles,
+                 std::size_t triangle_count, constrained::Regions& regions) {
+  const std::vector<cl_int> of = points::download(runtime, regions.of_triangles, triangle_count);
+  std::vector<cl_int> seeds(regions.count, -1);
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    if (triangles[k] >= 0) seeds[of[triangles[k]]] = static_cast<cl_int>(k);
+  }
+  regions.seeds = runtime.upload(runtime.arena(), std::move(seeds));
+}
+
+// Writes what is left, unless all of it is. regions: where to write the numbers of regions.
+void leave(Frame& call, const constrained::DomainMesh& mesh, const constrained::LeftPlaces& places,
+           const Buffer<cl_int>& numbers, constrained::Regions& regions, Left& left) {
+  const std::size_t corners = 3 * places.triangle_offsets.back();
+  left.triangle_offsets = places.triangle_offsets;
+  write_left(call.runtime, mesh, places,
+             {.triangles = call.out<cl_int>(left.triangles, corners),
+              .neighbors = call.out<cl_int>(left.neighbors, corners),
+              .constrained = call.out<cl_uchar>(left.constrained, corners),
+              .regions = numbers},
+             regions);
 }
 
 }  // namespace
 
-constrained::DomainRequest request_of(const ConstrainedOptions& options, bool are_closed) {
+DomainRequest request_of(const ConstrainedOptions& options, bool are_closed) {
   return {{options.fill_rule, options.outside, are_closed}, options.labels};
 }
 
 void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-                   const Constraints& constraints, const constrained::DomainRequest& request,
+                   const Constraints& constraints, const DomainRequest& request,
                    ConstrainedTriangulation& result) {
-  if (!request.needs_depths() && constraints.hole_count == 0) return;
-  if (is_small(self, result)) {
-    apply_domains_on_host(coordinates, offsets, constraints, request, result);
-    return;
-  }
-  Engine& engine = self.for_host_memory();
-  const Frame call(engine);
-  if (constraints.hole_count == 0 || engine.has_doubles()) {
-    return apply_domains_on(call.runtime, call.runtime, coordinates, offsets, constraints, request, result);
-  }
-  const Frame other(self.with_doubles(engine));
-  apply_domains_on(call.runtime, other.runtime, coordinates, offsets, constraints, request, result);
+  const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
+  if (!request.needs_depths() && !has_places) return;
+  // About two triangles per point.
+  const bool is_small = !self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points;
+  Engine& engine = is_small ? Engine::of_thread() : self.for_host_memory();
+  Engine& with_doubles = has_places ? self.with_doubles(engine) : engine;
+  apply_domains_on(engine, with_doubles, coordinates, offsets, constraints, request, result);
 }
 
-void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
+void apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                      const constrained::DomainRequest& request, ConstrainedTriangulation& result) {
-  host::Arena::Scope scope(runtime.arena());
-  const host::Runtime::Settled settled(runtime);
-  const constrained::DomainMesh mesh = view(runtime, coordinates, offsets, constraints, result);
+                      const DomainRequest& request, ConstrainedTriangulation& result) {
+  Left left;
+  Frame call(engine);
+  host::Runtime& runtime = call.runtime;
+  const constrained::DomainMesh mesh = mesh_of(call, coordinates, offsets, constraints, result);
   constrained::Regions regions = find_regions(runtime, mesh);
-  if (request.needs_depths()) find_depths(runtime, mesh, request.rules, regions);
+  if (request.needs_depths() && request.curves != nullptr) {
+    find_polygons(runtime, coordinates, constraints, request, result, regions);
+  } else if (request.needs_depths()) {
+    find_depths(runtime, mesh, request.rules, regions);
+  }
+  const auto find = [&](const constrained::Places& places) {
+    return find_places(call, with_doubles, mesh, places, coordinates, offsets, result);
+  };
   if (constraints.hole_count > 0) {
     const constrained::Places holes = constrained::holes_of(constraints, offsets.size() - 1);
-    const constrained::Seeds seeds =
-        make_seeds(holes, magnitudes_at(holes, coordinates, offsets, result.added_offsets));
-    const host::Runtime::Settled other_settled(with_doubles);
-    const std::vector<std::int32_t> found = find_seeds(
-        with_doubles,
-        &with_doubles == &runtime ? mesh : view_triangles(with_doubles, coordinates, offsets, result), seeds);
-    check_found(holes, found);
+    const std::vector<std::int32_t> found = find(holes);
+    constrained::check_found(holes, found);
     drop_holes(runtime, found, regions);
   }
+  if (constraints.seed_count > 0) {
+    label_seeds(runtime, find(constrained::seeds_of(constraints, offsets.size() - 1)), mesh.triangle_count(),
+                regions);
+  }
+  std::size_t triangles = mesh.triangle_count();
+  constrained::LeftPlaces places;
   if (request.rules.outside != Outside::keep || constraints.hole_count > 0) {
-    leave(runtime, mesh, regions, result);
+    places = place_left(runtime, mesh, regions);
+    triangles = places.triangle_offsets.back();
   }
-  if (request.labels) write_labels(runtime, regions, result);
-}
-
-void write_attributes(Implementation& self, const double* coordinates,
-                      const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                      ConstrainedTriangulation& result) {
-  if (constraints.seed_count == 0) return;
-  const constrained::Places places = constrained::seeds_of(constraints, offsets.size() - 1);
-  const constrained::Seeds seeds =
-      make_seeds(places, magnitudes_at(places, coordinates, offsets, result.added_offsets));
-  const Frame call(is_small(self, result) ? self.native() : self.with_doubles(self.for_host_memory()));
-  constrained::DomainMesh mesh = view_triangles(call.runtime, coordinates, offsets, result);
-  mesh.neighbors = view_of(call.runtime, result.neighbors);
-  const constrained::Regions regions = find_regions(call.runtime, mesh);
-  std::vector<std::int32_t> of(mesh.triangle_count());
-  call.runtime.read_later(regions.of_triangles, 0, of.size(), of.data());
-  const std::vector<std::int32_t> found = find_seeds(call.runtime, mesh, seeds);
-  std::vector<double> attributes(regions.count, 0);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    if (found[k] >= 0) attributes[of[found[k]]] = constraints.seed_attributes[k];
+  const bool are_all_left = triangles == mesh.triangle_count();
+  const auto numbers = request.labels ? call.out<cl_int>(result.regions, triangles)
+                                      : runtime.arena().allocate<cl_int>(triangles);
+  if (!are_all_left) {
+    leave(call, mesh, places, numbers, regions, left);
+  } else if (request.labels) {
+    runtime.copy(regions.of_triangles, 0, numbers, 0, triangles);
   }
-  for (const std::int32_t region : of) result.triangle_attributes.push_back(attributes[region]);
+  const auto write = [&](const Buffer<cl_int>& labels, std::vector<std::int32_t>& to) {
+    const auto buffer = call.out<cl_int>(to, triangles);
+    constrained::write_labels(runtime, triangles, regions.of_triangles, labels, buffer);
+  };
+  if (request.labels) write(regions.depths, result.depths);
+  if (request.polygons) write(regions.polygons, result.polygons);
+  if (constraints.seed_count > 0) write(regions.seeds, left.seeds);
+  call.end();
+  for (const std::int32_t seed : left.seeds) {
+    result.triangle_attributes.push_back(seed < 0 ? 0 : constraints.seed_attributes[seed]);
+  }
+  if (are_all_left) return;
+  result.triangles = std::move(left.triangles);
+  result.neighbors = std::move(left.neighbors);
+  result.constrained = std::move(left.constrained);
+  result.triangle_offsets = std::move(left.triangle_offsets);
 }
 
 }  // namespace flaunay::call

@@ -5,28 +5,37 @@
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "constrained/domains/domain_on_host.hpp"
+#include "constrained/domains/domain.hpp"
+#include "constrained/domains/map.hpp"
 
 namespace flaunay::call {
 
-/// What the options ask for. are_closed: whether segments are known to be closed curves.
-constrained::DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
+/// What a call does with the domains of a triangulation.
+struct DomainRequest {
+  constrained::DepthRules rules{};
+  bool labels = false;  ///< whether to compute ConstrainedTriangulation::depths and regions
+  /// The curves that bound polygons, if depths are numbers of those; rules.fill is that of each curve.
+  const constrained::Curves* curves = nullptr;
+  bool polygons = false;  ///< whether to compute ConstrainedTriangulation::polygons
+  Overlaps overlaps = Overlaps::first;
 
-/// Labels a triangulation, which must have neighbours, and leaves out what the request and the holes say, on
-/// the engine for host memory with doubles or, if it is small and no device was named, on the calling thread.
-/// coordinates: of all points, those that splitting added too; offsets: without those.
+  bool needs_depths() const { return labels || polygons || rules.outside != Outside::keep; }
+};
+
+/// What the options ask for. are_closed: whether segments are known to be closed curves.
+DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
+
+/// Labels a triangulation, which must have neighbours, leaves out what the request and the holes say, and
+/// writes the attributes of triangles if there are seeds: on the engine for host memory or, if it is small
+/// and no device was named, on the calling thread. coordinates: of all points, those that splitting added
+/// too; offsets: without those.
 void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-                   const Constraints& constraints, const constrained::DomainRequest& request,
+                   const Constraints& constraints, const DomainRequest& request,
                    ConstrainedTriangulation& result);
-/// Labels on a device, or natively. with_doubles: finds holes; another one if the first one computes in
-/// fixed point.
-void apply_domains_on(host::Runtime& runtime, host::Runtime& with_doubles, const double* coordinates,
+/// The same on an engine. with_doubles: finds holes and seeds; another one if the first one computes in fixed
+/// point.
+void apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                      const constrained::DomainRequest& request, ConstrainedTriangulation& result);
-/// Writes the attributes of triangles if there are seeds, to a result that has neighbours. coordinates and
-/// offsets: as of apply_domains.
-void write_attributes(Implementation& self, const double* coordinates,
-                      const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                      ConstrainedTriangulation& result);
+                      const DomainRequest& request, ConstrainedTriangulation& result);
 
 }  // namespace flaunay::call

@@ -11,6 +11,7 @@
 #include "call/self_test.hpp"
 #include "host/error.hpp"
 #include "host/note.hpp"
+#include "host/of_thread.hpp"
 #include "host/opencl/device.hpp"
 #include "host/opencl/program_cache.hpp"
 #include "mesh/limits.h"
@@ -50,13 +51,21 @@ std::size_t largest_call(const host::Runtime& runtime) {
 
 }  // namespace
 
-Engine::Engine(const std::string& tuning)
-    : runtime(native_tuning(tuning)),
+Engine::Engine(std::shared_ptr<const Tuning> tuning, std::size_t threads)
+    : runtime(std::move(tuning), threads),
       persistent(runtime.memory()),
       even(runtime.memory()),
       odd(runtime.memory()) {
   separate_buffers();
-  check_arithmetic();
+}
+
+Engine::Engine(const std::string& tuning) : Engine(native_tuning(tuning)) { check_arithmetic(); }
+
+Engine& Engine::of_thread() {
+  struct Own {
+    Engine engine{native_tuning(), 1};
+  };
+  return host::of_thread<Own>().engine;
 }
 
 Engine::Engine(const boost::compute::context& context, const boost::compute::device& device,

@@ -22,6 +22,9 @@ struct Engine {
   /// Error(device) if it fails the self-test of fixed point, too.
   Engine(const boost::compute::context& context, const boost::compute::device& device,
          const std::string& tuning);
+  /// The calling thread's own, which runs kernels on that thread alone. As mode blocks does for small sets,
+  /// it takes the compiler's arithmetic to be exact.
+  static Engine& of_thread();
   /// Makes an engine with double precision on the same device and in the same context. Null if the device
   /// lacks fp64 or fails its self-test.
   std::unique_ptr<Engine> with_doubles() const;
@@ -56,6 +59,7 @@ struct Engine {
   std::size_t held_bytes() const;
 
  private:
+  explicit Engine(std::shared_ptr<const Tuning> tuning, std::size_t threads = 0);
   Engine(const boost::compute::context& context, const boost::compute::device& device,
          std::shared_ptr<const Tuning> tuning);
   void separate_buffers();

@@ -87,7 +87,7 @@ class Frame {
     return runtime.view_later(values, count);
   }
   template <typename T>
-  Buffer<T> in(const std::vector<T>& values) {
+  Buffer<T> in(const std::vector<T>& values, std::size_t /*count*/ = 0, const char* /*what*/ = "") {
     return runtime.view_later(values.data(), values.size());
   }
   template <typename T>
@@ -96,6 +96,26 @@ class Frame {
     memories_.push_back(memory);
     const Buffer<T> there(memory == nullptr ? nullptr : retained(memory), count);
     return place_.is_apart() ? read_back(there, 0, count) : there;
+  }
+  template <typename T>
+  Buffer<T> in(const DeviceBuffer& buffer, std::size_t count, const char* what) {
+    return in<T>(buffer.memory(), count, what);
+  }
+  // Arrays that kernels read and change. The end transfers what has become of them.
+  template <typename T>
+  Buffer<T> change(std::vector<T>& values, std::size_t /*count*/ = 0, const char* /*what*/ = "") {
+    const Buffer<T> buffer = runtime.output(values);
+    if (runtime.sizes().in_host_memory == 0) runtime.write_later(buffer, 0, values.size(), values.data());
+    transfers_.push_back({buffer.kept_memory(), nullptr, in_place(values), values.size(), fetch<T>});
+    return buffer;
+  }
+  template <typename T>
+  Buffer<T> change(const DeviceBuffer& array, std::size_t count, const char* what) {
+    const Buffer<T> buffer = in<T>(array, count, what);
+    if (place_.is_apart()) {
+      transfers_.push_back({buffer.kept_memory(), retained(array.memory()), nullptr, count, copy<T>});
+    }
+    return buffer;
   }
   /// Throws Error(usage) if the buffer of points is missing or too small.
   void check(const DevicePoints& points, const char* what);
@@ -116,12 +136,6 @@ class Frame {
   Buffer<T> out(To& to, std::size_t count, const char* what = "") {
     return output<T>(to, count, what).buffer(count);
   }
-  /// Makes the end transfer what kernels have written to an array that in() has returned for this buffer.
-  template <typename T>
-  void write_back(const Buffer<T>& changed, const DeviceBuffer& to) {
-    if (!place_.is_apart()) return;
-    transfers_.push_back({changed.kept_memory(), retained(to.memory()), nullptr, changed.size(), copy<T>});
-  }
 
   /// Throws Error(usage) if two arrays of the caller, or of these, are in the same buffer.
   void check_distinct(const std::vector<cl_mem>& others = {});
@@ -137,6 +151,11 @@ class Frame {
   template <typename T>
   friend class Output;
 
+  // The caller's vector, which stays the caller's.
+  template <typename T>
+  static std::shared_ptr<std::vector<T>> in_place(std::vector<T>& values) {
+    return {std::shared_ptr<void>(), &values};
+  }
   // Where a native engine has values of the caller's device memory.
   template <typename T>
   Buffer<T> read_back(const Buffer<T>& there, std::size_t first, std::size_t count) {
@@ -218,7 +237,7 @@ class Output {
 
 template <typename T>
 Output<T> Frame::output(std::vector<T>& to, std::size_t /*most*/, const char* /*what*/) {
-  return {*this, std::shared_ptr<std::vector<T>>(std::shared_ptr<void>(), &to), {}};
+  return {*this, in_place(to), {}};
 }
 
 template <typename T>

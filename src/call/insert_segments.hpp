@@ -2,24 +2,23 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "constrained/insertion/insert.hpp"
+#include "flaunay/constrained.hpp"
 
 namespace flaunay::call {
 
-/// Makes the segments edges. delaunay: what call::triangulate returned, with neighbours; its triangles and
-/// neighbours are used up, and what this step did is added to its statistics. Small sets stay on the calling
-/// thread if no device was named. Throws what constrained::constrain throws.
-constrained::Result insert_segments(Implementation& self, const double* coordinates,
-                                    const std::vector<std::size_t>& offsets, Triangulation& delaunay,
-                                    const std::vector<std::int32_t>& segments, const Options& options);
+/// Makes the segments edges of the result, which is what call::triangulate returned, with neighbours. Each
+/// segment is one piece, and no points are added. Small sets stay on the calling thread if no device was
+/// named. Throws what constrained::constrain throws.
+void insert_segments(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
+                     const Constraints& constraints, const Options& options,
+                     ConstrainedTriangulation& result);
 
-/// The same on an engine with doubles.
-constrained::Result insert_on(Engine& engine, const double* coordinates,
-                              const std::vector<std::size_t>& offsets, Triangulation& delaunay,
-                              const std::vector<std::int32_t>& segments, const Options& options);
+/// Makes them edges on this engine. Also throws geometry::TooWideForFixedPoint, before anything is changed.
+void insert_segments_on(Engine& engine, const double* coordinates, const std::vector<std::size_t>& offsets,
+                        const Constraints& constraints, const Options& options,
+                        ConstrainedTriangulation& result);
 
 }  // namespace flaunay::call

@@ -5,12 +5,10 @@
 #include <utility>
 
 #include "call/constrained.hpp"
-#include "call/frame.hpp"
+#include "call/triangulate.hpp"
 #include "constrained/crossings/first_crossing.hpp"
-#include "constrained/domains/domain_on_host.hpp"
 #include "constrained/domains/map.hpp"
 #include "geometry/magnitudes.hpp"
-#include "host/clock.hpp"
 
 namespace flaunay {
 namespace {
@@ -77,23 +75,6 @@ auto with_names(const std::vector<std::size_t>& points, const Work& work) {
   }
 }
 
-// All polygons as one set.
-ConstrainedTriangulation make_map(call::Implementation& self, const Polygons& polygons,
-                                  const std::vector<std::size_t>& points, const Constraints& constraints,
-                                  const PolygonOptions& options) {
-  const std::vector<std::size_t> offsets = {0, points.back()};
-  ConstrainedTriangulation result =
-      call::constrain(self, polygons.coordinates, offsets, constraints, options);
-  const double begin = host::now();
-  call::leave_polygons(polygons.coordinates, offsets, constraints,
-                       polygons.part_offsets.empty() ? constrained::curves_of_polygons(points)
-                                                     : constrained::curves_of(constraints.rings),
-                       options, options.overlaps, result);
-  call::finish(polygons.coordinates, points.back(), options, result);
-  call::end_phase("domains", begin, result.statistics);
-  return result;
-}
-
 ConstrainedTriangulation compute(call::Implementation& self, const Polygons& polygons,
                                  const PolygonOptions& options) {
   check(polygons, options);
@@ -102,18 +83,26 @@ ConstrainedTriangulation compute(call::Implementation& self, const Polygons& pol
   Constraints constraints;
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
+  call::DomainRequest request = call::request_of(options, true);
+  request.polygons = options.map;
+  if (options.map) request.overlaps = options.overlaps;
   const bool has_parts = !polygons.part_offsets.empty() && options.fill_rule != FillRule::nesting;
+  constrained::Curves curves;
   if (has_parts) {
     const Rings rings = {polygons.ring_offsets, polygons.part_offsets, polygons.polygon_offsets};
     constrained::check_rings(rings, constraints.segment_count, options.fill_rule);
-    if (options.map || !has_single_rings(polygons)) constraints.rings = rings;
+    curves = constrained::curves_of(rings);
+  } else if (options.map) {
+    curves = constrained::curves_of_polygons(points);
   }
+  // Single rings are what the fill rule counts, too.
+  if (options.map || (has_parts && !has_single_rings(polygons))) request.curves = &curves;
   return with_names(points, [&] {
-    if (options.map) return make_map(self, polygons, points, constraints, options);
-    ConstrainedTriangulation result =
-        call::constrain_and_leave(self, polygons.coordinates, points, constraints, options, true);
+    ConstrainedTriangulation result = call::constrain_and_leave(
+        self, polygons.coordinates, options.map ? std::vector<std::size_t>{0, points.back()} : points,
+        constraints, options, request);
     // The rule has counted how often the only ring of a polygon goes around a triangle.
-    if (has_parts) {
+    if (has_parts && !options.map) {
       for (std::int32_t& depth : result.depths) depth = depth != 0 ? 1 : 0;
     }
     return result;

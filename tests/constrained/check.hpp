@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "app/verify/exact.hpp"
-#include "constrained/insertion/insert.hpp"
+#include "flaunay/constrained.hpp"
 #include "flaunay/research.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
@@ -87,12 +87,13 @@ inline std::vector<std::vector<Edge>> expected_edges(const Coordinates& points,
 }
 
 /// That segments map to the edges that they consist of, and each edge is listed once.
-inline void expect_edges(const std::vector<std::vector<Edge>>& expected, const constrained::Result& result) {
-  ASSERT_EQ(result.segment_edges.size(), 2 * expected.size());
+inline void expect_edges(const std::vector<std::vector<Edge>>& expected,
+                         const ConstrainedTriangulation& result) {
+  ASSERT_EQ(result.piece_edges.size(), 2 * expected.size());
   std::set<Edge> all, listed;
   for (std::size_t s = 0; s < expected.size(); ++s) {
     std::vector<Edge> edges;
-    for (std::int32_t e = result.segment_edges[2 * s]; e < result.segment_edges[2 * s + 1]; ++e) {
+    for (std::int32_t e = result.piece_edges[2 * s]; e < result.piece_edges[2 * s + 1]; ++e) {
       edges.emplace_back(result.constraint_edges.at(2 * e), result.constraint_edges.at(2 * e + 1));
     }
     EXPECT_EQ(edges, expected[s]) << "of segment " << s;
@@ -108,7 +109,7 @@ inline void expect_edges(const std::vector<std::vector<Edge>>& expected, const c
 /// triangulation, that constraints are edges of it, and that all others are locally Delaunay; that cells are
 /// fans from their first vertex; and the order of rows.
 inline void expect_canonical(const Coordinates& points, const Triangulation& delaunay,
-                             const constrained::Result& result) {
+                             const ConstrainedTriangulation& result) {
   Plane plane(points);
   const std::vector<std::int32_t>& triangles = result.triangles;
   ASSERT_EQ(triangles.size(), delaunay.triangles.size());

@@ -1,4 +1,4 @@
-// Domains: the plain version against their definition, and the kernels against the plain version.
+// Domains: the kernels, natively and on a device, against their definition and against their twin.
 //
 // Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
 #include <gtest/gtest.h>
@@ -13,18 +13,17 @@
 #include <string>
 #include <vector>
 
-#include "call/domains.hpp"
 #include "tests/constrained/domains.hpp"
+#include "tests/constrained/sequential/domains.hpp"
 #include "tests/support/integer_points.hpp"
-#include "tests/support/runtimes.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {
 namespace {
 
-using constrained::DomainRequest;
-using Runtimes = SharedRuntimes<make_tuned_runtime>;
-[[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
+using call::DomainRequest;
+using Engines = SharedRuntimes<make_tuned_engine>;
+[[maybe_unused]] ::testing::Environment* const kEngines = ::testing::AddGlobalTestEnvironment(new Engines);
 
 constexpr FillRule kRules[] = {FillRule::nesting, FillRule::even_odd, FillRule::winding};
 constexpr Outside kOutsides[] = {Outside::keep, Outside::hull, Outside::holes};
@@ -58,19 +57,25 @@ struct Case {
   ConstrainedTriangulation triangulate() const { return constrained_of(points, offsets, segments); }
 };
 
-ConstrainedTriangulation on_host(const Case& input, ConstrainedTriangulation mesh,
+ConstrainedTriangulation by_twin(const Case& input, ConstrainedTriangulation mesh,
                                  const DomainRequest& request) {
-  apply_domains_on_host(input.points.data(), input.offsets, input.constraints(), request, mesh);
+  sequential::apply_domains(input.points.data(), input.constraints(), request, mesh);
   return mesh;
 }
 
 // By kernels; holes are found natively where there are no doubles.
 void apply_with(const std::string& tuning, const Case& input, const DomainRequest& request,
                 ConstrainedTriangulation& mesh) {
-  static host::Runtime native(native_tuning());
-  host::Runtime& runtime = Runtimes::get(tuning);
-  call::apply_domains_on(runtime, tuning_of(runtime).fixed_point == 0 ? runtime : native, input.points.data(),
-                         input.offsets, input.constraints(), request, mesh);
+  static call::Engine native(tuning_in_environment());
+  call::Engine& engine = Engines::get(tuning);
+  call::apply_domains_on(engine, engine.has_doubles() ? engine : native, input.points.data(), input.offsets,
+                         input.constraints(), request, mesh);
+}
+
+ConstrainedTriangulation apply(const Case& input, ConstrainedTriangulation mesh,
+                               const DomainRequest& request) {
+  apply_with("own", input, request, mesh);
+  return mesh;
 }
 
 void expect_same(const ConstrainedTriangulation& found, const ConstrainedTriangulation& expected) {
@@ -82,9 +87,9 @@ void expect_same(const ConstrainedTriangulation& found, const ConstrainedTriangu
   EXPECT_EQ(found.regions, expected.regions);
 }
 
-void expect_kernels_as_plain(const Case& input, const DomainRequest& request) {
+void expect_as_twin(const Case& input, const DomainRequest& request) {
   const ConstrainedTriangulation mesh = input.triangulate();
-  const ConstrainedTriangulation expected = on_host(input, mesh, request);
+  const ConstrainedTriangulation expected = by_twin(input, mesh, request);
   for (const std::string& tuning : tunings()) {
     SCOPED_TRACE(tuning);
     ConstrainedTriangulation found = mesh;
@@ -157,7 +162,7 @@ void expect_right(const Case& input) {
     const std::vector<std::int32_t> depths = expected_depths(input, mesh, rule);
     for (const Outside outside : kOutsides) {
       SCOPED_TRACE(std::to_string(static_cast<int>(rule)) + std::to_string(static_cast<int>(outside)));
-      const ConstrainedTriangulation found = on_host(input, mesh, {{rule, outside, false}, true});
+      const ConstrainedTriangulation found = apply(input, mesh, {{rule, outside, false}, true});
       std::vector<std::int32_t> triangles, left_depths, numbers, left_regions;
       std::vector<std::int32_t> number_of(mesh.triangles.size() / 3 + 1, -1);
       std::int32_t count = 0;
@@ -239,19 +244,19 @@ TEST(SmallDomains, RectanglesAsDefined) {
       }
     }
     expect_right(input);
-    expect_kernels_as_plain(input, {{FillRule::winding, Outside::hull, false}, true});
+    expect_as_twin(input, {{FillRule::winding, Outside::hull, false}, true});
     if (HasFailure()) return;
   }
 }
 
-TEST(SmallDomains, KernelsAsPlain) {
+TEST(SmallDomains, KernelsAsTwin) {
   FixtureRandom random(3);
   for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 10); ++round) {
     const Case input = random_sets(random, round, 8);
     for (const FillRule rule : kRules) {
       for (const Outside outside : kOutsides) {
         SCOPED_TRACE(std::to_string(static_cast<int>(rule)) + std::to_string(static_cast<int>(outside)));
-        expect_kernels_as_plain(input, {{rule, outside, false}, true});
+        expect_as_twin(input, {{rule, outside, false}, true});
         if (HasFailure()) return;
       }
     }
@@ -266,8 +271,8 @@ TEST(SmallDomains, OpenSegments) {
     input.points = random_integer_points(14, 6, round);
     input.offsets = {0, 14};
     input.segments = edges_of_stretched(input.points, 0.25, 2, round);
-    expect_kernels_as_plain(input, {{FillRule::nesting, Outside::holes, false}, true});
-    EXPECT_EQ(on_host(input, input.triangulate(), {{}, true}).depths, expected_nesting(input.triangulate()));
+    expect_as_twin(input, {{FillRule::nesting, Outside::holes, false}, true});
+    EXPECT_EQ(apply(input, input.triangulate(), {{}, true}).depths, expected_nesting(input.triangulate()));
     if (HasFailure()) return;
   }
 }
@@ -279,18 +284,14 @@ TEST(SmallDomains, CurvesThatAreNotClosed) {
     ConstrainedTriangulation mesh = input.triangulate();
     const DomainRequest request{{rule, Outside::keep, false}, true};
     try {
-      if (tuning.empty()) {
-        on_host(input, mesh, request);
-      } else {
-        apply_with(tuning, input, request, mesh);
-      }
+      apply_with(tuning, input, request, mesh);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
       return error.what();
     }
     return "";
   };
-  for (const std::string tuning : {"", "own"}) {
+  for (const std::string& tuning : tunings()) {
     input.segments = {4, 1, 1, 2, 2, 3, 3, 0};
     for (const FillRule rule : kRules) EXPECT_EQ(message(rule, tuning), "");
     input.segments = {4, 1, 1, 2, 2, 3, 0, 3};
@@ -326,8 +327,8 @@ TEST(SmallDomains, Holes) {
       input.hole_offsets.push_back(input.holes.size() / 2);
     }
     for (const Outside outside : {Outside::keep, Outside::holes}) {
-      expect_kernels_as_plain(input, {{FillRule::even_odd, outside, false}, true});
-      expect_kernels_as_plain(input, {{FillRule::nesting, outside, false}, false});
+      expect_as_twin(input, {{FillRule::even_odd, outside, false}, true});
+      expect_as_twin(input, {{FillRule::nesting, outside, false}, false});
     }
     if (HasFailure()) return;
   }
@@ -340,11 +341,7 @@ TEST(SmallDomains, HolesAtPlaces) {
              {0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4, 8, 9}};
   const auto area = [&](const std::string& tuning) {
     ConstrainedTriangulation mesh = input.triangulate();
-    if (tuning.empty()) {
-      mesh = on_host(input, mesh, {});
-    } else {
-      apply_with(tuning, input, {}, mesh);
-    }
+    apply_with(tuning, input, {}, mesh);
     double doubled = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
       const double* p[3];
@@ -363,7 +360,7 @@ TEST(SmallDomains, HolesAtPlaces) {
     }
     return "";
   };
-  for (const std::string tuning : {"", "own"}) {
+  for (const std::string& tuning : tunings()) {
     SCOPED_TRACE(tuning);
     input.holes = {3, 3};
     EXPECT_EQ(area(tuning), 60);
@@ -396,15 +393,15 @@ TEST(SmallDomains, HolesOfSets) {
   Case input{{0, 0, 2, 0, 0, 2, 2, 2, 1, 1, 0, 0, 2, 0, 0, 2, 5, 5, 6, 6}, {0, 5, 5, 8, 10}, {}};
   input.holes = {1, 1, 0.5, 0.5};
   input.hole_offsets = {0, 1, 1, 2, 2};
-  expect_kernels_as_plain(input, {});
-  EXPECT_TRUE(on_host(input, input.triangulate(), {}).triangles.empty());
+  expect_as_twin(input, {});
+  EXPECT_TRUE(apply(input, input.triangulate(), {}).triangles.empty());
   input.hole_offsets = {0, 0, 0, 1, 2};
-  EXPECT_THROW(on_host(input, input.triangulate(), {}), Error);
+  EXPECT_THROW(apply(input, input.triangulate(), {}), Error);
   for (const std::vector<std::size_t>& wrong :
        {std::vector<std::size_t>{}, {0, 1, 2}, {0, 1, 1, 1, 1}, {1, 1, 1, 2, 2}, {0, 2, 1, 2, 2}}) {
     input.hole_offsets = wrong;
     try {
-      on_host(input, input.triangulate(), {});
+      apply(input, input.triangulate(), {});
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);
@@ -439,7 +436,7 @@ void expect_large(const Case& input, const char* name) {
         std::printf("%s rule %d outside %d: %.1f ms, %zu triangles\n", name, static_cast<int>(rule),
                     static_cast<int>(outside), 1e3 * seconds, mesh.triangles.size() / 3);
       }
-      expect_same(found, on_host(input, mesh, request));
+      expect_same(found, by_twin(input, mesh, request));
     }
   }
 }

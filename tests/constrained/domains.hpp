@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "call/constrained.hpp"
-#include "constrained/domains/domain_on_host.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
@@ -23,10 +21,7 @@ namespace flaunay::testing {
 inline ConstrainedTriangulation constrained_of(const Coordinates& points,
                                                const std::vector<std::size_t>& offsets,
                                                const Segments& segments) {
-  ConstrainedTriangulation result;
-  static_cast<Triangulation&>(result) = delaunay_of(points, offsets);
-  call::take(insert(points, offsets, result, segments), result);
-  return result;
+  return insert(points, offsets, delaunay_of(points, offsets), segments);
 }
 
 /// Whether a simulator runs the kernels, which is slow.

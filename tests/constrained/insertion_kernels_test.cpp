@@ -20,10 +20,10 @@
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"
+#include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/integer_points.hpp"
-#include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/scaled_points.hpp"
 
@@ -34,7 +34,11 @@ using host::Arena;
 using host::Runtime;
 
 // Those of device_test.cpp, which ends them.
-using Runtimes = SharedRuntimes<make_tuned_runtime>;
+struct Runtimes {
+  static Runtime& get(const std::string& kind) {
+    return SharedRuntimes<make_tuned_engine>::get(kind).runtime;
+  }
+};
 
 using Ints = std::vector<cl_int>;
 using Uints = std::vector<cl_uint>;

@@ -1,20 +1,47 @@
-// Insertion of segments as the library has it, natively.
+// Insertion of segments as the library has it, natively or with the tuning of a device.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "constrained/insertion/insert.hpp"
-#include "host/runtime.hpp"
-#include "tuning/tuning.hpp"
+#include "call/insert_segments.hpp"
+#include "host/opencl/device.hpp"
+#include "tests/support/runtimes.hpp"
 
 namespace flaunay::testing {
 
-inline constrained::Result insert(const std::vector<double>& points, const std::vector<std::size_t>& offsets,
-                                  Triangulation delaunay, const std::vector<std::int32_t>& segments) {
-  static host::Runtime runtime(native_tuning());
-  return constrained::constrain(runtime, points.data(), offsets, delaunay, segments);
+/// Engines, as make_tuned_runtime makes runtimes.
+inline std::unique_ptr<call::Engine> make_tuned_engine(const std::string& tuning) {
+  const std::string names = tuning == "own" ? tuning_in_environment() : tuning;
+  if (tests_native()) return std::make_unique<call::Engine>(names);
+  return std::make_unique<call::Engine>(boost::compute::context(), host::find_device(""), names);
+}
+
+/// Makes segments edges of the mesh, which is a Delaunay triangulation.
+inline void insert_on(call::Engine& engine, const std::vector<double>& points,
+                      const std::vector<std::size_t>& offsets, const std::vector<std::int32_t>& segments,
+                      bool with_halfedges, ConstrainedTriangulation& mesh) {
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  Options options;
+  options.halfedges = with_halfedges;
+  call::insert_segments_on(engine, points.data(), offsets, constraints, options, mesh);
+}
+
+inline ConstrainedTriangulation insert(const std::vector<double>& points,
+                                       const std::vector<std::size_t>& offsets, Triangulation delaunay,
+                                       const std::vector<std::int32_t>& segments) {
+  static call::Engine engine(tuning_in_environment());
+  ConstrainedTriangulation mesh;
+  static_cast<Triangulation&>(mesh) = std::move(delaunay);
+  insert_on(engine, points, offsets, segments, false, mesh);
+  return mesh;
 }
 
 }  // namespace flaunay::testing

@@ -53,12 +53,12 @@ TEST(SmallSplitCall, SeveralSets) {
       for (std::int32_t& v : indices) v = all.place.at(static_cast<std::size_t>(v));
       return indices;
     };
-    constrained::Result found;
+    ConstrainedTriangulation found;
     found.triangles = placed(result.triangles);
     found.neighbors = result.neighbors;
     found.constrained = result.constrained;
     found.constraint_edges = placed(result.constraint_edges);
-    found.segment_edges = result.piece_edges;
+    found.piece_edges = result.piece_edges;
     const auto edges = expected_edges(all.coordinates, all.offsets, delaunay, placed(split.pieces));
     expect_edges(edges, found);
     expect_canonical(all.coordinates, delaunay, found);

@@ -41,11 +41,11 @@ struct Case {
   Case() = default;
   Case(Coordinates coordinates, Segments ends) : points(std::move(coordinates)), segments(std::move(ends)) {
     const std::vector<std::size_t> offsets = {0, points.size() / 2};
-    const constrained::Result result = insert(points, offsets, delaunay_of(points, offsets), segments);
+    const ConstrainedTriangulation result = insert(points, offsets, delaunay_of(points, offsets), segments);
     triangles = result.triangles;
     neighbors = result.neighbors;
     edges = result.constraint_edges;
-    segment_edges = result.segment_edges;
+    segment_edges = result.piece_edges;
   }
 
   VerifyReport verify() const {
@@ -527,7 +527,7 @@ TEST(NastySegments, AsSetsOfOneCall) {
     offsets.push_back(all.points.size() / 2);
   }
   const Triangulation delaunay = delaunay_of(all.points, offsets);
-  const constrained::Result result = insert(all.points, offsets, delaunay, all.segments);
+  const ConstrainedTriangulation result = insert(all.points, offsets, delaunay, all.segments);
   std::size_t edge = 0;
   for (std::size_t s = 0; s < inputs.size(); ++s) {
     Case alone(inputs[s].points, inputs[s].segments);

@@ -88,9 +88,9 @@ struct Arrays {
   const Ids *edge_segments = nullptr, *depths = nullptr, *regions = nullptr;
 };
 
-Arrays arrays_of(const Triangulation& delaunay, const constrained::Result& result) {
+Arrays arrays_of(const Triangulation& delaunay, const ConstrainedTriangulation& result) {
   return {delaunay.triangle_offsets, result.triangles, result.neighbors, result.constraint_edges,
-          result.segment_edges};
+          result.piece_edges};
 }
 Arrays arrays_of(const ConstrainedTriangulation& result) {
   return {result.triangle_offsets, result.triangles,      result.neighbors, result.constraint_edges,
@@ -167,7 +167,7 @@ bool verifier_refuses(const SegmentBatch& batch, const Domain& domain) {
 
 /// By brute force: what is wrong with a result, or with the message if there is none.
 std::string compare_with_definition(const Flat& all, const Triangulation& delaunay,
-                                    const std::optional<constrained::Result>& result,
+                                    const std::optional<ConstrainedTriangulation>& result,
                                     const std::string& error) {
   testing::Plane plane(all.points);
   const auto edges = testing::expected_edges(all.points, all.offsets, delaunay, all.segments);
@@ -193,7 +193,7 @@ std::string compare_with_definition(const Flat& all, const Triangulation& delaun
 
 struct Outcome {
   std::string error;  // empty if there is a result
-  std::optional<constrained::Result> result;
+  std::optional<ConstrainedTriangulation> result;
 };
 
 Outcome constrain(const Flat& all, const Triangulation& delaunay, const Segments& segments) {
@@ -207,11 +207,11 @@ Outcome constrain(const Flat& all, const Triangulation& delaunay, const Segments
 
 /// Inserts from the last segment to the first, each the other way round: what differs, or "".
 std::string compare_with_reversed(const Flat& all, const Triangulation& delaunay,
-                                  const constrained::Result& result) {
+                                  const ConstrainedTriangulation& result) {
   const Segments reversed(all.segments.rbegin(), all.segments.rend());
   const Outcome other = constrain(all, delaunay, reversed);
   if (!other.result) return "other segments cross if they are reversed: " + other.error;
-  const auto arrays = [](const constrained::Result& r) {
+  const auto arrays = [](const ConstrainedTriangulation& r) {
     return std::tie(r.triangles, r.neighbors, r.constraint_edges);
   };
   return arrays(result) == arrays(*other.result) ? "" : "reversed segments have another result";
@@ -393,7 +393,7 @@ class Devices {
       if (result.neighbors != expected.result->neighbors) return "its neighbours differ from the twin's";
       if (result.constraint_edges != expected.result->constraint_edges)
         return "its edges differ from the twin's";
-      if (result.piece_edges != expected.result->segment_edges) return "its pieces differ from the twin's";
+      if (result.piece_edges != expected.result->piece_edges) return "its pieces differ from the twin's";
       return "";
     } catch (const Error& error) {
       if (error.what() == expected.error) return "";

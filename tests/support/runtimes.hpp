@@ -46,23 +46,25 @@ inline std::unique_ptr<host::Runtime> make_tuned_runtime(const std::string& tuni
   return std::make_unique<host::Runtime>(device, tuning_for(device));
 }
 
-/// A runtime for each name, made by `make` when it is first needed. They end with the tests, before the
-/// OpenCL implementation leaves, if an object of this is one of the program's global environments.
-template <std::unique_ptr<host::Runtime> (*make)(const std::string& name)>
+/// A runtime, or an engine, for each name, made by `make` when it is first needed. They end with the tests,
+/// before the OpenCL implementation leaves, if an object of this is one of the program's global environments.
+template <auto make>
 class SharedRuntimes : public ::testing::Environment {
+  using Made = decltype(make(std::string()));
+
  public:
   void TearDown() override { all().clear(); }
 
-  static host::Runtime& get(const std::string& name) {
-    std::unique_ptr<host::Runtime>& runtime = all()[name];
-    if (!runtime) runtime = make(name);
-    return *runtime;
+  static auto& get(const std::string& name) {
+    Made& made = all()[name];
+    if (!made) made = make(name);
+    return *made;
   }
 
  private:
-  static std::map<std::string, std::unique_ptr<host::Runtime>>& all() {
-    static std::map<std::string, std::unique_ptr<host::Runtime>> runtimes;
-    return runtimes;
+  static std::map<std::string, Made>& all() {
+    static std::map<std::string, Made> all;
+    return all;
   }
 };
 

@@ -40,7 +40,7 @@ Point scaled(const double* coordinates, std::int32_t i, int shift) {
 }
 
 // From the lexicographically smaller end to the other one.
-Line scaled_line(const double* coordinates, const Ids& segments, std::size_t s, int shift) {
+Line scaled_line(const double* coordinates, const std::int32_t* segments, std::size_t s, int shift) {
   Line line{scaled(coordinates, segments[2 * s], shift), scaled(coordinates, segments[2 * s + 1], shift)};
   if (kernel::comes_before(line.b, line.a)) std::swap(line.a, line.b);
   return line;
@@ -56,7 +56,7 @@ Point crossing_place(const Line& first, const Line& second) {
 }
 
 [[noreturn]] void throw_crossing(const double* coordinates, const std::vector<std::size_t>& offsets,
-                                 const Ids& segments, Crossing crossing) {
+                                 const std::int32_t* segments, Crossing crossing) {
   const SetScalings scalings = set_scalings(
       coordinates, offsets,
       [coordinates](std::size_t first, std::size_t last) { return inspect(coordinates, first, last); });
@@ -136,10 +136,10 @@ class CutSegments {
 }  // namespace
 
 void check_first_segments(const double* coordinates, const std::vector<std::size_t>& offsets,
-                          const Ids& segments) {
-  if (offsets.size() != 2 || segments.size() < 4) return;
-  const auto pairs = kPairsPerSegment * static_cast<double>(segments.size() / 2);
-  const auto count = std::min(segments.size() / 2, 1 + static_cast<std::size_t>(std::sqrt(2 * pairs)));
+                          const std::int32_t* segments, std::size_t segment_count) {
+  if (offsets.size() != 2 || segment_count < 2) return;
+  const auto pairs = kPairsPerSegment * static_cast<double>(segment_count);
+  const auto count = std::min(segment_count, 1 + static_cast<std::size_t>(std::sqrt(2 * pairs)));
   int largest = std::numeric_limits<int>::min();
   for (std::size_t k = 0; k < 2 * count; ++k) {
     if (segments[k] < 0 || static_cast<std::size_t>(segments[k]) >= offsets.back()) return;
@@ -175,7 +175,7 @@ void check_crossings(const double* coordinates, const std::vector<std::size_t>& 
     const Crossing found = CutSegments(of_set).least_crossing();
     if (found.first != kNone) least = std::min(least, {numbers[found.first], numbers[found.second]});
   }
-  if (least.first != kNone) throw_crossing(coordinates, offsets, segments, least);
+  if (least.first != kNone) throw_crossing(coordinates, offsets, segments.data(), least);
 }
 
 }  // namespace flaunay::constrained

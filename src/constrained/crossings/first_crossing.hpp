@@ -22,9 +22,9 @@ class CrossingError : public Error {
 
 /// Throws the CrossingError for segments that cross, if that takes few comparisons: of the first segments of
 /// a single set, O(sqrt(s)) of s segments, each with each. Wrong segments are left to others. O(s), and O(n)
-/// if segments cross.
+/// if segments cross. segments: 2 points each.
 void check_first_segments(const double* coordinates, const std::vector<std::size_t>& offsets,
-                          const std::vector<std::int32_t>& segments);
+                          const std::int32_t* segments, std::size_t segment_count);
 
 /// Throws the CrossingError if there are segments that cross at a place that is no point. Segments must be
 /// right (see check_segments). O((n + s + k) log n log s) for k edges of the segments, as a rule.

@@ -10,10 +10,6 @@ namespace flaunay::constrained {
 using namespace geometry;
 
 void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments) {
-  if (segments.size() % 2 != 0) {
-    throw Error(ErrorKind::usage,
-                fmt::format("segments need two points each, but {} indices were given", segments.size()));
-  }
   const auto n = static_cast<std::int32_t>(offsets.back());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (segments[i] < 0 || segments[i] >= n) {

@@ -10,8 +10,7 @@
 
 namespace flaunay::constrained {
 
-/// Throws Error(usage) if an index is no point, if the ends of a segment are in different sets, or if the
-/// number of indices is odd.
+/// Throws Error(usage) if an index is no point, or if the ends of a segment are in different sets.
 void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments);
 
 /// The set of a point.

@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "constrained/domains/borders.hpp"
 #include "constrained/fill_rules.h"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
@@ -60,7 +59,11 @@ void check_closed(host::Runtime& runtime, const DomainMesh& mesh, FillRule rule)
   if (point == kNone) return;
   double place[2];
   runtime.read(mesh.coordinates, 2 * static_cast<std::size_t>(point), 2, place);
-  throw_not_closed(rule, static_cast<std::size_t>(point), place[0], place[1]);
+  throw Error(
+      ErrorKind::input,
+      fmt::format(
+          "segments are no closed curves at point {} ({:.17g}, {:.17g}): {}", point, place[0], place[1],
+          rule == FillRule::winding ? "not as many begin there as end" : "an odd number of them ends there"));
 }
 
 Weights weigh_edges(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules) {
@@ -134,6 +137,44 @@ Borders find_borders(host::Runtime& runtime, const DomainMesh& mesh, const Depth
   return borders;
 }
 
+// Computes the levels of regions, and their potentials: the sums of what is crossed from outside. between:
+// two regions per border, of which the first may be -1, the outside. steps: what is crossed from the first
+// one to the second one. levels: those of regions that are known are right, and there are none beyond the
+// largest of them that are not known; others are UNREACHED. O(regions + borders).
+void walk_borders(const std::vector<std::int32_t>& between, const std::vector<std::int32_t>& steps,
+                  std::vector<std::int32_t>& levels, std::vector<std::int32_t>& potentials) {
+  const auto outside = static_cast<std::int32_t>(levels.size());
+  levels.push_back(0);
+  potentials.push_back(0);
+  const auto region = [&](std::size_t end) { return between[end] < 0 ? outside : between[end]; };
+  // The ends of borders, grouped by region.
+  std::vector<std::int32_t> offsets(levels.size() + 1, 0), ends(between.size());
+  for (std::size_t end = 0; end < between.size(); ++end) ++offsets[region(end) + 1];
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  std::vector<std::int32_t> place(offsets.begin(), offsets.end() - 1);
+  for (std::size_t end = 0; end < between.size(); ++end) {
+    ends[place[region(end)]++] = static_cast<std::int32_t>(end);
+  }
+  std::vector<std::int32_t> queue;
+  for (std::int32_t r = 0; r <= outside; ++r) {
+    if (levels[r] != kernel::UNREACHED) queue.push_back(r);
+  }
+  std::stable_sort(queue.begin(), queue.end(),
+                   [&](std::int32_t a, std::int32_t b) { return levels[a] < levels[b]; });
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const std::int32_t from = queue[head];
+    for (std::int32_t i = offsets[from]; i < offsets[from + 1]; ++i) {
+      const std::int32_t end = ends[i], to = region(static_cast<std::size_t>(end ^ 1));
+      if (levels[to] != kernel::UNREACHED) continue;
+      levels[to] = levels[from] + 1;
+      potentials[to] = potentials[from] + (end % 2 == 0 ? steps[end / 2] : -steps[end / 2]);
+      queue.push_back(to);
+    }
+  }
+  levels.pop_back();
+  potentials.pop_back();
+}
+
 // Reaches what is deep, on the host.
 void reach_on_host(host::Runtime& runtime, FillRule rule, const Borders& borders, std::size_t regions) {
   std::vector<cl_int> between(2 * borders.count), steps(borders.count), levels(regions), potentials(regions);
@@ -192,14 +233,59 @@ Places checked_places(const char* name, const double* coordinates, std::size_t c
   return {name, coordinates, count, std::move(offsets)};
 }
 
-}  // namespace
+// Places, sorted and scaled.
+struct Seeds {
+  std::vector<std::size_t> offsets;         // of sets
+  std::vector<kernel::query_frame> frames;  // how sets are scaled
+  float bound = 0;                          // of orientations
+  std::vector<cl_double2> places;           // in each set by ascending x, scaled
+  std::vector<std::int32_t> numbers;        // those of the caller
+};
 
-void throw_not_closed(FillRule rule, std::size_t point, double x, double y) {
-  throw Error(ErrorKind::input,
-              fmt::format("segments are no closed curves at point {} ({:.17g}, {:.17g}): {}", point, x, y,
-                          rule == FillRule::winding ? "not as many begin there as end"
-                                                    : "an odd number of them ends there"));
+Seeds make_seeds(const Places& places, const double* coordinates, const std::vector<std::size_t>& offsets,
+                 const std::vector<std::size_t>& added_offsets) {
+  Seeds seeds;
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  seeds.offsets = places.offsets;
+  seeds.frames.resize(sets);
+  seeds.places.reserve(places.count);
+  seeds.numbers.resize(places.count);
+  std::iota(seeds.numbers.begin(), seeds.numbers.end(), 0);
+  for (std::size_t s = 0; s < sets; ++s) {
+    const std::size_t first = seeds.offsets[s], last = seeds.offsets[s + 1];
+    if (first == last) continue;
+    const geometry::Magnitudes own = geometry::inspect(places.coordinates, first, last);
+    if (own.bad != kernel::NO_BAD) {
+      const auto bad = static_cast<std::size_t>(own.bad);
+      throw Error(ErrorKind::input,
+                  fmt::format("{} {} is not finite: {}", places.name, bad, place_of(places, bad)));
+    }
+    const geometry::Magnitudes points =
+        geometry::joined(geometry::inspect(coordinates, offsets[s], offsets[s + 1]),
+                         geometry::inspect(coordinates, n + added_offsets[s], n + added_offsets[s + 1]));
+    const geometry::Magnitudes both = geometry::joined(points, own);
+    if (geometry::bits_of(both) > points::kOrientLimits.most_bits()) {
+      throw_range(places, first, last, points);
+    }
+    const points::QueryScaling scaling = points::query_scaling(both, 0);
+    seeds.frames[s] = scaling.frames[0];
+    seeds.bound = std::max(seeds.bound, scaling.orient_bound);
+    const auto numbers = seeds.numbers.begin();
+    std::sort(numbers + static_cast<std::ptrdiff_t>(first), numbers + static_cast<std::ptrdiff_t>(last),
+              [&](std::int32_t a, std::int32_t b) {
+                const double x = places.coordinates[2 * static_cast<std::size_t>(a)],
+                             other = places.coordinates[2 * static_cast<std::size_t>(b)];
+                return x != other ? x < other : a < b;
+              });
+    for (std::size_t h = first; h < last; ++h) {
+      const auto place = kernel::scaled_point(seeds.numbers[h], places.coordinates, seeds.frames[s].scale);
+      seeds.places.push_back({{place.x, place.y}});
+    }
+  }
+  return seeds;
 }
+
+}  // namespace
 
 Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
   const std::size_t triangles = mesh.triangle_count();
@@ -248,64 +334,16 @@ Places seeds_of(const Constraints& constraints, std::size_t sets) {
   return checked_places("seed", constraints.seeds, constraints.seed_count, constraints.seed_offsets, sets);
 }
 
-Seeds make_seeds(const Places& places, const std::vector<geometry::Magnitudes>& points) {
-  Seeds seeds;
-  const std::size_t sets = points.size();
-  seeds.offsets = places.offsets;
-  seeds.frames.resize(sets);
-  seeds.places.reserve(places.count);
-  seeds.numbers.resize(places.count);
-  std::iota(seeds.numbers.begin(), seeds.numbers.end(), 0);
-  for (std::size_t s = 0; s < sets; ++s) {
-    const std::size_t first = seeds.offsets[s], last = seeds.offsets[s + 1];
-    if (first == last) continue;
-    const geometry::Magnitudes own = geometry::inspect(places.coordinates, first, last);
-    if (own.bad != kernel::NO_BAD) {
-      const auto bad = static_cast<std::size_t>(own.bad);
-      throw Error(ErrorKind::input,
-                  fmt::format("{} {} is not finite: {}", places.name, bad, place_of(places, bad)));
-    }
-    const geometry::Magnitudes both = geometry::joined(points[s], own);
-    if (geometry::bits_of(both) > points::kOrientLimits.most_bits()) {
-      throw_range(places, first, last, points[s]);
-    }
-    const points::QueryScaling scaling = points::query_scaling(both, 0);
-    seeds.frames[s] = scaling.frames[0];
-    seeds.bound = std::max(seeds.bound, scaling.orient_bound);
-    const auto numbers = seeds.numbers.begin();
-    std::sort(numbers + static_cast<std::ptrdiff_t>(first), numbers + static_cast<std::ptrdiff_t>(last),
-              [&](std::int32_t a, std::int32_t b) {
-                const double x = places.coordinates[2 * static_cast<std::size_t>(a)],
-                             other = places.coordinates[2 * static_cast<std::size_t>(b)];
-                return x != other ? x < other : a < b;
-              });
-    for (std::size_t h = first; h < last; ++h) {
-      seeds.places.push_back(
-          kernel::scaled_point(seeds.numbers[h], places.coordinates, seeds.frames[s].scale));
-    }
-  }
-  return seeds;
-}
-
-std::vector<std::int32_t> in_order(const Seeds& seeds, const std::vector<std::int32_t>& found,
-                                   const std::vector<std::uint8_t>& barred) {
-  std::vector<std::int32_t> triangles(found.size());
-  for (std::size_t h = 0; h < found.size(); ++h) {
-    const bool is_nowhere = found[h] < 0 || found[h] == kNone;
-    triangles[seeds.numbers[h]] = is_nowhere ? kNowhere : barred[h] != 0 ? kOnConstraint : found[h];
-  }
-  return triangles;
-}
-
-std::vector<std::int32_t> find_seeds(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds) {
-  const std::size_t count = seeds.places.size();
+std::vector<std::int32_t> find_places(host::Runtime& runtime, const DomainMesh& mesh, const Places& places,
+                                      const double* coordinates, const std::vector<std::size_t>& offsets,
+                                      const std::vector<std::size_t>& added_offsets) {
+  Seeds seeds = make_seeds(places, coordinates, offsets, added_offsets);
+  const std::size_t count = places.count;
   std::vector<std::int32_t> triangles(count);
   if (count == 0) return triangles;
   Arena::Scope scope(runtime.arena());
   const auto found = filled(runtime, count, kNone);
   const auto barred = filled(runtime, count, cl_uchar{0});
-  std::vector<cl_double2> places;
-  for (const kernel::double2& place : seeds.places) places.push_back({{place.x, place.y}});
   const auto offsets_of = [&](const std::vector<std::size_t>& offsets) {
     return runtime.upload(runtime.arena(), points::integers(offsets));
   };
@@ -318,14 +356,20 @@ std::vector<std::int32_t> find_seeds(host::Runtime& runtime, const DomainMesh& m
                                   .input = mesh.coordinates,
                                   .triangles = mesh.triangles,
                                   .constrained = mesh.constrained,
-                                  .seeds = runtime.upload(runtime.arena(), std::move(places)),
+                                  .seeds = runtime.upload(runtime.arena(), std::move(seeds.places)),
                                   .found = found,
                                   .barred = barred});
+  std::vector<cl_int> first(count);
   std::vector<std::uint8_t> on_constraint(count);
-  runtime.read_later(found, 0, count, triangles.data());
+  runtime.read_later(found, 0, count, first.data());
   runtime.read_later(barred, 0, count, on_constraint.data());
   runtime.finish();
-  return in_order(seeds, triangles, on_constraint);
+  for (std::size_t h = 0; h < count; ++h) {
+    triangles[seeds.numbers[h]] = first[h] == kNone       ? kNowhere
+                                  : on_constraint[h] != 0 ? kOnConstraint
+                                                          : first[h];
+  }
+  return triangles;
 }
 
 void check_found(const Places& places, const std::vector<std::int32_t>& found) {
@@ -383,17 +427,20 @@ void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces
                                   .left_neighbors = left.neighbors,
                                   .left_constrained = left.constrained,
                                   .left_regions = left.regions});
-  if (regions.depths.size() == 0) return;
-  const auto depths = runtime.arena().allocate<cl_int>(places.regions);
-  runtime.map(regions.count, kernels::number_depths{
-                                 .numbers = places.numbers, .depths = regions.depths, .left_depths = depths});
-  regions.depths = depths;
+  for (Buffer<cl_int>* labels : {&regions.depths, &regions.polygons, &regions.seeds}) {
+    if (labels->size() == 0) continue;
+    const auto numbered = runtime.arena().allocate<cl_int>(places.regions);
+    runtime.map(regions.count, kernels::number_labels{
+                                   .numbers = places.numbers, .labels = *labels, .left_labels = numbered});
+    *labels = numbered;
+  }
+  regions.of_triangles = left.regions;
 }
 
-void write_depths(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
-                  const Buffer<cl_int>& depths, const Buffer<cl_int>& triangle_depths) {
+void write_labels(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
+                  const Buffer<cl_int>& labels, const Buffer<cl_int>& triangle_labels) {
   runtime.map(
-      n, kernels::write_depths{.regions = regions, .depths = depths, .triangle_depths = triangle_depths});
+      n, kernels::write_labels{.regions = regions, .labels = labels, .triangle_labels = triangle_labels});
 }
 
 }  // namespace flaunay::constrained

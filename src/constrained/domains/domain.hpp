@@ -9,7 +9,6 @@
 #include "flaunay/constrained.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/runtime.hpp"
-#include "points/records.h"
 
 namespace flaunay::constrained {
 
@@ -34,8 +33,8 @@ struct DomainMesh {
 struct Regions {
   std::size_t count = 0;
   Buffer<cl_int> of_triangles{};
-  Buffer<cl_int> depths{};  ///< by region; empty until find_depths
-  Buffer<cl_uchar> left{};  ///< by region: 1 if it is left
+  Buffer<cl_int> depths{}, polygons{}, seeds{};  ///< labels by region; empty until they are found
+  Buffer<cl_uchar> left{};                       ///< by region: 1 if it is left
 };
 
 /// Finds the regions. All are left. Waits once. O(n log n), but mostly O(n).
@@ -64,29 +63,16 @@ struct Places {
 Places holes_of(const Constraints& constraints, std::size_t sets);
 Places seeds_of(const Constraints& constraints, std::size_t sets);
 
-/// Places, sorted and scaled.
-struct Seeds {
-  std::vector<std::size_t> offsets;         ///< of sets
-  std::vector<kernel::query_frame> frames;  ///< how sets are scaled
-  float bound = 0;                          ///< of orientations
-  std::vector<kernel::double2> places;      ///< in each set by ascending x, scaled
-  std::vector<std::int32_t> numbers;        ///< those of the caller
-};
-
-/// Sorts and scales places. points: the magnitudes by set. Throws Error(input), which names a place, if one
-/// is not finite, too fine or too far away.
-Seeds make_seeds(const Places& places, const std::vector<geometry::Magnitudes>& points);
-
 /// In place of the triangle of a place.
 constexpr std::int32_t kNowhere = -1, kOnConstraint = -2;
-/// By number of the caller what each place is in. found: per seed, less than 0 or INT_MAX if it is in no
-/// triangle; barred: whether it is on a constraint.
-std::vector<std::int32_t> in_order(const Seeds& seeds, const std::vector<std::int32_t>& found,
-                                   const std::vector<std::uint8_t>& barred);
 /// By number of the caller the triangle of each place, or what is in place of it. Reads the coordinates, the
-/// triangles and the constrained edges of the mesh, with doubles, which the runtime must have. Waits once.
-/// O(n log m) for m seeds, if not many have an x coordinate in the range of one triangle.
-std::vector<std::int32_t> find_seeds(host::Runtime& runtime, const DomainMesh& mesh, const Seeds& seeds);
+/// triangles and the constrained edges of the mesh, with doubles, which the runtime must have. coordinates,
+/// offsets: of the points in host memory; those that splitting added come after all others, set by set.
+/// Throws Error(input), which names a place, if one is not finite, too fine or too far away. Waits once. O(n
+/// log m) for m places, if not many have an x coordinate in the range of one triangle.
+std::vector<std::int32_t> find_places(host::Runtime& runtime, const DomainMesh& mesh, const Places& places,
+                                      const double* coordinates, const std::vector<std::size_t>& offsets,
+                                      const std::vector<std::size_t>& added_offsets);
 /// Throws Error(input), which names the first place that is in no triangle or on a constraint.
 void check_found(const Places& places, const std::vector<std::int32_t>& found);
 /// Leaves out the regions of triangles. Does not wait.
@@ -106,15 +92,12 @@ struct LeftBuffers {
   Buffer<cl_uchar> constrained{};
   Buffer<cl_int> regions{};
 };
-/// Writes what is left, and numbers the depths by regions that are left. Does not wait. O(n).
+/// Writes what is left, and numbers the labels by regions that are left. Does not wait. O(n).
 void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces& places,
                 const LeftBuffers& left, Regions& regions);
 
-/// Writes the depths of n triangles. regions: by triangle.
-void write_depths(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
-                  const Buffer<cl_int>& depths, const Buffer<cl_int>& triangle_depths);
-
-/// Throws the error for segments that are no closed curves at a point.
-[[noreturn]] void throw_not_closed(FillRule rule, std::size_t point, double x, double y);
+/// Writes the labels of n triangles. regions: by triangle. labels: by region.
+void write_labels(host::Runtime& runtime, std::size_t n, const Buffer<cl_int>& regions,
+                  const Buffer<cl_int>& labels, const Buffer<cl_int>& triangle_labels);
 
 }  // namespace flaunay::constrained

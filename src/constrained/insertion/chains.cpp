@@ -9,7 +9,6 @@
 #include "tuning/tuning.hpp"
 
 namespace flaunay::constrained {
-using namespace geometry;
 
 namespace {
 

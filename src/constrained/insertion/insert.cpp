@@ -95,7 +95,7 @@ class Insertion {
     insert_all(ends,
                {std::min(kMostPieces, tuning.pieces_most * (n_ + segment_count_)),
                 std::min(kMostRows, tuning.walked_most * (rows_ + segment_count_))},
-               result_.segment_edges, provide);
+               result_.piece_edges, provide);
     sort_rows();
     runtime_.map(rows_, kernels::write_constrained{.flags = flags_, .constrained = result_.constrained});
     write_halfedges();
@@ -113,7 +113,7 @@ class Insertion {
     std::size_t pieces = kMostPieces, rows = kMostRows;
   };
 
-  // Inserts segments, and numbers their edges. ranges: see Result::segment_edges.
+  // Inserts segments, and numbers their edges. ranges: see ConstrainedTriangulation::piece_edges.
   void insert_all(const Pairs& segments, const Limits& limits, const Buffer<cl_int>& ranges,
                   const ProvideEdges& provide) {
     UniquePairs unique = unique_pairs(segments);
@@ -192,7 +192,7 @@ class Insertion {
                });
     const std::vector<std::int32_t> found = joined.segment_edges(
         download(runtime_, edges.ends, 2 * edges.count), download(runtime_, ranges, 2 * count));
-    runtime_.write(result_.segment_edges, 0, found.size(), found.data());
+    runtime_.write(result_.piece_edges, 0, found.size(), found.data());
   }
 
   Pairs write_pieces(const UniquePairs& segments, const Walks& walks) {
@@ -664,68 +664,6 @@ void constrain(host::Runtime& runtime, const DeviceMesh& delaunay, const Buffer<
   Arena::Scope scope(runtime.arena());
   const ScaledPoints points = scale_points(runtime, delaunay);
   Insertion(runtime, delaunay, segments, segment_count, points, result).run(provide);
-}
-
-namespace {
-
-// A buffer with the values, which kernels change.
-template <typename T>
-Buffer<T> in_place(host::Runtime& runtime, std::vector<T>& values) {
-  const Buffer<T> buffer = runtime.output(values);
-  if (runtime.sizes().in_host_memory == 0) runtime.write_later(buffer, 0, values.size(), values.data());
-  return buffer;
-}
-
-}  // namespace
-
-Result constrain(host::Runtime& runtime, const double* coordinates, const std::vector<std::size_t>& offsets,
-                 Triangulation& delaunay, const std::vector<std::int32_t>& segments, bool with_halfedges) {
-  geometry::check_offsets(offsets);
-  geometry::check_coordinates(coordinates, offsets.back());
-  if (delaunay.neighbors.size() != delaunay.triangles.size()) {
-    throw Error(ErrorKind::usage, "a triangulation without neighbours cannot be constrained");
-  }
-  if (segments.size() % 2 != 0) check_segments(offsets, segments);
-  Arena::Scope scope(runtime.arena());
-  Result result;
-  const host::Runtime::Settled settled(runtime);
-  DeviceMesh mesh;
-  mesh.point_offsets = offsets;
-  mesh.coordinates = runtime.view_later(coordinates, 2 * mesh.points());
-  // Before anything is changed, since fixed point may not suffice.
-  const ScaledPoints points = scale_points(runtime, mesh);
-  result.triangles = std::move(delaunay.triangles);
-  result.neighbors = std::move(delaunay.neighbors);
-  runtime.resize(result.constrained, result.triangles.size());
-  runtime.resize(result.segment_edges, segments.size());
-  if (with_halfedges) runtime.resize(result.halfedges, result.triangles.size());
-
-  mesh.triangle_offsets = delaunay.triangle_offsets;
-  mesh.hull_offsets = delaunay.hull_offsets;
-  mesh.hull = runtime.view_later(delaunay.hull.data(), delaunay.hull.size());
-  mesh.representatives = runtime.view_later(delaunay.representatives.data(), delaunay.representatives.size());
-  mesh.triangles = in_place(runtime, result.triangles);
-  mesh.neighbors = in_place(runtime, result.neighbors);
-  const ConstrainedBuffers buffers{
-      .triangles = mesh.triangles,
-      .neighbors = mesh.neighbors,
-      .halfedges = with_halfedges ? runtime.output(result.halfedges) : Buffer<cl_int>(),
-      .constrained = runtime.output(result.constrained),
-      .segment_edges = runtime.output(result.segment_edges)};
-  Buffer<cl_int> edges;
-  const auto ends = runtime.view_later(segments.data(), segments.size());
-  Insertion(runtime, mesh, ends, segments.size() / 2, points, buffers).run([&](std::size_t count) {
-    runtime.resize(result.constraint_edges, 2 * count);
-    return edges = runtime.output(result.constraint_edges);
-  });
-  runtime.fetch_later(buffers.triangles, result.triangles);
-  runtime.fetch_later(buffers.neighbors, result.neighbors);
-  if (with_halfedges) runtime.fetch_later(buffers.halfedges, result.halfedges);
-  runtime.fetch_later(buffers.constrained, result.constrained);
-  runtime.fetch_later(buffers.segment_edges, result.segment_edges);
-  runtime.fetch_later(edges, result.constraint_edges);
-  runtime.finish();
-  return result;
 }
 
 }  // namespace flaunay::constrained

@@ -11,14 +11,14 @@ namespace flaunay::constrained {
 
 class JoinedSegments {
  public:
-  /// ends: of segments as in Result::triangles, two each; both are -1 for segments without edges.
+  /// ends: two vertices per segment; both are -1 for segments without edges.
   JoinedSegments(const std::vector<double>& coordinates, const std::vector<std::size_t>& offsets,
                  std::vector<std::int32_t> ends);
 
   /// The ends of the joined segments, two each.
   const std::vector<std::int32_t>& joined() const { return joined_; }
-  /// Result::segment_edges of the segments. edges: Result::constraint_edges. ranges: those of the joined
-  /// ones.
+  /// The edges of each segment, as in ConstrainedTriangulation::piece_edges. edges: all constraint edges.
+  /// ranges: those of the joined segments.
   std::vector<std::int32_t> segment_edges(const std::vector<std::int32_t>& edges,
                                           const std::vector<std::int32_t>& ranges) const;
 

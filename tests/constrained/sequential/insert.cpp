@@ -271,9 +271,6 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   check_offsets(offsets);
   check_coordinates(coordinates, offsets.back());
   constrained::check_segments(offsets, segments);
-  if (delaunay.neighbors.size() != delaunay.triangles.size()) {
-    throw Error(ErrorKind::usage, "a triangulation without neighbours cannot be constrained");
-  }
   const ScaledPoints scaled = scale_points(coordinates, offsets);
   Ids unique_of;
   std::vector<Segment> unique = unique_segments(scaled, delaunay.representatives, segments, unique_of);
@@ -288,12 +285,12 @@ Result constrain(const double* coordinates, const std::vector<std::size_t>& offs
   Constraints& constraints = inserter.constraints();
   constraints.sort();
   result.constraint_edges = constraints.sorted_edges();
-  result.segment_edges.assign(segments.size(), 0);
+  result.piece_edges.assign(segments.size(), 0);
   for (std::size_t s = 0; s < unique_of.size(); ++s) {
     if (unique_of[s] < 0) continue;
     const Segment& segment = unique[unique_of[s]];
-    result.segment_edges[2 * s] = constraints.number_from(segment.edge, segment.from);
-    result.segment_edges[2 * s + 1] = constraints.number_from(segment.edge, segment.to);
+    result.piece_edges[2 * s] = constraints.number_from(segment.edge, segment.from);
+    result.piece_edges[2 * s + 1] = constraints.number_from(segment.edge, segment.to);
   }
   result.large_polygons = inserter.mesh().polygons().insertions();
   result.repeated_polygons = inserter.mesh().polygons().repetitions();

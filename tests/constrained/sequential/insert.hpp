@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "constrained/insertion/insert.hpp"
+#include "flaunay/constrained.hpp"
 
 namespace flaunay::sequential {
 
-struct Result : constrained::Result {
+struct Result : ConstrainedTriangulation {
   std::size_t large_polygons = 0;     ///< cavities' sides triangulated by random insertion
   std::size_t repeated_polygons = 0;  ///< those of them for which gift-wrapping was needed
 };
@@ -17,10 +17,11 @@ struct Result : constrained::Result {
 /// Makes the segments edges of a triangulation, in one or more sets.
 ///
 /// coordinates, offsets: as in Triangulator::triangulate. delaunay: their triangulation, with neighbours.
-/// segments: 2 indices of points of the same set per segment.
+/// segments: 2 indices of points of the same set per segment. Of the result there are the triangles, their
+/// neighbours, and the edges; each segment is one piece.
 ///
-/// Throws Error(usage) if an index is no point, if the ends of a segment are in different sets, if the number
-/// of indices is odd, or if neighbours are missing; Error(input) if two segments cross at a place that is no
+/// Throws Error(usage) if an index is no point, or if the ends of a segment are in different sets;
+/// Error(input) if two segments cross at a place that is no
 /// point. That names the first segment that crosses one with a smaller index, the one with the smallest index
 /// of those, and the place.
 ///
