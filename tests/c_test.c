@@ -1844,7 +1844,7 @@ static void test_chunks_to_files(void) {
   flaunay_strided_points strange = source;
   strange.precision = 2;
   CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report), usage,
-              "precision 2"));
+              "2 is no flaunay_precision"));
   strange = source, strange.reserved[3] = 1;
   CHECK(fails(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report), usage,
               "flaunay_strided_points"));
