@@ -12,33 +12,41 @@
 
 namespace flaunay::host {
 
-Runtime::Runtime(const boost::compute::device& device, std::shared_ptr<const Sizes> sizes)
-    : Runtime(boost::compute::context(device), device, std::move(sizes)) {}
+Runtime::Runtime(const boost::compute::device& device, Settings settings)
+    : Runtime(boost::compute::context(device), device, std::move(settings)) {}
 
 Runtime::Runtime(const boost::compute::context& context, const boost::compute::device& device,
-                 std::shared_ptr<const Sizes> sizes)
-    : Runtime(std::move(sizes), [&](Accounts& accounts) {
+                 Settings settings)
+    : Runtime(std::move(settings), [&](Accounts& accounts) {
         return std::make_unique<OpenClBackend>(accounts, context, device);
       }) {}
 
 Runtime::Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads)
-    : Runtime(std::move(sizes),
+    : Runtime(Settings{std::move(sizes)},
               [threads](Accounts& accounts) { return std::make_unique<NativeBackend>(accounts, threads); }) {}
 
-Runtime::Runtime(std::shared_ptr<const Sizes> sizes, const MakeBackend& make)
-    : sizes_(std::move(sizes)), backend_(make(accounts_)), arena_(backend_->memory()) {
+Runtime::Runtime(Settings settings, const MakeBackend& make)
+    : sizes_(std::move(settings.sizes)),
+      capabilities_(settings.capabilities),
+      backend_(make(accounts_)),
+      arena_(backend_->memory()) {
   if (sizes_->separate_buffers != 0) arena_.separate_buffers();
 }
 
 // Kernels may still use what is kept, and the memory of the arena.
 Runtime::~Runtime() { settle(); }
 
-void Runtime::set_sizes(std::shared_ptr<const Sizes> sizes) {
+std::string Runtime::build_options() const {
+  return fmt::format("{} {}", sizes_->build_options(), capabilities_.build_options());
+}
+
+void Runtime::set(Settings settings) {
   // Pending times refer to kernels by name.
   backend_->collect_times();
-  const std::string compiled_for = sizes_->build_options();
-  sizes_ = std::move(sizes);
-  if (sizes_->build_options() == compiled_for) return;
+  const std::string compiled_for = build_options();
+  sizes_ = std::move(settings.sizes);
+  capabilities_ = settings.capabilities;
+  if (build_options() == compiled_for) return;
   for (auto& kernels : kernels_) kernels.clear();
   backend_->forget_programs();
 }
@@ -96,7 +104,7 @@ Kernel& Runtime::find_kernel(const KernelName& name) {
   const auto found = kernels.find(&name);
   if (found != kernels.end()) return *found->second;
   const std::string options =
-      fmt::format("-cl-std=CL1.2 {}{}", sizes_->build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");
+      fmt::format("-cl-std=CL1.2 {}{}", build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");
   return *kernels.emplace(&name, backend_->make_kernel(name, options)).first->second;
 }
 

@@ -29,11 +29,10 @@ namespace flaunay::host {
 /// objects hold their arguments.
 class Runtime {
  public:
-  /// sizes: the sizes that kernels are compiled for and launched with; not null.
-  Runtime(const boost::compute::device& device, std::shared_ptr<const Sizes> sizes);
+  /// settings: what kernels are compiled for and launched with.
+  Runtime(const boost::compute::device& device, Settings settings);
   /// Uses the given context, which the device must belong to.
-  Runtime(const boost::compute::context& context, const boost::compute::device& device,
-          std::shared_ptr<const Sizes> sizes);
+  Runtime(const boost::compute::context& context, const boost::compute::device& device, Settings settings);
   /// Runs kernels natively, on threads of the host: OpenCL is not used. Launches and copies are complete when
   /// the call returns; there are no queues and events. threads: see Threads.
   explicit Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads = 0);
@@ -54,9 +53,12 @@ class Runtime {
   std::size_t threads() const { return backend_->threads(); }
   /// Where arenas and buffers get their memory from.
   MemorySource memory() const { return backend_->memory(); }
+  /// What the device can do; the host can do everything.
+  const Capabilities& capabilities() const { return capabilities_; }
   const Sizes& sizes() const { return *sizes_; }
-  /// Changes the sizes. Kernels are compiled again if they are compiled for sizes that differ.
-  void set_sizes(std::shared_ptr<const Sizes> sizes);
+  /// Change what kernels are launched with. If they are compiled for what differs, they are compiled again.
+  void set_capabilities(const Capabilities& capabilities) { set({sizes_, capabilities}); }
+  void set_sizes(std::shared_ptr<const Sizes> sizes) { set({std::move(sizes), capabilities_}); }
   Arena& arena() { return arena_; }
   const Arena& arena() const { return arena_; }
   cl_command_queue queue() const { return backend_->queue(); }
@@ -300,7 +302,11 @@ class Runtime {
 
  private:
   using MakeBackend = std::function<std::unique_ptr<Backend>(Accounts&)>;
-  Runtime(std::shared_ptr<const Sizes> sizes, const MakeBackend& make);
+  Runtime(Settings settings, const MakeBackend& make);
+
+  void set(Settings settings);
+  /// The compiler options of the kernels.
+  std::string build_options() const;
 
   template <typename T>
   Buffer<T> view_by(const T* values, std::size_t count,
@@ -372,6 +378,7 @@ class Runtime {
 
   Accounts accounts_;
   std::shared_ptr<const Sizes> sizes_;
+  Capabilities capabilities_;
   std::unique_ptr<Backend> backend_;
   std::vector<std::shared_ptr<void>> kept_;  // values of write_kept
   Arena arena_;

@@ -44,7 +44,7 @@ std::vector<cl_int> random_cycle(std::size_t bytes) {
 Result measure_device(const DeviceRequest& request) {
   const std::string name = opencl_device(request.device);
   const auto found = host::find_device(name);
-  host::Runtime runtime(found, tuning_for(found));
+  host::Runtime runtime(found, settings_for(found));
   Result result(Triangulator(name).device());
   result.facts = {{"compute_units", result.device.compute_units}, {"clock_mhz", result.device.clock_mhz}};
 

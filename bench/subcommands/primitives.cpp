@@ -244,7 +244,7 @@ class Operations {
 
 Result measure_primitives(const Request& request) {
   const auto device = host::find_device(request.device);
-  Runtime runtime(device, tuning_for(device));
+  Runtime runtime(device, settings_for(device));
   Operations operations(runtime, request);
   measure_rows(operations.jobs, request.runs);
   Result result(Triangulator(request.device).device());

@@ -18,6 +18,11 @@ std::size_t sort_table_bytes(const Sizes& sizes) {
 
 }  // namespace
 
+std::string Capabilities::build_options() const {
+  return fmt::format("-DATOMIC_READS={:d}{}{}", atomic_reads, split_products ? " -DSPLIT_PRODUCTS" : "",
+                     fixed_point ? " -DFIXED_POINT" : "");
+}
+
 std::size_t Sizes::chunk(std::size_t n) const {
   if (chunks_most == 0) return chunk_least;
   return std::max(chunk_least, (n + chunks_most - 1) / chunks_most);

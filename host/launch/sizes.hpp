@@ -1,4 +1,4 @@
-// The sizes of launches and of the vector operations.
+// What a runtime works by: what its device can do, and the sizes of launches and of the vector operations.
 #pragma once
 
 #include <boost/compute/device.hpp>
@@ -8,10 +8,29 @@
 
 #include "operations/limits.h"
 
-namespace flaunay::host {
+namespace flaunay {
 
-/// Sizes for one device. A user of Runtime derives a struct with the sizes that its own kernels need, and
-/// gets it back from Runtime::sizes.
+/// All sizes, with those of the user of Runtime, who defines this.
+struct Tuning;
+
+namespace host {
+
+/// What a device can do, by its properties and its self-test. Kernels are compiled for it.
+struct Capabilities {
+  /// Kernels compute in fixed point: the device has no doubles, or they fail the self-test, or are too slow.
+  bool fixed_point = false;
+  /// Kernels compute the errors of products without fma, which is not exact.
+  bool split_products = false;
+  /// Kernels read by atomic operations what other work-groups may change meanwhile.
+  bool atomic_reads = false;
+  /// The device ends loops after some ten thousand turns of a work-item.
+  bool loops_end_early = false;
+
+  /// The compiler options of the kernels: "-DNAME=VALUE ...".
+  std::string build_options() const;
+};
+
+/// What is good for one device. Tuning derives from it.
 struct Sizes {
   /// Work-group size of kernels with one work-item per element.
   std::size_t map_group = 1;
@@ -48,12 +67,20 @@ struct Sizes {
   Sizes(const Sizes&) = default;
   Sizes& operator=(const Sizes&) = default;
 
-  /// Returns a copy. Derived structs override it to copy all of their members.
-  virtual std::shared_ptr<Sizes> copy() const { return std::make_shared<Sizes>(*this); }
+  /// What these sizes are a part of.
+  virtual const Tuning& tuning() const = 0;
+  /// Returns a copy of all of it.
+  virtual std::shared_ptr<Sizes> copy() const = 0;
   /// The number of elements per chunk if there are n elements.
   std::size_t chunk(std::size_t n) const;
   /// The compiler options of the kernels: "-DNAME=VALUE ...".
   virtual std::string build_options() const;
+};
+
+/// What a runtime on a device is made with.
+struct Settings {
+  std::shared_ptr<const Sizes> sizes;  ///< not null
+  Capabilities capabilities{};
 };
 
 /// The limits of a device.
@@ -67,4 +94,6 @@ DeviceLimits limits_of(const boost::compute::device& device);
 /// kernel may support only smaller groups; Runtime reduces those when it launches the kernel.
 void fit(Sizes& sizes, const DeviceLimits& limits);
 
-}  // namespace flaunay::host
+}  // namespace host
+
+}  // namespace flaunay

@@ -58,7 +58,13 @@ OpenClBackend::OpenClBackend(Accounts& accounts, const boost::compute::context& 
       on_pocl_(is_pocl(device.platform().id())),
       own_queues_{make_queue(false), {}},
       queue_(own_queues_[0]),
-      programs_(context_, device_, identity_of(device)) {}
+      programs_(context_, device_, identity_of(device)) {
+  if (device.get_info<cl_bool>(CL_DEVICE_ENDIAN_LITTLE)) return;
+  throw DeviceError(
+      fmt::format("{} cannot be used: it is big-endian (CL_DEVICE_ENDIAN_LITTLE), and arrays of the host are "
+                  "little-endian; try another device (FLAUNAY_DEVICE)",
+                  name()));
+}
 
 OpenClBackend::~OpenClBackend() {
   settle();

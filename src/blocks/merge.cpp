@@ -27,7 +27,7 @@ bool may_stop(const Workspace& work) {
 }
 // In fixed point, walks decide all predicates themselves (blocks/seams.cl).
 bool walks_may_stop(const Workspace& work) {
-  return tuning_of(work.runtime).fixed_point == 0 && may_stop(work);
+  return !work.runtime.capabilities().fixed_point && may_stop(work);
 }
 
 // Parts of this height have at least so many vertices.

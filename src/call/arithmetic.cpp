@@ -116,9 +116,9 @@ void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& sl
     return;  // what is wrong with the device, the self-test says
   }
   if (!(found >= static_cast<double>(tuning.fixed_point_from))) return;
-  const auto in_fixed_point = std::make_shared<Tuning>(tuning);
-  in_fixed_point->fixed_point = 1;
-  runtime.set_sizes(in_fixed_point);
+  host::Capabilities capabilities = runtime.capabilities();
+  capabilities.fixed_point = true;
+  runtime.set_capabilities(capabilities);
 }
 
 void choose_arithmetic(host::Runtime& runtime) {

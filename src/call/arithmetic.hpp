@@ -1,5 +1,5 @@
 // Which arithmetic a device's kernels use: double precision, or integers in fixed point and single precision
-// (Tuning::fixed_point). Results are the same; OpenCL does not tell which is faster.
+// (Capabilities::fixed_point). Results are the same; OpenCL does not tell which is faster.
 #pragma once
 
 #include <cstddef>

@@ -98,36 +98,28 @@ std::string describe_failure(cl_uint bits, const char* const (&checks)[N]) {
   return failure;
 }
 
-// If loops end early, calls are limited to so few points that no loop does.
-cl_uint without_loop_check(host::Runtime& runtime, cl_uint bits, cl_uint check) {
-  if ((bits & check) == 0 || runtime.is_native()) return bits;
-  auto tuning = std::make_shared<Tuning>(tuning_of(runtime));
-  tuning->loops_end_early = 1;
-  runtime.set_sizes(tuning);
-  return bits & ~check;
+void note(host::Runtime& runtime, bool host::Capabilities::*what) {
+  host::Capabilities capabilities = runtime.capabilities();
+  capabilities.*what = true;
+  runtime.set_capabilities(capabilities);
 }
 
-void require_little_endian(const host::Runtime& runtime) {
-  if (runtime.is_native() || runtime.device().get_info<cl_bool>(CL_DEVICE_ENDIAN_LITTLE)) return;
-  throw host::DeviceError(
-      fmt::format("{} cannot be used: it is big-endian (CL_DEVICE_ENDIAN_LITTLE), and arrays of the host are "
-                  "little-endian; try another device (FLAUNAY_DEVICE)",
-                  runtime.name()));
+// If loops end early, calls are limited to so few points that no loop does.
+cl_uint without_loop_check(host::Runtime& runtime, cl_uint bits, cl_uint check) {
+  if ((bits & check) != 0) note(runtime, &host::Capabilities::loops_end_early);
+  return bits & ~check;
 }
 
 }  // namespace
 
 std::string self_test_failure(host::Runtime& runtime) {
-  require_little_endian(runtime);
-  if (tuning_of(runtime).fixed_point != 0) {
+  if (runtime.capabilities().fixed_point) {
     const cl_uint bits = failed_checks_in_fixed_point(runtime);
     return describe_failure(without_loop_check(runtime, bits, kLoopCheckInFixedPoint), kChecksInFixedPoint);
   }
   cl_uint bits = without_loop_check(runtime, failed_checks(runtime), kLoopCheck);
-  if (bits != 0 && (bits & ~kFmaChecks) == 0 && !runtime.is_native()) {
-    auto without_fma = std::make_shared<Tuning>(tuning_of(runtime));
-    without_fma->split_products = 1;
-    runtime.set_sizes(without_fma);
+  if (bits != 0 && (bits & ~kFmaChecks) == 0) {
+    note(runtime, &host::Capabilities::split_products);
     bits = failed_checks(runtime);
   }
   return describe_failure(bits, kChecks);
@@ -135,10 +127,8 @@ std::string self_test_failure(host::Runtime& runtime) {
 
 std::string make_exact(host::Runtime& runtime) {
   const std::string failure = self_test_failure(runtime);
-  if (failure.empty() || runtime.is_native() || tuning_of(runtime).fixed_point != 0) return failure;
-  auto fixed = std::make_shared<Tuning>(tuning_of(runtime));
-  fixed->fixed_point = 1;
-  runtime.set_sizes(fixed);
+  if (failure.empty() || runtime.is_native() || runtime.capabilities().fixed_point) return failure;
+  note(runtime, &host::Capabilities::fixed_point);
   const std::string failure_of_fixed = self_test_failure(runtime);
   return failure_of_fixed.empty() ? "" : failure + "; " + failure_of_fixed;
 }
@@ -195,7 +185,7 @@ DeviceInfo describe(const host::Runtime& runtime) {
     info.fp64 = true;
   } else {
     info = describe(runtime.device());
-    info.fixed_point = tuning_of(runtime).fixed_point != 0;
+    info.fixed_point = runtime.capabilities().fixed_point;
   }
   info.self_test_passed = true;
   return info;
@@ -210,11 +200,11 @@ std::vector<DeviceInfo> list_devices(bool self_test) {
       DeviceInfo info = call::describe(device);
       if (self_test) {
         try {
-          host::Runtime runtime(device, tuning_for(device));
+          host::Runtime runtime(device, settings_for(device));
           call::choose_arithmetic(runtime);
           info.self_test_failure = call::make_exact(runtime);
           info.self_test_passed = info.self_test_failure.empty();
-          info.fixed_point = tuning_of(runtime).fixed_point != 0;
+          info.fixed_point = runtime.capabilities().fixed_point;
         } catch (const std::exception& error) {
           info.self_test_failure = error.what();
         }

@@ -44,8 +44,7 @@ std::size_t largest_call(const host::Runtime& runtime) {
   // edges.
   const std::size_t by_arrays =
       runtime.memory().largest / (kernel::EDGES_PER_VERTEX * sizeof(kernel::ring_edge));
-  const std::size_t by_loops =
-      tuning_of(runtime).loops_end_early != 0 ? kMostPointsInShortLoops : kMostPoints;
+  const std::size_t by_loops = runtime.capabilities().loops_end_early ? kMostPointsInShortLoops : kMostPoints;
   return std::min({kMostPoints, by_arrays, by_loops});
 }
 
@@ -71,14 +70,14 @@ Engine& Engine::of_thread() {
 Engine::Engine(const boost::compute::context& context, const boost::compute::device& device,
                const std::string& tuning)
     : Engine(context.get() == nullptr ? boost::compute::context(device) : context, device,
-             tuning_for(device, tuning)) {
+             settings_for(device, tuning)) {
   choose_arithmetic(runtime);
   check_arithmetic();
 }
 
 Engine::Engine(const boost::compute::context& context, const boost::compute::device& device,
-               std::shared_ptr<const Tuning> tuning)
-    : runtime(context, device, std::move(tuning)),
+               host::Settings settings)
+    : runtime(context, device, std::move(settings)),
       persistent(runtime.memory()),
       even(runtime.memory()),
       odd(runtime.memory()) {
@@ -88,14 +87,14 @@ Engine::Engine(const boost::compute::context& context, const boost::compute::dev
 std::unique_ptr<Engine> Engine::with_doubles() const {
   const boost::compute::device& device = runtime.device();
   if (!host::has_fp64(device)) return nullptr;
-  auto tuning = std::make_shared<Tuning>(tuning_of(runtime));
-  tuning->fixed_point = 0;
-  std::unique_ptr<Engine> engine(new Engine(runtime.context(), device, std::move(tuning)));
+  host::Settings settings{runtime.sizes().copy(), runtime.capabilities()};
+  settings.capabilities.fixed_point = false;
+  std::unique_ptr<Engine> engine(new Engine(runtime.context(), device, std::move(settings)));
   if (!self_test_failure(engine->runtime).empty()) return nullptr;
   return engine;
 }
 
-bool Engine::has_doubles() const { return tuning_of(runtime).fixed_point == 0; }
+bool Engine::has_doubles() const { return !runtime.capabilities().fixed_point; }
 
 void Engine::separate_buffers() {
   if (runtime.sizes().separate_buffers == 0) return;
@@ -125,7 +124,7 @@ void Engine::check_size(std::size_t n) const {
   if (n <= fitting) return;
   const std::string in_one_piece =
       runtime.is_native() ? "" : fmt::format(", {} in one piece", host::mebibytes(runtime.memory().largest));
-  const std::string loops = tuning_of(runtime).loops_end_early != 0 ? ", and its loops end early" : "";
+  const std::string loops = runtime.capabilities().loops_end_early ? ", and its loops end early" : "";
   throw Error(
       n > kMostPoints ? ErrorKind::input : ErrorKind::device,
       fmt::format("{} points are too many: {} would fit on {} ({} of memory by {}{}, {} bytes a point{})", n,

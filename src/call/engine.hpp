@@ -61,7 +61,7 @@ struct Engine {
  private:
   explicit Engine(std::shared_ptr<const Tuning> tuning, std::size_t threads = 0);
   Engine(const boost::compute::context& context, const boost::compute::device& device,
-         std::shared_ptr<const Tuning> tuning);
+         host::Settings settings);
   void separate_buffers();
   void check_arithmetic();
   std::size_t allocations() const;

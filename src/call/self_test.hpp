@@ -9,11 +9,11 @@ namespace flaunay::call {
 
 /// Runs the self test. Returns "" if exact predicates can rely on the device's arithmetic, otherwise what
 /// failed. If nothing but fma is wrong, the runtime's kernels do without it from then on
-/// (Tuning::split_products).
+/// (Capabilities::split_products).
 std::string self_test_failure(host::Runtime& runtime);
 
 /// Runs the self test. If the doubles of a device fail it, its kernels compute in fixed point from then on
-/// (Tuning::fixed_point), for which it is run again. Returns "" or what failed.
+/// (Capabilities::fixed_point), for which it is run again. Returns "" or what failed.
 std::string make_exact(host::Runtime& runtime);
 
 }  // namespace flaunay::call

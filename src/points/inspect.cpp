@@ -112,7 +112,7 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   const Magnitudes magnitudes = inspect(runtime, points, n);
   const bool differ = differ_too_much(magnitudes);
-  const bool is_fixed = tuning_of(runtime).fixed_point != 0;
+  const bool is_fixed = runtime.capabilities().fixed_point;
   if (differ && sets > 1 && !is_fixed) return scale_sets(runtime, points, offsets);
   if (is_fixed && magnitudes.bad == kernel::NO_BAD && (!differ || sets > 1)) {
     return in_fixed_point(runtime, points, offsets, magnitudes);

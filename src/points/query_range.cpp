@@ -32,7 +32,7 @@ constexpr int kPlacesBeyondPoints = 1;
 // as COARSE_QUERY_BITS.
 constexpr int kCoarseBits = 10;
 
-bool is_in_fixed_point(host::Runtime& runtime) { return tuning_of(runtime).fixed_point != 0; }
+bool is_in_fixed_point(host::Runtime& runtime) { return runtime.capabilities().fixed_point; }
 
 // The shift of points and queries together. If they do not fit, that of the points, which leaves as many
 // places as can be for queries that are finer.

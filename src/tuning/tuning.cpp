@@ -332,31 +332,12 @@ constexpr Row kTable[] = {
      {0},
      {1},
      "Shows a simulator every access beyond an array."},
-    {"atomic_reads",
-     &Tuning::atomic_reads,
-     {0},
-     {1},
-     {1},
-     "Caches of CPUs are coherent. Other groups' values are read by atomic operations where they may not "
-     "be."},
     {"depth_rounds",
      &Tuning::depth_rounds,
      {2},
      {16},
      {1},
      "A GPU's launch that does nothing costs less than a wait. Few domains are more than 3 deep."},
-    {"split_products",
-     &Tuning::split_products,
-     {0},
-     {0},
-     {0},
-     "17 operations in place of 2; the self-test sets it for a device whose fma rounds twice."},
-    {"fixed_point",
-     &Tuning::fixed_point,
-     {0},
-     {0},
-     {0},
-     "Set for devices without fp64, and by its rate where that is measured (fixed_point_from)."},
     {"fixed_point_from",
      &Tuning::fixed_point_from,
      {0},
@@ -365,12 +346,6 @@ constexpr Row kTable[] = {
      "GPUs have 1/2 of fp32's rate, or 1/16 to 1/64. By the model, fixed point takes 1.02 of the time at "
      "1/16, "
      "0.93 at 1/32 and 0.77 at 1/64."},
-    {"loops_end_early",
-     &Tuning::loops_end_early,
-     {0},
-     {0},
-     {0},
-     "Set by the self-test, for Mesa's llvmpipe."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
@@ -396,6 +371,33 @@ constexpr Row kTable[] = {
      {16},
      "The largest of so many blocks holds less than twice its share of the points, as a rule."},
 };
+
+struct CapabilityRow {
+  const char* name;
+  bool host::Capabilities::*member;
+  bool cpu, gpu, small;
+  const char* reason;
+};
+
+constexpr CapabilityRow kCapabilities[] = {
+    {"atomic_reads", &host::Capabilities::atomic_reads, false, true, true,
+     "Caches of CPUs are coherent. Other groups' values are read by atomic operations where they may not "
+     "be."},
+    {"split_products", &host::Capabilities::split_products, false, false, false,
+     "17 operations in place of 2; the self-test sets it for a device whose fma rounds twice."},
+    {"fixed_point", &host::Capabilities::fixed_point, false, false, false,
+     "Set for devices without fp64, and by its rate where that is measured (fixed_point_from)."},
+    {"loops_end_early", &host::Capabilities::loops_end_early, false, false, false,
+     "Set by the self-test, for Mesa's llvmpipe; calls are limited to few points."},
+};
+
+// Columns of the tables.
+struct Column {
+  Amount Row::*size;
+  bool CapabilityRow::*capability;
+};
+constexpr Column kCpu{&Row::cpu, &CapabilityRow::cpu}, kGpu{&Row::gpu, &CapabilityRow::gpu},
+    kSmall{&Row::small, &CapabilityRow::small};
 
 // Devices that their kind's column does not suit, by a part of their name; tuning: as FLAUNAY_TUNING has it.
 struct NamedDevice {
@@ -427,14 +429,15 @@ struct Target {
   std::size_t units;
 };
 
-Tuning column(Amount Row::*kind, const Target& target) {
+KindOfDevice values_of(const Column& column, const Target& target) {
   const std::size_t units = std::max<std::size_t>(1, target.units);
-  Tuning tuning;
+  KindOfDevice kind;
   for (const Row& row : kTable) {
-    const Amount& amount = row.*kind;
-    tuning.*row.member = amount.is_per_unit ? amount.number * units : amount.number;
+    const Amount& amount = row.*column.size;
+    kind.tuning.*row.member = amount.is_per_unit ? amount.number * units : amount.number;
   }
-  return tuning;
+  for (const CapabilityRow& row : kCapabilities) kind.capabilities.*row.member = row.*column.capability;
+  return kind;
 }
 
 // Reads a positive number, which is at most `most`.
@@ -448,37 +451,44 @@ std::optional<std::size_t> number_of(const std::string& digits, std::size_t most
   return number <= most ? std::optional(number) : std::nullopt;
 }
 
-std::optional<Tuning> kind_named(const std::string& name, const Target& target) {
-  if (name == "cpu") return column(&Row::cpu, target);
-  if (name == "gpu") return column(&Row::gpu, target);
-  if (name == "small") return column(&Row::small, target);
+std::optional<KindOfDevice> kind_named(const std::string& name, const Target& target) {
+  if (name == "cpu") return values_of(kCpu, target);
+  if (name == "gpu") return values_of(kGpu, target);
+  if (name == "small") return values_of(kSmall, target);
   if (name == "small-blocks") {
-    Tuning tuning = column(&Row::small, target);
-    tuning.block_points = tuning.region_points = kPointsOfASmallBlock;
-    return tuning;
+    KindOfDevice kind = values_of(kSmall, target);
+    kind.tuning.block_points = kind.tuning.region_points = kPointsOfASmallBlock;
+    return kind;
   }
   const std::string prefix = "gpu:";
   if (name.compare(0, prefix.size(), prefix) != 0) return {};
   const auto group = number_of(name.substr(prefix.size()), kLargestGroup);
   if (!group || *group == 0) return {};
-  Tuning tuning = column(&Row::gpu, target);
+  KindOfDevice kind = values_of(kGpu, target);
+  Tuning& tuning = kind.tuning;
   tuning.map_group = tuning.private_group = tuning.chunk_group = tuning.sort_group = tuning.block_group =
       tuning.halve_group = tuning.sewing_group = *group;
   tuning.tile_group = std::min<std::size_t>(*group, kernel::LARGEST_TILE_GROUP);
-  return tuning;
+  return kind;
 }
 
-// Reads "name=value" with a name of the table; returns false if it is something else.
-bool override_value(Tuning& tuning, const std::string& part) {
+// Reads "name=value" with a name of the tables; returns false if it is something else.
+bool override_value(KindOfDevice& kind, const std::string& part) {
   const std::size_t equals = part.find('=');
   if (equals == std::string::npos) return false;
-  const auto row = std::find_if(std::begin(kTable), std::end(kTable),
-                                [&](const Row& r) { return part.compare(0, equals, r.name) == 0; });
   const auto number = number_of(part.substr(equals + 1), kLargestValue);
-  if (row == std::end(kTable) || !number) return false;
-  tuning.*row->member = *number;
+  if (!number) return false;
+  const auto is_named = [&](const auto& row) { return part.compare(0, equals, row.name) == 0; };
+  const auto row = std::find_if(std::begin(kTable), std::end(kTable), is_named);
+  if (row != std::end(kTable)) {
+    kind.tuning.*row->member = *number;
+    return true;
+  }
+  const auto capability = std::find_if(std::begin(kCapabilities), std::end(kCapabilities), is_named);
+  if (capability == std::end(kCapabilities)) return false;
+  kind.capabilities.*capability->member = *number != 0;
   // What is chosen by hand needs no measurement.
-  if (row->member == &Tuning::fixed_point) tuning.fixed_point_from = 0;
+  if (capability->member == &host::Capabilities::fixed_point) kind.tuning.fixed_point_from = 0;
   return true;
 }
 
@@ -492,20 +502,20 @@ std::vector<std::string> parts_of(const std::string& list) {
   return parts;
 }
 
-// given: as FLAUNAY_TUNING has it; what it leaves open is as in `tuning`.
-Tuning tuning_named(const std::string& given, const Target& target, Tuning tuning) {
-  if (given.empty()) return tuning;
+// given: as FLAUNAY_TUNING has it; what it leaves open is as in `kind`.
+KindOfDevice overridden(KindOfDevice kind, const std::string& given, const Target& target) {
+  if (given.empty()) return kind;
   bool is_first = true;
   for (const std::string& part : parts_of(given)) {
-    const auto kind = is_first ? kind_named(part, target) : std::nullopt;
-    if (kind) {
-      tuning = *kind;
-    } else if (!override_value(tuning, part)) {
+    const auto named = is_first ? kind_named(part, target) : std::nullopt;
+    if (named) {
+      kind = *named;
+    } else if (!override_value(kind, part)) {
       throw_unknown(given);
     }
     is_first = false;
   }
-  return tuning;
+  return kind;
 }
 
 // What is said of the target by its name; empty if nothing is.
@@ -516,10 +526,10 @@ std::string tuning_by_name(const Target& target) {
   return "";
 }
 
-Tuning tuning_of_target(const Target& target, const std::string& given) {
-  const Tuning of_kind = column(target.is_cpu ? &Row::cpu : &Row::gpu, target);
-  const Tuning own = tuning_named(tuning_by_name(target), target, of_kind);
-  return tuning_named(given, target, own);
+KindOfDevice kind_of_target(const Target& target, const std::string& given) {
+  const KindOfDevice own =
+      overridden(values_of(target.is_cpu ? kCpu : kGpu, target), tuning_by_name(target), target);
+  return overridden(own, given, target);
 }
 
 // Reduces sizes to what kernels have local memory for.
@@ -536,9 +546,8 @@ void fit_tiles(Tuning& tuning) {
 }  // namespace
 
 std::string Tuning::build_options() const {
-  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={} -DATOMIC_READS={}{}{}", Sizes::build_options(),
-                     small_region, fetch_ahead, atomic_reads, split_products != 0 ? " -DSPLIT_PRODUCTS" : "",
-                     fixed_point != 0 ? " -DFIXED_POINT" : "");
+  return fmt::format("{} -DSMALL_REGION={} -DFETCH_AHEAD={}", Sizes::build_options(), small_region,
+                     fetch_ahead);
 }
 
 std::string tuning_in_environment() {
@@ -546,46 +555,42 @@ std::string tuning_in_environment() {
   return given != nullptr ? given : "";
 }
 
-Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units,
-                      const std::string& given) {
+KindOfDevice kind_of_device(const std::string& name, cl_device_type type, std::size_t units,
+                            const std::string& given) {
   // Simulators may be of several types.
   const bool is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0 && (type & CL_DEVICE_TYPE_GPU) == 0;
-  return tuning_of_target({name, is_cpu, units}, given);
+  return kind_of_target({name, is_cpu, units}, given);
 }
 
-std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device, const std::string& given) {
-  auto tuning =
-      std::make_shared<Tuning>(tuning_of_kind(device.name(), device.type(), device.compute_units(), given));
+host::Settings settings_for(const boost::compute::device& device, const std::string& given) {
+  KindOfDevice kind = kind_of_device(device.name(), device.type(), device.compute_units(), given);
+  Tuning& tuning = kind.tuning;
   const host::DeviceLimits limits = host::limits_of(device);
-  host::fit(*tuning, limits);
-  fit_tiles(*tuning);
+  host::fit(tuning, limits);
+  fit_tiles(tuning);
   if (!host::has_fp64(device)) {
-    tuning->fixed_point = 1;
-    tuning->fixed_point_from = 0;
+    kind.capabilities.fixed_point = true;
+    tuning.fixed_point_from = 0;
   }
-  for (std::size_t* group : {&tuning->block_group, &tuning->halve_group, &tuning->sewing_group}) {
+  for (std::size_t* group : {&tuning.block_group, &tuning.halve_group, &tuning.sewing_group}) {
     *group = std::clamp<std::size_t>(*group, 1, std::clamp<std::size_t>(limits.work_group, 1, kLargestGroup));
   }
-  return tuning;
+  return {std::make_shared<Tuning>(tuning), kind.capabilities};
 }
 
 std::shared_ptr<const Tuning> native_tuning(const std::string& given) {
   const Target host{host::kHostName, true, host::native_threads()};
-  auto tuning = std::make_shared<Tuning>(tuning_of_target(host, given));
+  auto tuning = std::make_shared<Tuning>(kind_of_target(host, given).tuning);
   // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory,
   // on whole blocks.
-  const Tuning compiled = column(&Row::cpu, host);
+  const Tuning compiled = values_of(kCpu, host).tuning;
   tuning->sort_bits = compiled.sort_bits;
   tuning->sort_group = compiled.sort_group;
   tuning->fetch_ahead = compiled.fetch_ahead;
-  tuning->split_products = compiled.split_products;
-  tuning->fixed_point = compiled.fixed_point;
   tuning->tile_group = compiled.tile_group;
   tuning->in_host_memory = 1;
   tuning->blocks_in_parallel = 0;
   return tuning;
 }
-
-const Tuning& tuning_of(const host::Runtime& runtime) { return dynamic_cast<const Tuning&>(runtime.sizes()); }
 
 }  // namespace flaunay

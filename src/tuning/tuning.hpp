@@ -89,23 +89,12 @@ struct Tuning : host::Sizes {
   /// merged.
   std::size_t merge_from_percent = 1;
 
-  /// Other than 0: kernels read by atomic operations what other work-groups may change meanwhile.
-  std::size_t atomic_reads = 0;
   /// So many levels of regions are reached from outside between two waits.
   std::size_t depth_rounds = 1;
 
-  /// Other than 0: kernels compute the errors of products without fma, as for devices whose fma is not exact.
-  std::size_t split_products = 0;
-
-  /// Other than 0: kernels compute in fixed point, without fp64. Always so on devices that lack it.
-  std::size_t fixed_point = 0;
   /// If single precision is at least so many times as fast as double precision on a GPU, it computes in fixed
   /// point (call/arithmetic.hpp); 0: the rates are not asked for.
   std::size_t fixed_point_from = 0;
-
-  /// Other than 0: the device ends loops after some ten thousand turns of a work-item, so that calls are
-  /// limited to few points.
-  std::size_t loops_end_early = 0;
 
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
   // tests change them.
@@ -119,6 +108,7 @@ struct Tuning : host::Sizes {
   /// Samples per block, for the tree of cuts.
   std::size_t samples_per_block = 1;
 
+  const Tuning& tuning() const override { return *this; }
   std::shared_ptr<host::Sizes> copy() const override { return std::make_shared<Tuning>(*this); }
   std::string build_options() const override;
 };
@@ -126,22 +116,26 @@ struct Tuning : host::Sizes {
 /// The environment variable FLAUNAY_TUNING; empty if it is not set.
 std::string tuning_in_environment();
 
-/// The sizes for a device, reduced to its limits. For tests and experiments, `given` overrides them, which is
-/// as FLAUNAY_TUNING has it: a kind ("cpu", "gpu", "gpu:N" with all work-groups of N work-items, 1 to
-/// 1024, "small", "small-blocks"), or values by name ("block_group=64"), or both, separated by commas. Throws
-/// DeviceError, which says what is allowed, if it is not valid.
-std::shared_ptr<const Tuning> tuning_for(const boost::compute::device& device,
-                                         const std::string& given = tuning_in_environment());
+/// What a device can do as far as its properties tell, and the sizes for it, reduced to its limits. For tests
+/// and experiments, `given` overrides both, which is as FLAUNAY_TUNING has it: a kind ("cpu", "gpu", "gpu:N"
+/// with all work-groups of N work-items, 1 to 1024, "small", "small-blocks"), or values by name
+/// ("block_group=64"), or both, separated by commas. Throws DeviceError, which says what is allowed, if it is
+/// not valid.
+host::Settings settings_for(const boost::compute::device& device,
+                            const std::string& given = tuning_in_environment());
 
-/// The sizes for a device of this name, type and number of compute units, not reduced to any limits.
-Tuning tuning_of_kind(const std::string& name, cl_device_type type, std::size_t units,
-                      const std::string& given = tuning_in_environment());
+/// What is taken for a device of this name, type and number of compute units, whatever its limits are.
+struct KindOfDevice {
+  Tuning tuning;
+  host::Capabilities capabilities;
+};
+KindOfDevice kind_of_device(const std::string& name, cl_device_type type, std::size_t units,
+                            const std::string& given = tuning_in_environment());
 
 /// The sizes for kernels that run natively on the host. `given` overrides them, too, except what the kernels
 /// are compiled for.
 std::shared_ptr<const Tuning> native_tuning(const std::string& given = tuning_in_environment());
 
-/// The sizes of a runtime, which must be a Tuning.
-const Tuning& tuning_of(const host::Runtime& runtime);
+inline const Tuning& tuning_of(const host::Runtime& runtime) { return runtime.sizes().tuning(); }
 
 }  // namespace flaunay

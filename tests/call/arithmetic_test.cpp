@@ -186,10 +186,10 @@ TEST(SmallArithmetic, SeveralMeasureAtOnce) {
 
 // ---- What follows
 
-std::size_t chosen(const char* tuning, const std::function<double()>& slowness) {
+bool chosen(const char* tuning, const std::function<double()>& slowness) {
   const auto runtime = testing::make_tuned_runtime(tuning);
   choose_arithmetic(*runtime, slowness);
-  return tuning_of(*runtime).fixed_point;
+  return runtime->capabilities().fixed_point;
 }
 
 TEST(SmallArithmetic, SlowFp64IsAvoided) {
@@ -198,22 +198,22 @@ TEST(SmallArithmetic, SlowFp64IsAvoided) {
   ASSERT_GT(least, 2u) << "H100 and MI300X compute in double precision";
   ASSERT_LE(least, 32u) << "consumers' cards do not";
   const auto rate = [](double value) { return [value] { return value; }; };
-  EXPECT_EQ(chosen("gpu", rate(2)), 0u);
-  EXPECT_EQ(chosen("gpu", rate(static_cast<double>(least) - 0.1)), 0u);
-  EXPECT_EQ(chosen("gpu", rate(static_cast<double>(least))), 1u);
-  EXPECT_EQ(chosen("gpu", rate(64)), 1u);
-  EXPECT_EQ(chosen("gpu", rate(std::nan(""))), 0u);
-  EXPECT_EQ(chosen("gpu", []() -> double { throw std::runtime_error("no memory"); }), 0u);
+  EXPECT_FALSE(chosen("gpu", rate(2)));
+  EXPECT_FALSE(chosen("gpu", rate(static_cast<double>(least) - 0.1)));
+  EXPECT_TRUE(chosen("gpu", rate(static_cast<double>(least))));
+  EXPECT_TRUE(chosen("gpu", rate(64)));
+  EXPECT_FALSE(chosen("gpu", rate(std::nan(""))));
+  EXPECT_FALSE(chosen("gpu", []() -> double { throw std::runtime_error("no memory"); }));
 }
 
 TEST(SmallArithmetic, NothingIsMeasuredWhereItDecidesNothing) {
   CountedMeasurement measurement;
   for (const char* const tuning : {"cpu", "small", "gpu,fixed_point=0", "gpu,fixed_point_from=0"}) {
-    EXPECT_EQ(chosen(tuning, measurement.function()), 0u) << tuning;
+    EXPECT_FALSE(chosen(tuning, measurement.function())) << tuning;
   }
   if (!testing::tests_native()) {
-    EXPECT_EQ(chosen("gpu,fixed_point=1", measurement.function()), 1u);
-    EXPECT_EQ(chosen("cpu,fixed_point=1", measurement.function()), 1u);
+    EXPECT_TRUE(chosen("gpu,fixed_point=1", measurement.function()));
+    EXPECT_TRUE(chosen("cpu,fixed_point=1", measurement.function()));
   }
   EXPECT_EQ(measurement.calls, 0);
 }
@@ -223,7 +223,7 @@ TEST(SmallArithmetic, CPUsAreNotMeasured) {
   if (!runtime->is_native() && (runtime->device().type() & CL_DEVICE_TYPE_CPU) == 0) GTEST_SKIP() << "a GPU";
   choose_arithmetic(*runtime);
   EXPECT_EQ(runtime->accounts().launches, 0u);
-  EXPECT_EQ(tuning_of(*runtime).fixed_point, 0u);
+  EXPECT_FALSE(runtime->capabilities().fixed_point);
 }
 
 TEST(SmallArithmetic, TheDeviceIsMeasured) {

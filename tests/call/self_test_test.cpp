@@ -100,9 +100,9 @@ TEST(SelfTest, ADeviceWhoseFmaRoundsTwiceDoesWithoutIt) {
   }
   const testing::ChangedKernels inexact("arithmetic/language.h", with_inexact_fma);
   const auto runtime = testing::make_tuned_runtime("own");
-  EXPECT_EQ(tuning_of(*runtime).split_products, 0u);
+  EXPECT_FALSE(runtime->capabilities().split_products);
   EXPECT_EQ(self_test_failure(*runtime), "");
-  EXPECT_EQ(tuning_of(*runtime).split_products, 1u);
+  EXPECT_TRUE(runtime->capabilities().split_products);
   Triangulator without_fma(testing::device_under_test());
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     EXPECT_EQ(without_fma.triangulate(inputs[k].data(), inputs[k].size() / 2).triangles, expected[k])
@@ -209,7 +209,7 @@ TEST(SelfTest, ADeviceWhoseLoopsEndEarlyIsForFewPoints) {
   for (const char* const tuning : {"fixed_point=0", "fixed_point=1"}) {
     const auto runtime = testing::make_tuned_runtime(tuning);
     EXPECT_EQ(self_test_failure(*runtime), "");
-    EXPECT_EQ(tuning_of(*runtime).loops_end_early, 1U);
+    EXPECT_TRUE(runtime->capabilities().loops_end_early);
   }
   Triangulator triangulator(testing::device_under_test());
   EXPECT_EQ(triangulator.capacity(), 4096U);

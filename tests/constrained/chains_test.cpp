@@ -87,7 +87,7 @@ Coordinates coordinates_of(const Case& input) {
 /// Whether the runtime's kernels can compute with the points.
 bool takes(Runtime& runtime, const Case& input) {
   const Coordinates coordinates = coordinates_of(input);
-  return tuning_of(runtime).fixed_point == 0 ||
+  return !runtime.capabilities().fixed_point ||
          geometry::fits_fixed_point(geometry::inspect(coordinates.data(), 0, input.points.size()));
 }
 

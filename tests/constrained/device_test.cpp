@@ -41,7 +41,7 @@ std::vector<std::string> tunings() {
 bool is_too_wide(const host::Runtime& runtime, const Coordinates& points,
                  const std::vector<std::size_t>& offsets) {
   constexpr int kMostBits = 62;
-  if (tuning_of(runtime).fixed_point == 0) return false;
+  if (!runtime.capabilities().fixed_point) return false;
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
     const auto magnitudes = geometry::inspect(points.data(), offsets[s], offsets[s + 1]);
     if (geometry::bits_of(magnitudes) > kMostBits) return true;

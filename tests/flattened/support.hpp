@@ -56,7 +56,7 @@ class Runtimes : public ::testing::Environment {
     if (!runtime) {
       const char* const before = std::getenv("FLAUNAY_TUNING");
       const testing::ScopedEnvironment kind("FLAUNAY_TUNING", small ? "small" : before);
-      runtime = std::make_unique<Runtime>(host::find_device(""), tuning_for(host::find_device("")));
+      runtime = std::make_unique<Runtime>(host::find_device(""), settings_for(host::find_device("")));
       if (small || (before != nullptr && std::string(before) == "small")) {
         // Small regions so small that many others count as large.
         Tuning tuning = tuning_of(*runtime);

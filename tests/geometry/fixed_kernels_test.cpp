@@ -26,7 +26,7 @@ namespace {
 std::unique_ptr<host::Runtime> make_runtime(const std::string&) {
   static const TestKernels kernels;
   const auto device = host::find_device("");
-  return std::make_unique<host::Runtime>(device, tuning_for(device));
+  return std::make_unique<host::Runtime>(device, settings_for(device));
 }
 using TestRuntimes = SharedRuntimes<make_runtime>;
 [[maybe_unused]] ::testing::Environment* const kRuntimes =

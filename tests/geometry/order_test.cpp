@@ -147,7 +147,7 @@ void check_sorting(Runtime& runtime, const std::vector<SortCase>& cases, int axi
 
 void check_sorting(const std::vector<std::size_t>& sizes) {
   const testing::TestKernels kernels;
-  Runtime runtime(host::find_device(""), tuning_for(host::find_device("")));
+  Runtime runtime(host::find_device(""), settings_for(host::find_device("")));
   FixtureRandom random(4);
   const std::vector<SortCase> cases = sort_cases(sizes, random);
   MetSorting met;

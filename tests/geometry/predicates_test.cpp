@@ -64,7 +64,7 @@ class PredicateRuntime : public ::testing::Environment {
  private:
   struct State {
     testing::TestKernels kernels;
-    Runtime runtime{host::find_device(""), tuning_for(host::find_device(""))};
+    Runtime runtime{host::find_device(""), settings_for(host::find_device(""))};
   };
   static std::unique_ptr<State>& state() {
     static std::unique_ptr<State> one;

@@ -33,7 +33,7 @@ Place place_of(const Buffer<T>& buffer) {
 
 class SmallArena : public ::testing::Test {
  protected:
-  SmallArena() : runtime_(find_device(""), tuning_for(find_device(""))) {}
+  SmallArena() : runtime_(find_device(""), settings_for(find_device(""))) {}
   Runtime runtime_;
   // Not the runtime's, which may be told to keep buffers apart.
   Arena arena_{runtime_.memory()};

@@ -250,7 +250,7 @@ TEST(SmallProgramCache, ServesManyProcessesAtOnce) {
 
 std::vector<cl_uint> sums_of_a_new_runtime(bool& compiled) {
   const auto device = find_device("");
-  Runtime runtime(device, tuning_for(device));
+  Runtime runtime(device, settings_for(device));
   compiled = false;
   const Runtime::BeforeCompiling watch(runtime, [&compiled] { compiled = true; });
   const Arena::Scope scope(runtime.arena());

@@ -79,7 +79,7 @@ TEST(Error, ShowsTheCallsOwnText) {
 
 class LaunchError : public ::testing::Test {
  protected:
-  LaunchError() : runtime_(find_device(""), tuning_for(find_device(""))) {
+  LaunchError() : runtime_(find_device(""), settings_for(find_device(""))) {
     buffer_ = runtime_.arena().allocate<cl_int>(10);
   }
   Runtime runtime_;
@@ -153,7 +153,7 @@ TEST(KernelPath, ABuildFailureNamesTheFileAndShowsTheLog) {
                "#include \"shared/fine.h\"\n\nkernel void f(global int* a) { a[0] = nonesuch; }\n");
   folder.write("shared/fine.h", "// nothing\n");
   const ScopedEnvironment path("FLAUNAY_KERNEL_PATH", folder.path().c_str());
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   const auto buffer = runtime.arena().allocate<cl_int>(1);
   const std::string message = message_of([&] { testing::map_unchecked(runtime, "broken", "f", 1, buffer); },
                                          CL_BUILD_PROGRAM_FAILURE);
@@ -221,7 +221,7 @@ TEST(KernelPath, WithoutItTheKernelsAreEmbedded) {
 }
 
 TEST(SmallAccounts, CountLaunchesAndWaits) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   const auto a = upload(runtime, std::vector<cl_uchar>(10));
   const auto b = upload(runtime, std::vector<cl_uint>(10));
   runtime.reset_accounts();
@@ -247,7 +247,7 @@ TEST(SmallAccounts, CountLaunchesAndWaits) {
 }
 
 TEST(Accounts, ProfilingCountsEachKernel) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   const auto a = upload(runtime, std::vector<cl_uchar>(10));
   const auto b = upload(runtime, std::vector<cl_uint>(10));
   runtime.set_profiling(true);
@@ -270,7 +270,7 @@ TEST(Accounts, ProfilingCountsEachKernel) {
 }
 
 TEST(Accounts, ProfilingMeasuresTheTimeOfTheDevice) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   const std::size_t n = 1000000;
   const auto a = upload(runtime, std::vector<cl_uchar>(n));
   const auto b = guarded<cl_uint>(runtime, n);

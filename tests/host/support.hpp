@@ -35,9 +35,9 @@ const char* const kTunings[] = {"own", "small", "gpu"};
 
 inline Tuning tuning_named(const std::string& name) {
   const auto device = find_device("");
-  if (name == "own") return *tuning_for(device);
+  if (name == "own") return settings_for(device).sizes->tuning();
   const ScopedEnvironment kind("FLAUNAY_TUNING", name.c_str());
-  return *tuning_for(device);
+  return settings_for(device).sizes->tuning();
 }
 
 /// One runtime for each tuning, destroyed before the OpenCL implementation leaves.
@@ -47,7 +47,7 @@ class Runtimes : public ::testing::Environment {
   static Runtime& get(const std::string& tuning) {
     std::unique_ptr<Runtime>& runtime = runtimes()[tuning];
     if (!runtime) {
-      runtime = std::make_unique<Runtime>(find_device(""), tuning_for(find_device("")));
+      runtime = std::make_unique<Runtime>(find_device(""), settings_for(find_device("")));
       runtime->set_sizes(std::make_shared<Tuning>(tuning_named(tuning)));
     }
     return *runtime;

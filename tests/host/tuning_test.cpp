@@ -22,19 +22,21 @@ TEST(SmallTuning, IsNamedByTheEnvironment) {
     const bool is_simulator = device.name().find("Oclgrind") != std::string::npos;
     const bool cpu = (device.type() & CL_DEVICE_TYPE_CPU) != 0;
     const char* const kind = is_simulator ? "gpu:32" : cpu ? "cpu" : "gpu";
-    EXPECT_EQ(tuning_for(device)->map_group, tuning_named(kind).map_group);
+    EXPECT_EQ(settings_for(device).sizes->map_group, tuning_named(kind).map_group);
   }
   for (const char* const name : {"fast", "gpu:", "gpu:0", "gpu:1025", "gpu:x", "gpu:-1", "gpu:32 ",
                                  "gpu:032x", "gpu:99999999999999999999", "cpu:32", "GPU"}) {
     const ScopedEnvironment wrong("FLAUNAY_TUNING", name);
-    const std::string message = message_of([&] { tuning_for(device); }, CL_SUCCESS);
+    const std::string message = message_of([&] { settings_for(device); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, std::string("'") + name + "'")) << message;
   }
 }
 
 TEST(SmallTuning, DependsOnTypeAndName) {
   constexpr cl_device_type kCpu = CL_DEVICE_TYPE_CPU, kGpu = CL_DEVICE_TYPE_GPU;
-  const auto tuning_of = [](const char* name, cl_device_type type) { return tuning_of_kind(name, type, 4); };
+  const auto tuning_of = [](const char* name, cl_device_type type) {
+    return kind_of_device(name, type, 4).tuning;
+  };
   {
     const ScopedEnvironment unset("FLAUNAY_TUNING", nullptr);
     EXPECT_EQ(tuning_of("a", kCpu).chunk_group, 1u);
@@ -69,24 +71,24 @@ TEST(SmallTuning, EveryValueCanBeOverridden) {
   for (const char* const wrong :
        {"gpu,block_group", "gpu,no_such_value=1", "block_group=x", "block_group=64,gpu", ","}) {
     const ScopedEnvironment given("FLAUNAY_TUNING", wrong);
-    const std::string message = message_of([&] { tuning_for(find_device("")); }, CL_SUCCESS);
+    const std::string message = message_of([&] { settings_for(find_device("")); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, std::string("'") + wrong + "'")) << message;
   }
 }
 
 TEST(SmallTuning, FixedPointIsChosenByTheRateOfFp64OrByHand) {
   // Of no device, since those without fp64 have no choice.
-  const auto tuning_named = [](const char* name) {
+  const auto kind_named = [](const char* name) {
     const ScopedEnvironment given("FLAUNAY_TUNING", name);
-    return tuning_of_kind("a", CL_DEVICE_TYPE_GPU, 4);
+    return kind_of_device("a", CL_DEVICE_TYPE_GPU, 4);
   };
-  EXPECT_EQ(tuning_named("gpu").fixed_point, 0u);
-  EXPECT_GT(tuning_named("gpu").fixed_point_from, 0u);
-  EXPECT_EQ(tuning_named("gpu,fixed_point=0").fixed_point_from, 0u);
-  EXPECT_EQ(tuning_named("gpu,fixed_point=1").fixed_point_from, 0u);
-  EXPECT_EQ(tuning_named("cpu").fixed_point_from, 0u);
+  EXPECT_FALSE(kind_named("gpu").capabilities.fixed_point);
+  EXPECT_GT(kind_named("gpu").tuning.fixed_point_from, 0u);
+  EXPECT_EQ(kind_named("gpu,fixed_point=0").tuning.fixed_point_from, 0u);
+  EXPECT_EQ(kind_named("gpu,fixed_point=1").tuning.fixed_point_from, 0u);
+  EXPECT_EQ(kind_named("cpu").tuning.fixed_point_from, 0u);
   const auto names_it = [&](const char* name) {
-    return tuning_named(name).build_options().find("-DFIXED_POINT") != std::string::npos;
+    return kind_named(name).capabilities.build_options().find("-DFIXED_POINT") != std::string::npos;
   };
   EXPECT_FALSE(names_it("gpu"));
   EXPECT_TRUE(names_it("gpu,fixed_point=1"));
@@ -161,7 +163,7 @@ TEST(SmallTuning, SizesOfTilesFitTheKernels) {
 }
 
 TEST(Tuning, AGroupThatAKernelCannotHaveIsAnErrorWithItsName) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   Tuning tuning = tuning_named("gpu");
   // Tables that are larger than any device's local memory, even for groups of one.
   tuning.sort_bits = 26;

@@ -194,7 +194,7 @@ TYPED_TEST(Scan, IsThePlainLoop) {
 template <typename Check>
 void with_small_spans(std::size_t group, const Check& check) {
   SCOPED_TRACE("groups of " + std::to_string(group));
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   Tuning tuning = tuning_named("gpu");
   tuning.tile_group = std::min(group, limits_of(find_device("")).work_group);
   for (const auto& [items, alone, groups] : {std::array<std::size_t, 3>{1, 1, 3}, {3, 2, 5}, {8, 4, 1}}) {
@@ -229,7 +229,7 @@ TYPED_TEST(Scan, BySpansIsThePlainLoop) {
 
 /// There are such groups if the device runs a kernel in smaller groups than it was told.
 TEST(SmallSpans, GroupsBehindTheLastSpanDoNothing) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   const Arena::Scope scope(runtime.arena());
   const std::vector<cl_uint> values{5, 1, 0, 7, 2, 3, 9};
   const std::size_t n = values.size(), span = 4, spans = 2, groups = 5, group = 3;
@@ -266,7 +266,7 @@ TEST(SmallSpans, GroupsBehindTheLastSpanDoNothing) {
 }
 
 TEST(ScanLaunches, BySpansTakesTwo) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   runtime.set_sizes(std::make_shared<Tuning>(tuning_named("gpu")));
   const std::size_t group = runtime.sizes().tile_group;
   ASSERT_NE(group, 0u);
@@ -618,7 +618,7 @@ TEST(SegmentedArg, PassesOverElementsThatAreNoCandidates) {
 
 // A change of tuning in a living runtime has to rebuild what depends on it.
 TEST(SmallTuning, MayChangeInALivingRuntime) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   Random random(25);
   for (const char* const tuning : {"small", "gpu", "small"}) {
     SCOPED_TRACE(tuning);
@@ -630,7 +630,7 @@ TEST(SmallTuning, MayChangeInALivingRuntime) {
 
 // Sizes that fit no device: the runtime has to find smaller ones, by kernel.
 TEST(Tuning, GroupsThatAKernelDoesNotTakeBecomeSmaller) {
-  Runtime runtime(find_device(""), tuning_for(find_device("")));
+  Runtime runtime(find_device(""), settings_for(find_device("")));
   Tuning tuning = tuning_named("gpu");
   tuning.map_group = tuning.chunk_group = std::size_t{1} << 20;
   tuning.sort_group = std::size_t{1} << 15;

@@ -31,7 +31,7 @@
 namespace flaunay::locate {
 namespace {
 
-bool is_fixed_point(const Runtime& runtime) { return tuning_of(runtime).fixed_point != 0; }
+bool is_fixed_point(const Runtime& runtime) { return runtime.capabilities().fixed_point; }
 
 /// Those of tests that compute in fixed point, too, which is not done natively.
 std::vector<std::string> tunings_with_fixed_point() {
@@ -259,7 +259,7 @@ TEST(SmallLocate, TheOrderOfQueriesDoesNotShow) {
 
 TEST(Locate, TheOrderOfManyQueriesDoesNotShow) {
   const Case input = case_of_trees(2000, 500);
-  ASSERT_GT(input.query_count(), tuning_for(host::find_device(""))->sorted_queries_least);
+  ASSERT_GT(input.query_count(), settings_for(host::find_device("")).sizes->tuning().sorted_queries_least);
   check_orders(input);
 }
 
@@ -886,7 +886,7 @@ TEST(Kernels, AllAreLaunched) {
   Runtime& runtime = Runtimes::get("own");
   runtime.set_profiling(true);
   const Case input = case_of_trees(270, 500);
-  ASSERT_GT(input.query_count(), tuning_for(host::find_device(""))->sorted_queries_least);
+  ASSERT_GT(input.query_count(), settings_for(host::find_device("")).sizes->tuning().sorted_queries_least);
   ask(runtime, input, values_for(input.size()));
   const Case hubs = case_of_hubs(3000, 8);
   ask(runtime, hubs, values_for(hubs.size()));

@@ -43,7 +43,7 @@ inline std::unique_ptr<host::Runtime> make_tuned_runtime(const std::string& tuni
   const ScopedEnvironment kind("FLAUNAY_TUNING", tuning == "own" ? before : tuning.c_str());
   if (tests_native()) return std::make_unique<host::Runtime>(native_tuning());
   const auto device = host::find_device("");
-  return std::make_unique<host::Runtime>(device, tuning_for(device));
+  return std::make_unique<host::Runtime>(device, settings_for(device));
 }
 
 /// A runtime, or an engine, for each name, made by `make` when it is first needed. They end with the tests,

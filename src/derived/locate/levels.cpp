@@ -116,7 +116,7 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
                                              .coordinates = coordinates.as<cl_double2>(),
                                              .below = levels.below});
   auto given = coordinates;
-  if (tuning.fixed_point != 0) {
+  if (runtime.capabilities().fixed_point) {
     given = results.allocate<cl_double>(2 * samples);
     runtime.map(2 * samples,
                 kernels::give_coordinates{.coordinates = coordinates, .given = given.as<cl_ulong>()});

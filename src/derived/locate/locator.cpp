@@ -356,7 +356,7 @@ Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
                                                 .bad = device_faults});
   std::vector<points::SetToCut> cut;
   locator.records = runtime.upload(own, make_records(mesh, vertices_per_leaf, cut));
-  const bool is_fixed = tuning_of(runtime).fixed_point != 0;
+  const bool is_fixed = runtime.capabilities().fixed_point;
   make_trees(runtime, own, mesh, is_fixed ? input.coordinates : mesh.coordinates, cut, incident, locator);
   runtime.read(device_faults, 0, 3, &faults.triangle);
   throw_faults(faults);
