@@ -76,14 +76,14 @@ MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) 
 }
 
 void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const MeshSizes& sizes,
-                const MeshBuffers& buffers, Milestones* milestones) {
+                const DeviceMesh& mesh, Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Arena::Scope scope(work.scratch());
   const std::size_t pairs = rings.edges.size() / 2;
-  const bool with_neighbors = buffers.neighbors.memory() != nullptr;
-  const bool with_halfedges = buffers.halfedges.memory() != nullptr;
+  const bool with_neighbors = mesh.neighbors.memory() != nullptr;
+  const bool with_halfedges = mesh.halfedges.memory() != nullptr;
   const bool with_corners = with_neighbors || with_halfedges;
-  if (buffers.triangles.memory() != nullptr) {
+  if (mesh.triangles.memory() != nullptr) {
     const auto corner_of_edge = work.scratch().allocate<cl_int>(with_corners ? rings.edges.size() : 0);
     runtime.chunks(pairs, runtime.sizes().chunk(pairs),
                    kernels::write_triangles{.with_corners = with_corners,
@@ -91,19 +91,19 @@ void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const
                                             .source = blocks.source,
                                             .edges = rings.edges,
                                             .first_rows = sizes.first_rows,
-                                            .triangles = buffers.triangles,
+                                            .triangles = mesh.triangles,
                                             .corner_of_edge = corner_of_edge});
     if (milestones != nullptr) milestones->set("output", kTrianglesWritten);
     if (with_neighbors) {
       runtime.map(pairs,
-                  kernels::write_neighbors{.corner_of_edge = corner_of_edge, .neighbors = buffers.neighbors});
+                  kernels::write_neighbors{.corner_of_edge = corner_of_edge, .neighbors = mesh.neighbors});
     }
     if (with_halfedges) {
       runtime.map(pairs,
-                  kernels::write_halfedges{.corner_of_edge = corner_of_edge, .halfedges = buffers.halfedges});
+                  kernels::write_halfedges{.corner_of_edge = corner_of_edge, .halfedges = mesh.halfedges});
     }
   }
-  if (buffers.hull.memory() != nullptr) write_hulls(work, blocks, rings, sizes, buffers.hull);
+  if (mesh.hull.memory() != nullptr) write_hulls(work, blocks, rings, sizes, mesh.hull);
 }
 
 }  // namespace flaunay::blocks

@@ -11,6 +11,7 @@
 #include "blocks/milestones.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
+#include "points/device_mesh.hpp"
 #include "points/distribute.hpp"
 #include "points/rings.hpp"
 #include "tuning/tuning.hpp"
@@ -117,15 +118,9 @@ MeshSizes count_mesh(points::Workspace& work, const points::Blocks& blocks, cons
 /// A triangle is written at its vertex in the middle; no vertex is in the middle of more than two triangles.
 constexpr std::size_t kMostTrianglesPerPoint = 2;
 
-/// The arrays for the parts of a mesh, as flaunay.hpp describes them. Parts that are not wanted have no
-/// memory.
-struct MeshBuffers {
-  host::Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{};
-};
-
-/// Writes the parts of the mesh, with milestones unless they are null. Neighbours and halfedges need the
-/// triangles. Does not wait.
+/// Writes the parts of the mesh that have memory, with milestones unless they are null. Neighbours and
+/// halfedges need the triangles. Does not wait.
 void write_mesh(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
-                const MeshSizes& sizes, const MeshBuffers& buffers, Milestones* milestones = nullptr);
+                const MeshSizes& sizes, const points::DeviceMesh& mesh, Milestones* milestones = nullptr);
 
 }  // namespace flaunay::blocks

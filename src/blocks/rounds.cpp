@@ -272,18 +272,18 @@ class Results {
     return sizes;
   }
 
-  void write(const MeshSizes& sizes, const MeshBuffers& buffers) {
-    if (buffers.triangles.memory() != nullptr) {
-      work_.runtime.map(2 * n_, kernels::write_rows{.with_neighbors = buffers.neighbors.memory() != nullptr,
-                                                    .with_halfedges = buffers.halfedges.memory() != nullptr,
+  void write(const MeshSizes& sizes, const DeviceMesh& mesh) {
+    if (mesh.triangles.memory() != nullptr) {
+      work_.runtime.map(2 * n_, kernels::write_rows{.with_neighbors = mesh.neighbors.memory() != nullptr,
+                                                    .with_halfedges = mesh.halfedges.memory() != nullptr,
                                                     .places = emitted_.places,
                                                     .links = emitted_.links,
                                                     .scanned = rows_,
-                                                    .triangles = buffers.triangles,
-                                                    .neighbors = buffers.neighbors,
-                                                    .halfedges = buffers.halfedges});
+                                                    .triangles = mesh.triangles,
+                                                    .neighbors = mesh.neighbors,
+                                                    .halfedges = mesh.halfedges});
     }
-    if (buffers.hull.memory() != nullptr) write_hulls(sizes, buffers.hull);
+    if (mesh.hull.memory() != nullptr) write_hulls(sizes, mesh.hull);
   }
 
  private:
@@ -353,8 +353,9 @@ Blocks blocks_of(Workspace& work, const OpenPoints& open, bool is_merged) {
 
 }  // namespace
 
-Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-                   const Exchange& exchange, statistics::Phases& phases) {
+geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
+                                     const std::vector<std::size_t>& offsets, const Exchange& exchange,
+                                     statistics::Phases& phases) {
   Workspace work{runtime, persistent};
   Numbers numbers;
   const host::Runtime::Settled settled(runtime);
@@ -362,10 +363,12 @@ Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<
 
   phases.progress("blocks", 0);
   const Buffer<cl_int>& representatives = exchange.representatives;
-  const Blocks first_blocks = [&] {
+  const geometry::Fitted<Blocks> made = [&] {
     Arena::Scope points_scope(runtime.arena());
     return make_blocks(work, exchange.points(), offsets, representatives);
   }();
+  if (!made) return made.too_wide();
+  const Blocks& first_blocks = *made;
   phases.end("blocks");
 
   double done = kBlocksMade;

@@ -11,7 +11,8 @@
 namespace flaunay::blocks {
 
 /// The same as run, in rounds. The results are the same bytes.
-Outcome run_rounds(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-                   const Exchange& exchange, statistics::Phases& phases);
+geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
+                                     const std::vector<std::size_t>& offsets, const Exchange& exchange,
+                                     statistics::Phases& phases);
 
 }  // namespace flaunay::blocks

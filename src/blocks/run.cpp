@@ -19,8 +19,9 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.hull_vertices = sizes.hull_vertices();
 }
 
-Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-            const Exchange& exchange, statistics::Phases& phases) {
+geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
+                              const std::vector<std::size_t>& offsets, const Exchange& exchange,
+                              statistics::Phases& phases) {
   if (tuning_of(runtime).round_points > 0) return run_rounds(runtime, persistent, offsets, exchange, phases);
   Workspace work{runtime, persistent};
   Rings rings;
@@ -28,10 +29,12 @@ Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::si
 
   phases.progress("blocks", 0);
   const Buffer<cl_int>& representatives = exchange.representatives;
-  const Blocks blocks = [&] {
+  const geometry::Fitted<Blocks> made = [&] {
     Arena::Scope points_scope(runtime.arena());
     return make_blocks(work, exchange.points(), offsets, representatives);
   }();
+  if (!made) return made.too_wide();
+  const Blocks& blocks = *made;
   phases.end("blocks");
 
   phases.progress("triangulate", kBlocksMade);
@@ -64,12 +67,10 @@ points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vec
   mesh.hull = results.allocate<cl_int>(n);
   mesh.representatives = results.allocate<cl_int>(n);
   const Exchange exchange{[&] { return coordinates; }, mesh.representatives, true,
-                          [&](const MeshSizes&) {
-                            return MeshBuffers{mesh.triangles, mesh.neighbors, {}, mesh.hull};
-                          }};
+                          [&](const MeshSizes&) { return mesh; }};
   const Options unheard;
   statistics::Phases phases(unheard);
-  MeshSizes sizes = run(runtime, persistent, offsets, exchange, phases).sizes;
+  MeshSizes sizes = (*run(runtime, persistent, offsets, exchange, phases)).sizes;
   mesh.triangle_offsets = std::move(sizes.triangle_offsets);
   mesh.hull_offsets = std::move(sizes.hull_offsets);
   return mesh;

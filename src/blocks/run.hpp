@@ -21,7 +21,7 @@ struct Exchange {
   bool wants_links;                ///< whether neighbours or halfedges are wanted
   /// Returns the arrays for the parts of the mesh, when its size is known. Parts that are not wanted have no
   /// memory.
-  std::function<MeshBuffers(const MeshSizes&)> mesh;
+  std::function<points::DeviceMesh(const MeshSizes&)> mesh;
   /// Called while the device computes, for work of the host that needs no results.
   std::function<void()> while_device_computes = [] {};
 };
@@ -41,8 +41,9 @@ struct Outcome {
 /// Triangulates sets with at least one point; the offsets are those of Triangulator::triangulate. Returns
 /// when the last kernel is enqueued. Allocates from both arenas, in the caller's scopes. Throws Error(input)
 /// for points that are not finite or whose magnitudes differ too much. O(n log n).
-Outcome run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
-            const Exchange& exchange, statistics::Phases& phases);
+geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
+                              const std::vector<std::size_t>& offsets, const Exchange& exchange,
+                              statistics::Phases& phases);
 
 /// Triangulates points in device memory, whose arrays come from `results`; otherwise as above.
 points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,

@@ -45,16 +45,12 @@ struct Place {
 /// Where calls are computed that need doubles, in place of this engine of the triangulator.
 Place with_doubles(Implementation& self, Engine& asked);
 
-/// Returns work(), or if the input does not fit fixed point, with_doubles(reason).
+/// Returns the result of work(), or if the input does not fit fixed point, that of with_doubles(reason). Both
+/// return it as Fitted.
 template <typename Work, typename WithDoubles>
 auto in_fixed_point_or(const Work& work, const WithDoubles& with_doubles) {
-  std::string reason;
-  try {
-    return work();
-  } catch (const geometry::TooWideForFixedPoint& error) {
-    reason = error.reason();
-  }
-  return with_doubles(reason);
+  auto outcome = work();
+  return *(outcome ? std::move(outcome) : with_doubles(outcome.too_wide().reason()));
 }
 
 /// Says in the statistics that the host did what this engine's device cannot do without doubles; nothing if

@@ -42,9 +42,9 @@ void check_buffer(host::Runtime& runtime, cl_mem memory, std::size_t bytes, Acce
 
 /// Runs a public call on device memory; see take_turn. The caller's event is null if it fails.
 template <typename Work>
-void take_turn(Implementation& self, const Enqueue& enqueue, const Work& work) {
+auto take_turn(Implementation& self, const Enqueue& enqueue, const Work& work) {
   if (enqueue.event != nullptr) *enqueue.event = nullptr;
-  take_turn(self, work);
+  return take_turn(self, work);
 }
 
 /// Throws Error(usage) unless the queue is null or belongs to the runtime's

@@ -43,9 +43,10 @@ void add(const Statistics& step, Statistics& all) {
 // Makes segments edges of a mesh, which kernels change. edges: gets the arrays of constraint edges. Returns
 // their number.
 template <typename Points, typename Segments, typename Mesh, typename Edges>
-std::size_t insert(Frame& call, const Points& points, const std::vector<std::size_t>& offsets,
-                   const Segments& segments, std::size_t count, const Buffer<cl_int>& halfedges, Mesh& mesh,
-                   Edges& edges) {
+geometry::Fitted<std::size_t> insert(Frame& call, const Points& points,
+                                     const std::vector<std::size_t>& offsets, const Segments& segments,
+                                     std::size_t count, const Buffer<cl_int>& halfedges, Mesh& mesh,
+                                     Edges& edges) {
   points::DeviceMesh delaunay;
   delaunay.point_offsets = offsets;
   delaunay.triangle_offsets = mesh.triangle_offsets;
@@ -64,26 +65,31 @@ std::size_t insert(Frame& call, const Points& points, const std::vector<std::siz
   const auto ends = call.in<cl_int>(segments, 2 * count, "segments");
   delaunay.coordinates = call.points(points);
   std::size_t edge_count = 0;
-  constrained::constrain(call.runtime, delaunay, ends, count, buffers, [&](std::size_t found) {
-    edge_count = found;
-    const auto buffer = call.out<cl_int>(edges.constraint_edges, 2 * found, "constraint edges");
-    call.check_distinct();
-    return buffer;
-  });
+  const auto done =
+      constrained::constrain(call.runtime, delaunay, ends, count, buffers, [&](std::size_t found) {
+        edge_count = found;
+        const auto buffer = call.out<cl_int>(edges.constraint_edges, 2 * found, "constraint edges");
+        call.check_distinct();
+        return buffer;
+      });
+  if (!done) return done.too_wide();
   call.end();
   return edge_count;
 }
 
 // The mesh is that of the points, and whole.
-void insert(Implementation& self, const Place& place, const DevicePoints& points,
-            const DeviceSegments& segments, DeviceTriangulation& mesh, DeviceConstraintEdges& edges,
-            const Enqueue& enqueue) {
+geometry::Fitted<geometry::Done> insert(Implementation& self, const Place& place, const DevicePoints& points,
+                                        const DeviceSegments& segments, DeviceTriangulation& mesh,
+                                        DeviceConstraintEdges& edges, const Enqueue& enqueue) {
   Frame call(self, place, enqueue);
   call.check(points, "points");
   call.begin();
   mesh.is_constrained = true;
-  edges.edge_count =
+  const auto count =
       insert(call, points, mesh.point_offsets, segments.memory, segments.count, {}, mesh, edges);
+  if (!count) return count.too_wide();
+  edges.edge_count = *count;
+  return geometry::Done();
 }
 
 // Each segment is one piece.
@@ -96,15 +102,18 @@ void write_pieces(std::size_t segments, ConstrainedTriangulation& result) {
 
 }  // namespace
 
-void insert_segments_on(Engine& engine, const double* coordinates, const std::vector<std::size_t>& offsets,
-                        const Constraints& constraints, const Options& options,
-                        ConstrainedTriangulation& result) {
+geometry::Fitted<geometry::Done> insert_segments_on(Engine& engine, const double* coordinates,
+                                                    const std::vector<std::size_t>& offsets,
+                                                    const Constraints& constraints, const Options& options,
+                                                    ConstrainedTriangulation& result) {
   Frame call(engine, options.profile);
   const auto halfedges =
       options.halfedges ? call.out<cl_int>(result.halfedges, result.triangles.size()) : Buffer<cl_int>();
-  insert(call, HostPoints{coordinates, nullptr, offsets.back()}, offsets, constraints.segments,
-         constraints.segment_count, halfedges, result, result);
+  const auto count = insert(call, HostPoints{coordinates, nullptr, offsets.back()}, offsets,
+                            constraints.segments, constraints.segment_count, halfedges, result, result);
+  if (!count) return count.too_wide();
   write_pieces(constraints.segment_count, result);
+  return geometry::Done();
 }
 
 void insert_segments(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
@@ -114,25 +123,28 @@ void insert_segments(Implementation& self, const double* coordinates, const std:
   const bool may_stay = !self.is_named() && !options.profile;
   const std::size_t size = offsets.back() + constraints.segment_count;
   if (may_stay && size <= self.host_tuning().host_points) {
-    return insert_segments_on(Engine::of_thread(), coordinates, offsets, constraints, options, result);
+    *insert_segments_on(Engine::of_thread(), coordinates, offsets, constraints, options, result);
+    return;
   }
   Engine& engine = self.for_host_memory();
   const auto insert = [&](Engine& used) {
     const statistics::Phases phases(options);
     const host::Runtime::BeforeCompiling announce(used.runtime,
                                                   [&] { phases.interrupt("compiling kernels"); });
-    insert_segments_on(used, coordinates, offsets, constraints, options, result);
+    const auto done = insert_segments_on(used, coordinates, offsets, constraints, options, result);
+    if (!done) return done;
     Statistics step;
     used.write_accounts(step);
     add(step, result.statistics);
+    return done;
   };
-  in_fixed_point_or([&] { insert(engine); },
+  in_fixed_point_or([&] { return insert(engine); },
                     [&](const std::string& reason) {
                       Engine& other = self.with_doubles(engine);
                       if (result.statistics.host_points == 0) {
                         add_note(engine, other, reason, "segments inserted", result.statistics);
                       }
-                      insert(other);
+                      return insert(other);
                     });
 }
 
@@ -158,13 +170,13 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
     rest.wait_for.clear();
     const auto insert_on = [&](const call::Place& place) {
       mesh.is_constrained = false;
-      call::insert(self, place, points, segments, mesh, edges, rest);
+      return call::insert(self, place, points, segments, mesh, edges, rest);
     };
     call::in_fixed_point_or(
         [&] {
-          insert_on({engine, &engine});
+          return insert_on({engine, &engine});
         },
-        [&](const std::string&) { insert_on(call::with_doubles(self, engine)); });
+        [&](const std::string&) { return insert_on(call::with_doubles(self, engine)); });
   });
 }
 

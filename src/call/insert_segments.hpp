@@ -6,6 +6,7 @@
 
 #include "call/implementation.hpp"
 #include "flaunay/constrained.hpp"
+#include "geometry/magnitudes.hpp"
 
 namespace flaunay::call {
 
@@ -16,9 +17,10 @@ void insert_segments(Implementation& self, const double* coordinates, const std:
                      const Constraints& constraints, const Options& options,
                      ConstrainedTriangulation& result);
 
-/// Makes them edges on this engine. Also throws geometry::TooWideForFixedPoint, before anything is changed.
-void insert_segments_on(Engine& engine, const double* coordinates, const std::vector<std::size_t>& offsets,
-                        const Constraints& constraints, const Options& options,
-                        ConstrainedTriangulation& result);
+/// Makes them edges on this engine. If points do not fit fixed point, nothing is changed.
+geometry::Fitted<geometry::Done> insert_segments_on(Engine& engine, const double* coordinates,
+                                                    const std::vector<std::size_t>& offsets,
+                                                    const Constraints& constraints, const Options& options,
+                                                    ConstrainedTriangulation& result);
 
 }  // namespace flaunay::call

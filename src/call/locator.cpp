@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "blocks/run.hpp"
 #include "call/mesh_of.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
@@ -24,20 +25,19 @@ struct Answerer {
     if (place.engine.runtime.sizes().separate_buffers) own.separate_buffers();
   }
 
-  /// Makes the locator in a call. mesh: without coordinates.
-  template <typename Points>
-  void make(Frame& call, const Points& points, points::DeviceMesh mesh) {
-    mesh.coordinates = call.points(points);
-    locator = locate::make_locator(call.runtime, own, mesh);
-  }
-  /// Makes the locator of a triangulation in host memory.
-  void make(const double* coordinates, const std::vector<std::size_t>& offsets,
-            const Triangulation& triangulation) {
-    const HostPoints points{coordinates, nullptr, offsets.empty() ? 0 : offsets.back()};
-    Frame call(place.engine);
-    call.check_size(points.count);
-    make(call, points, mesh_of(call, points, offsets, triangulation));
+  /// Makes the locator in a call, and ends it.
+  geometry::Fitted<geometry::Done> make(Frame& call, const points::DeviceMesh& mesh) {
+    auto made = locate::make_locator(call.runtime, own, mesh, blocks::run);
+    if (!made) return made.too_wide();
+    locator = *std::move(made);
     call.end();
+    return geometry::Done();
+  }
+  /// mesh: without coordinates.
+  template <typename Points>
+  geometry::Fitted<geometry::Done> make(Frame& call, const Points& points, points::DeviceMesh mesh) {
+    mesh.coordinates = call.points(points);
+    return make(call, mesh);
   }
 
   Place place;
@@ -55,15 +55,17 @@ struct Locator::Implementation {
   /// make(answerer).
   template <typename Make>
   void make_with(const Make& make) {
-    call::in_fixed_point_or(
-        [&] {
-          if (!asked_.has_doubles()) fixed = std::make_unique<call::Answerer>(call::Place{asked_, &asked_});
-          if (fixed) make(*fixed);
-        },
-        [&](const std::string&) { fixed.reset(); });
-    if (fixed) return;
-    doubles_ = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
-    make(*doubles_);
+    const auto with_doubles = [&](const std::string&) {
+      fixed.reset();
+      doubles_ = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
+      return make(*doubles_);
+    };
+    if (asked_.has_doubles()) {
+      *with_doubles("");
+      return;
+    }
+    fixed = std::make_unique<call::Answerer>(call::Place{asked_, &asked_});
+    call::in_fixed_point_or([&] { return make(*fixed); }, with_doubles);
   }
 
   /// The locator with doubles; made of the other one when it is first needed.
@@ -71,11 +73,10 @@ struct Locator::Implementation {
     if (!doubles_) {
       call::take_turn(*owner, [&] {
         auto made = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
-        const locate::ReadMesh mesh = [&] {
-          const call::Frame call(asked_);
-          return locate::read_back(call.runtime, fixed->locator);
-        }();
-        made->make(mesh.coordinates.data(), mesh.point_offsets, mesh.triangulation);
+        const call::Frame from(asked_);
+        call::Frame call(made->place.engine);
+        call.check_size(point_count);
+        *made->make(call, locate::read_back(from.runtime, fixed->locator, call.runtime));
         doubles_ = std::move(made);
       });
     }
@@ -106,8 +107,9 @@ struct Locator::Implementation {
   /// Answers queries in host memory. columns: the length of each result. work(call, locator, queries, m,
   /// offsets, results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
-  std::vector<Result> answer(call::Answerer& by, const double* queries,
-                             const std::vector<std::size_t>& offsets, std::size_t columns, const Work& work) {
+  geometry::Fitted<std::vector<Result>> answer(call::Answerer& by, const double* queries,
+                                               const std::vector<std::size_t>& offsets, std::size_t columns,
+                                               const Work& work) {
     return call::take_turn(*owner, [&] {
       geometry::check_offsets(offsets);
       const std::size_t m = offsets.back();
@@ -116,40 +118,45 @@ struct Locator::Implementation {
       std::vector<Result> results;
       call::Frame call(by.place.engine);
       const auto output = call.out<Result>(results, m * columns);
-      work(call, by.locator, call.points(call::HostPoints{queries, nullptr, m}), m, offsets, output);
+      const geometry::Fitted<geometry::Done> done =
+          work(call, by.locator, call.points(call::HostPoints{queries, nullptr, m}), m, offsets, output);
+      if (!done) return geometry::Fitted<std::vector<Result>>(done.too_wide());
       call.end();
-      return results;
+      return geometry::Fitted<std::vector<Result>>(std::move(results));
     });
   }
 
-  /// Runs a call on device memory. work(call) enqueues it.
+  /// Runs a call on device memory. work(call) enqueues it, and ends the call if its input fits.
   template <typename Work>
-  void on_device(call::Answerer& by, const Enqueue& enqueue, const Work& work) {
-    call::take_turn(*owner, enqueue, [&] {
+  auto on_device(call::Answerer& by, const Enqueue& enqueue, const Work& work) {
+    return call::take_turn(*owner, enqueue, [&] {
       call::expect(
           by.place.device != nullptr,
           "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
           "make it from device memory, or name a device");
       call::Frame call(*owner, by.place, enqueue);
       call.begin();
-      work(call);
-      call.end();
+      return work(call);
     });
   }
 
   /// Answers queries in device memory. columns and work: as above. read: further buffers that are read, or
   /// null.
   template <typename Result, typename Work>
-  void answer(call::Answerer& by, const DevicePoints& queries, const std::vector<cl_mem>& read,
-              DeviceBuffer& result, std::size_t columns, const char* what, const Enqueue& enqueue,
-              const Work& work) {
-    on_device(by, enqueue, [&](call::Frame& call) {
+  geometry::Fitted<geometry::Done> answer(call::Answerer& by, const DevicePoints& queries,
+                                          const std::vector<cl_mem>& read, DeviceBuffer& result,
+                                          std::size_t columns, const char* what, const Enqueue& enqueue,
+                                          const Work& work) {
+    return on_device(by, enqueue, [&](call::Frame& call) {
       call.check(queries, "queries");
       check_queries(queries.count, columns);
       const std::vector<std::size_t> offsets = call.offsets(queries);
       const auto output = call.out<Result>(result, queries.count * columns, what);
       call.check_distinct(read);
-      work(call, by.locator, call.points(queries), queries.count, offsets, output);
+      const geometry::Fitted<geometry::Done> done =
+          work(call, by.locator, call.points(queries), queries.count, offsets, output);
+      if (done) call.end();
+      return done;
     });
   }
 
@@ -185,19 +192,25 @@ struct Locator::Implementation {
                                       call.in<cl_double>(gradients, are_given ? 2 * count : 0, "gradients"));
       const flaunay::interpolate::Table table{call.in<cl_double>(values, count, "values"), options.columns,
                                               options.fill};
+      namespace by = flaunay::interpolate;
       switch (options.method) {
         case Interpolation::linear:
-          return flaunay::interpolate::linear(call.runtime, locator, table, queries...);
+          by::linear(call.runtime, locator, table, queries...);
+          break;
         case Interpolation::nearest:
-          return flaunay::interpolate::nearest(call.runtime, locator, table, queries...);
+          by::nearest(call.runtime, locator, table, queries...);
+          break;
         case Interpolation::clough_tocher:
-          return flaunay::interpolate::clough_tocher(call.runtime, locator, table, known, queries...);
+          by::clough_tocher(call.runtime, locator, table, known, queries...);
+          break;
         case Interpolation::sibson:
         case Interpolation::laplace:
-          return flaunay::interpolate::natural(call.runtime, locator, natural_weights(options.method), table,
-                                               queries...);
+          by::natural(call.runtime, locator, natural_weights(options.method), table, queries...);
+          break;
+        default:
+          throw Error(ErrorKind::usage, "no such method of interpolation");
       }
-      throw Error(ErrorKind::usage, "no such method of interpolation");
+      return geometry::Done();
     };
   }
 
@@ -225,8 +238,12 @@ struct Locator::Implementation {
 
 namespace {
 
-constexpr auto kLocate = [](call::Frame& call, auto&&... all) { locate::locate(call.runtime, all...); };
-constexpr auto kNearest = [](call::Frame& call, auto&&... all) { locate::nearest(call.runtime, all...); };
+constexpr auto kLocate = [](call::Frame& call, auto&&... all) {
+  return locate::locate(call.runtime, all...);
+};
+constexpr auto kNearest = [](call::Frame& call, auto&&... all) {
+  return locate::nearest(call.runtime, all...);
+};
 
 }  // namespace
 
@@ -247,7 +264,12 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
   call::take_turn(*self.owner, [&] {
-    self.make_with([&](call::Answerer& by) { by.make(coordinates, offsets, triangulation); });
+    const call::HostPoints points{coordinates, nullptr, offsets.empty() ? 0 : offsets.back()};
+    self.make_with([&](call::Answerer& by) {
+      call::Frame call(by.place.engine);
+      call.check_size(points.count);
+      return by.make(call, points, call::mesh_of(call, points, offsets, triangulation));
+    });
     self.point_count = offsets.back();
   });
 }
@@ -257,10 +279,10 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
     : implementation_(make(triangulator, true)) {
   Implementation& self = *implementation_;
   self.make_with([&](call::Answerer& by) {
-    self.on_device(by, enqueue, [&](call::Frame& call) {
+    return self.on_device(by, enqueue, [&](call::Frame& call) {
       call.check(points, "points");
       call.check_size(points.count);
-      by.make(call, points, call::mesh_of(call, points, triangulation));
+      return by.make(call, points, call::mesh_of(call, points, triangulation));
     });
   });
   self.point_count = points.count;
@@ -282,7 +304,8 @@ std::vector<std::int32_t> Locator::locate(const double* queries, const std::vect
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
   implementation_->answer_with([&](call::Answerer& by) {
-    implementation_->answer<cl_int>(by, queries, {}, triangles, 1, "located triangles", enqueue, kLocate);
+    return implementation_->answer<cl_int>(by, queries, {}, triangles, 1, "located triangles", enqueue,
+                                           kLocate);
   });
 }
 
@@ -298,7 +321,7 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vec
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
   implementation_->answer_with([&](call::Answerer& by) {
-    implementation_->answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue, kNearest);
+    return implementation_->answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue, kNearest);
   });
 }
 
@@ -327,18 +350,18 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
   const std::size_t numbers = implementation_->numbers(options.columns);
   if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
-  return implementation_->answer<double>(implementation_->doubles(), queries, offsets, options.columns,
-                                         implementation_->interpolation(options, values, options.gradients));
+  return *implementation_->answer<double>(implementation_->doubles(), queries, offsets, options.columns,
+                                          implementation_->interpolation(options, values, options.gradients));
 }
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
   const auto work = implementation_->interpolation(options, values, options.device_gradients);
-  implementation_->answer<cl_double>(
+  *implementation_->answer<cl_double>(
       implementation_->doubles(), queries, {values, options.device_gradients}, results, options.columns,
       "interpolated values", enqueue, [&](auto&&... all) {
         call::expect(options.gradients == nullptr, "gradients in host memory of values in device memory");
-        work(all...);
+        return work(all...);
       });
 }
 
@@ -364,6 +387,7 @@ void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t colu
   call::Answerer& by = self.doubles();
   self.on_device(by, enqueue, [&](call::Frame& call) {
     self.estimate_gradients(call, by.locator, values, columns, options, gradients);
+    call.end();
   });
 }
 

@@ -93,7 +93,10 @@ void write_rows(points::Workspace& work, const points::Blocks& blocks, const poi
                 const host::Buffer<cl_int>& twins) {
   blocks::MeshSizes sizes;
   sizes.first_rows = first_rows;
-  blocks::write_mesh(work, blocks, rings, sizes, {triangles, {}, twins, {}});
+  points::DeviceMesh mesh;
+  mesh.triangles = triangles;
+  mesh.halfedges = twins;
+  blocks::write_mesh(work, blocks, rings, sizes, mesh);
 }
 
 research::Triangulation run_flattened(TriangulatorAccess::Implementation& self, const Request& request) {

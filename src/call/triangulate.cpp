@@ -36,10 +36,14 @@ class Arrays {
   void reserve() const {
     for (const Output<cl_int>* rows : {&triangles_, &neighbors_, &halfedges_}) rows->reserve(rows_);
   }
-  blocks::MeshBuffers mesh(const blocks::MeshSizes& sizes) const {
+  points::DeviceMesh mesh(const blocks::MeshSizes& sizes) const {
     const std::size_t rows = 3 * sizes.triangles();
-    return {triangles_.buffer(rows), neighbors_.buffer(rows), halfedges_.buffer(rows),
-            hull_.buffer(sizes.hull_vertices())};
+    points::DeviceMesh mesh;
+    mesh.triangles = triangles_.buffer(rows);
+    mesh.neighbors = neighbors_.buffer(rows);
+    mesh.halfedges = halfedges_.buffer(rows);
+    mesh.hull = hull_.buffer(sizes.hull_vertices());
+    return mesh;
   }
 
   Output<cl_int> representatives;
@@ -54,13 +58,14 @@ class Arrays {
 
 // Triangulates points of a call, at least one. Writes the offsets of the result and what is known about it.
 template <typename Points, typename Result>
-void compute(Frame& call, const Points& points, const std::vector<std::size_t>& offsets, const Arrays& arrays,
-             statistics::Phases& phases, Result& result) {
+geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
+                                         const std::vector<std::size_t>& offsets, const Arrays& arrays,
+                                         statistics::Phases& phases, Result& result) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
-  blocks::MeshBuffers mesh;
-  blocks::Outcome outcome = blocks::run(
+  points::DeviceMesh mesh;
+  geometry::Fitted<blocks::Outcome> run = blocks::run(
       engine.runtime, engine.persistent, offsets,
       {[&] { return call.points(points); },
        arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
@@ -68,6 +73,8 @@ void compute(Frame& call, const Points& points, const std::vector<std::size_t>& 
        arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
        [&] { arrays.reserve(); }},
       phases);
+  if (!run) return run.too_wide();
+  blocks::Outcome outcome = *std::move(run);
   if (arrays.areas.is_wanted()) {
     const std::size_t triangles = outcome.sizes.triangles();
     engine.runtime.map(triangles,
@@ -79,6 +86,7 @@ void compute(Frame& call, const Points& points, const std::vector<std::size_t>& 
   outcome.write(n, result.statistics);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
+  return geometry::Done();
 }
 
 // Whether the sets are triangulated on the calling thread.
@@ -106,8 +114,9 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
   return result;
 }
 
-Triangulation triangulate_on(Engine& engine, const HostPoints& points,
-                             const std::vector<std::size_t>& offsets, const Options& options) {
+geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
+                                               const std::vector<std::size_t>& offsets,
+                                               const Options& options) {
   const std::size_t n = points.count, sets = offsets.size() - 1;
   Triangulation result = empty_result(engine, sets);
   if (n == 0) return result;
@@ -119,7 +128,8 @@ Triangulation triangulate_on(Engine& engine, const HostPoints& points,
   engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
   const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
                       result);
-  compute(call, points, offsets, arrays, phases, result);
+  const auto done = compute(call, points, offsets, arrays, phases, result);
+  if (!done) return done.too_wide();
   phases.end("output");
   engine.write_accounts(result.statistics);
   phases.write(result.statistics);
@@ -128,9 +138,10 @@ Triangulation triangulate_on(Engine& engine, const HostPoints& points,
 }
 
 // reason: why the host computes, if it does.
-void triangulate_on(Implementation& self, const Place& place, const std::string& reason,
-                    const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
-                    const Enqueue& enqueue) {
+geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Place& place,
+                                                const std::string& reason, const DevicePoints& points,
+                                                DeviceTriangulation& result, const Parts& parts,
+                                                const Enqueue& enqueue) {
   Engine& device = *place.device;
   Frame call(self, place, enqueue);
   if ((parts.neighbors || parts.halfedges || parts.areas) && !parts.triangles) {
@@ -162,7 +173,8 @@ void triangulate_on(Implementation& self, const Place& place, const std::string&
     }
     const Options unheard;
     statistics::Phases phases(unheard);
-    compute(call, points, offsets, arrays, phases, result);
+    const auto done = compute(call, points, offsets, arrays, phases, result);
+    if (!done) return done;
     if (place.is_apart()) {
       phases.end("output");
       phases.write(result.statistics);
@@ -173,6 +185,7 @@ void triangulate_on(Implementation& self, const Place& place, const std::string&
   }
   result.statistics.seconds = device.runtime.working_clock() - begin;
   device.write_accounts(result.statistics);
+  return geometry::Done();
 }
 
 }  // namespace
@@ -210,11 +223,11 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
   const double begin = engine.runtime.working_clock();
   return in_fixed_point_or(
       [&] { return triangulate_on(engine, points, offsets, options); },
-      [&](const std::string& reason) {
+      [&](const std::string& reason) -> geometry::Fitted<Triangulation> {
         const double seconds = engine.runtime.working_clock() - begin;
         Engine& other = self.with_doubles(engine);
         other.check_size(points.count);
-        Triangulation result = triangulate_on(other, points, offsets, options);
+        Triangulation result = *triangulate_on(other, points, offsets, options);
         result.statistics.seconds += seconds;
         result.statistics.phases.insert(result.statistics.phases.begin(), {"inspect", seconds});
         add_note(engine, other, reason, "triangulated", result.statistics);
@@ -227,18 +240,19 @@ void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangu
   Engine& engine = self.on_device();
   in_fixed_point_or(
       [&] {
-        triangulate_on(self, {engine, &engine}, "", points, result, parts, enqueue);
+        return triangulate_on(self, {engine, &engine}, "", points, result, parts, enqueue);
       },
       [&](const std::string& reason) {
         const Place place = with_doubles(self, engine);
         const bool lends = !place.is_apart() && engine.workspace != nullptr;
         if (lends) place.engine.workspace = engine.workspace;
-        triangulate_on(self, place, reason, points, result, parts, enqueue);
-        if (!lends) return;
+        const auto done = triangulate_on(self, place, reason, points, result, parts, enqueue);
+        if (!lends) return done;
         // The next call may use the workspace on another queue, or another workspace.
         place.engine.runtime.finish();
         place.engine.workspace = nullptr;
         place.engine.use_own_memory();
+        return done;
       });
 }
 

@@ -111,24 +111,16 @@ Scaling scaling_for(const Magnitudes& magnitudes) {
   return scaling;
 }
 
-TooWideForFixedPoint::TooWideForFixedPoint(const Magnitudes& magnitudes)
-    : TooWideForFixedPoint(
-          fmt::format("coordinates whose bits span {} binary places up to 2^{} (fixed point has {})",
-                      bits_of(magnitudes), magnitudes.largest + 1, kernel::COORDINATE_BITS)) {}
-
-TooWideForFixedPoint::TooWideForFixedPoint(const std::string& reason)
-    : Error(ErrorKind::device,
-            fmt::format("a device without double precision (fp64) cannot take {}; use another device "
-                        "(FLAUNAY_DEVICE), or the host",
-                        reason)),
-      reason_(std::make_shared<const std::string>(reason)) {}
+std::string TooWide::reason() const {
+  return fmt::format("coordinates whose bits span {} binary places up to 2^{} (fixed point has {})",
+                     bits_of(magnitudes), magnitudes.largest + 1, kernel::COORDINATE_BITS);
+}
 
 bool fits_fixed_point(const Magnitudes& magnitudes) {
   return bits_of(magnitudes) <= kernel::COORDINATE_BITS && magnitudes.largest <= kLargestOfFiniteDifferences;
 }
 
 int fixed_point_shift(const Magnitudes& magnitudes) {
-  if (!fits_fixed_point(magnitudes)) throw TooWideForFixedPoint(magnitudes);
   return bits_of(magnitudes) == 0 ? 0 : kernel::COORDINATE_BITS - 1 - magnitudes.largest;
 }
 

@@ -4,8 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "arithmetic/coordinates.h"
@@ -78,25 +79,39 @@ Scaling scaling_for(const Magnitudes& magnitudes);
 Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t last,
                     const Magnitudes& magnitudes);
 
-/// Thrown where a set of points would have to be in fixed point, but does not fit. Such calls are to be made
+/// Magnitudes of an input that would have to be in fixed point, but does not fit. Such calls are to be made
 /// on a device with double precision or on the host.
-class TooWideForFixedPoint : public Error {
+struct TooWide {
+  Magnitudes magnitudes;
+
+  /// What does not fit: "coordinates whose bits ...".
+  std::string reason() const;
+};
+
+/// What a function returns that may compute in fixed point: its result, unless the input does not fit. With
+/// doubles everything fits.
+template <typename T>
+class [[nodiscard]] Fitted {
  public:
-  explicit TooWideForFixedPoint(const Magnitudes& magnitudes);
-  /// What does not fit: "coordinates that ...".
-  const std::string& reason() const { return *reason_; }
+  Fitted(T result) : outcome_(std::move(result)) {}
+  Fitted(const TooWide& wide) : outcome_(wide) {}
+
+  explicit operator bool() const { return outcome_.index() == 0; }
+  const TooWide& too_wide() const { return std::get<1>(outcome_); }
+  const T& operator*() const& { return std::get<0>(outcome_); }
+  T&& operator*() && { return std::get<0>(std::move(outcome_)); }
+  const T* operator->() const { return &std::get<0>(outcome_); }
 
  private:
-  explicit TooWideForFixedPoint(const std::string& reason);
-
-  // Shared, because copying an exception must not throw.
-  std::shared_ptr<const std::string> reason_;
+  std::variant<T, TooWide> outcome_;
 };
+
+/// Of a function that returns nothing else.
+struct Done {};
 
 /// Whether finite coordinates fit into fixed point, and are cut as doubles are: their differences are finite.
 bool fits_fixed_point(const Magnitudes& magnitudes);
-/// The power of two by which coordinates in fixed point are multiplied, so that they have as many bits as can
-/// be. Throws TooWideForFixedPoint if they do not fit. O(1).
+/// The power of two by which coordinates that fit are multiplied, so that they have as many bits as can be.
 int fixed_point_shift(const Magnitudes& magnitudes);
 /// The bounds of filters in fixed point, for points of so many bits (bits_of).
 Bounds fixed_point_bounds(int bits);

@@ -1,4 +1,4 @@
-// A triangulation of one or more sets in device memory, from which Voronoi diagrams and locators are made.
+// A triangulation of one or more sets in device memory.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,13 @@ inline std::vector<cl_int> integers(const std::vector<std::size_t>& values) {
   return {values.begin(), values.end()};
 }
 
+/// What mode blocks writes, and from which Voronoi diagrams and locators are made. Arrays that are not wanted
+/// have no memory.
 struct DeviceMesh {
   std::vector<std::size_t> point_offsets, triangle_offsets, hull_offsets;  ///< sets + 1
   Buffer<cl_double> coordinates{};  ///< 2 per input point, as the caller gave them; aligned to 8 bytes only
   /// The arrays of flaunay::Triangulation.
-  Buffer<cl_int> triangles{}, neighbors{}, hull{}, representatives{};
+  Buffer<cl_int> triangles{}, neighbors{}, halfedges{}, hull{}, representatives{};
 
   std::size_t sets() const { return point_offsets.size() - 1; }
   std::size_t points() const { return point_offsets.back(); }

@@ -105,17 +105,18 @@ void fill_blocks(Workspace& work, const Plan& plan, const Buffer<cl_double>& coo
 
 }  // namespace
 
-Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
-                   const Buffer<cl_int>& representatives) {
+Fitted<Blocks> make_blocks(Workspace& work, const Buffer<cl_double>& input,
+                           const std::vector<std::size_t>& offsets, const Buffer<cl_int>& representatives) {
   Blocks blocks;
   const host::Runtime::Settled settled(work.runtime);
   const std::size_t block_points = tuning_of(work.runtime).block_points;
   const Plan plan = begin_blocks(work, offsets, block_points, block_points, blocks);
   Arena::Scope scope(work.scratch());
-  const UniformPoints uniform = make_uniform(work.runtime, input, offsets);
-  work.bounds = uniform.scaling.bounds;
-  blocks.scale = uniform.scaling.powers();
-  fill_blocks(work, plan, uniform.coordinates, offsets, Cuts::at_medians, BlockSizes::read, representatives,
+  const Fitted<UniformPoints> uniform = make_uniform(work.runtime, input, offsets);
+  if (!uniform) return uniform.too_wide();
+  work.bounds = uniform->scaling.bounds;
+  blocks.scale = uniform->scaling.powers();
+  fill_blocks(work, plan, uniform->coordinates, offsets, Cuts::at_medians, BlockSizes::read, representatives,
               blocks);
   return blocks;
 }

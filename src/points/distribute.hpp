@@ -51,8 +51,9 @@ struct Blocks {
 /// Checks and scales the points, x0 y0 x1 y1 ..., and distributes them to blocks. representatives: set to its
 /// own index for every point. Throws Error(input) for points that are not finite or whose magnitudes differ
 /// too much. O(n log n).
-Blocks make_blocks(Workspace& work, const Buffer<cl_double>& input, const std::vector<std::size_t>& offsets,
-                   const Buffer<cl_int>& representatives);
+geometry::Fitted<Blocks> make_blocks(Workspace& work, const Buffer<cl_double>& input,
+                                     const std::vector<std::size_t>& offsets,
+                                     const Buffer<cl_int>& representatives);
 
 /// Where trees cut: at medians, or in gaps, which suits points along the cuts of an earlier tree.
 enum class Cuts { at_medians, in_gaps };

@@ -46,22 +46,19 @@ UniformPoints scale_sets(host::Runtime& runtime, const host::Buffer<cl_double>& 
 }
 
 // all: the magnitudes of all sets.
-UniformPoints in_fixed_point(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                             const std::vector<std::size_t>& offsets, const Magnitudes& all) {
+Fitted<UniformPoints> in_fixed_point(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                     const std::vector<std::size_t>& offsets, const Magnitudes& all) {
   UniformPoints uniform;
   int bits = 0;
   const std::size_t sets = offsets.size() - 1;
-  if (sets > 1 && !fits_fixed_point(all)) {
-    uniform.by_set = inspect_sets(runtime, points, offsets);
-    for (const Magnitudes& each : uniform.by_set) {
-      uniform.shifts.push_back(fixed_point_shift(each));
-      bits = std::max(bits, bits_of(each));
-    }
-  } else {
-    bits = bits_of(all);
-    if (sets == 1) uniform.by_set = {all};
-    uniform.shifts = {fixed_point_shift(all)};
+  const bool is_by_set = sets > 1 && !fits_fixed_point(all);
+  const std::vector<Magnitudes> parts = is_by_set ? inspect_sets(runtime, points, offsets) : std::vector{all};
+  for (const Magnitudes& part : parts) {
+    if (!fits_fixed_point(part)) return TooWide{part};
+    uniform.shifts.push_back(fixed_point_shift(part));
+    bits = std::max(bits, bits_of(part));
   }
+  if (parts.size() == sets) uniform.by_set = parts;
   uniform.scaling.bounds = fixed_point_bounds(bits);
   uniform.coordinates = scaled_copy(runtime, points, offsets, uniform.shifts);
   return uniform;
@@ -107,8 +104,8 @@ std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<
   return magnitudes;
 }
 
-UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                           const std::vector<std::size_t>& offsets) {
+Fitted<UniformPoints> make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                   const std::vector<std::size_t>& offsets) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   const Magnitudes magnitudes = inspect(runtime, points, n);
   const bool differ = differ_too_much(magnitudes);
@@ -120,10 +117,10 @@ UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>
   std::vector<double> coordinates;
   if (differ || magnitudes.bad != kernel::NO_BAD) coordinates = to_host(runtime, points, n);
   const Scaling scaling = scaling_for(coordinates.data(), 0, n, magnitudes);
-  return {points,
-          scaling,
-          {scaling.shift},
-          sets == 1 ? std::vector<Magnitudes>{magnitudes} : std::vector<Magnitudes>()};
+  return UniformPoints{points,
+                       scaling,
+                       {scaling.shift},
+                       sets == 1 ? std::vector<Magnitudes>{magnitudes} : std::vector<Magnitudes>()};
 }
 
 host::Buffer<cl_double> scaled(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n,

@@ -28,8 +28,8 @@ struct UniformPoints {
 /// copy in the runtime's arena in which each set is scaled by its own; otherwise they are those given. Throws
 /// Error(input), which names a point, if one is not finite or if magnitudes differ too much in a set; points
 /// are copied to the host only in that case. Waits once, for such a copy twice. O(n).
-UniformPoints make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                           const std::vector<std::size_t>& offsets);
+geometry::Fitted<UniformPoints> make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
+                                             const std::vector<std::size_t>& offsets);
 
 /// Returns n points as they are, or if the shift is not 0, a copy in the runtime's arena, multiplied by
 /// 2^shift. Does not wait. O(n).

@@ -88,7 +88,7 @@ QueryScaling query_scaling(const Magnitudes& both, int point_shift, const QueryL
   return scaling;
 }
 
-QueryScaling fixed_point_scaling(const Magnitudes& points, const Magnitudes& asked, int point_shift) {
+Fitted<QueryScaling> fixed_point_scaling(const Magnitudes& points, const Magnitudes& asked, int point_shift) {
   const Magnitudes both = joined(points, asked);
   const int shift = shift_together(points, asked), bits = bits_of(both);
   QueryScaling scaling;
@@ -100,13 +100,14 @@ QueryScaling fixed_point_scaling(const Magnitudes& points, const Magnitudes& ask
   }
   if (scaling.is_off_grid &&
       (asked.lowest + shift < -kernel::FINER_PLACES || asked.largest + shift >= kernel::FARTHER_PLACES)) {
-    throw TooWideForFixedPoint(both);
+    return TooWide{both};
   }
   return scaling;
 }
 
-QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, const Buffer<cl_double>& queries,
-                           const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
+Fitted<QueryScaling> query_scaling(host::Runtime& runtime, const PointRange& points,
+                                   const Buffer<cl_double>& queries,
+                                   const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
   const std::size_t sets = query_offsets.size() - 1, m = query_offsets.back();
   const Magnitudes asked = inspect(runtime, queries, m);
   if (asked.bad != kernel::NO_BAD) throw_not_finite(runtime, queries, static_cast<std::size_t>(asked.bad));
@@ -115,7 +116,8 @@ QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, con
   for (const Magnitudes& of_set : points.by_set) both = joined(both, of_set);
   if (points.shifts.size() == 1 &&
       bits_of(both) <= (is_fixed ? kernel::COORDINATE_BITS : limits.most_bits())) {
-    QueryScaling scaling = is_fixed ? fixed_point_scaling(both, both, points.shifts[0])
+    // What is on one grid fits it.
+    QueryScaling scaling = is_fixed ? *fixed_point_scaling(both, both, points.shifts[0])
                                     : query_scaling(both, points.shifts[0], limits);
     scaling.frames.resize(sets, scaling.frames[0]);
     scaling.both = both;
@@ -134,13 +136,14 @@ QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points, con
   }
   for (std::size_t s = 0; s < sets; ++s) {
     both = joined(points.by_set[s], asked_by_set[s]);
-    const QueryScaling of_set = is_fixed
-                                    ? fixed_point_scaling(points.by_set[s], asked_by_set[s], points.shift(s))
-                                    : query_scaling(both, points.shift(s), limits);
-    scaling.frames.push_back(of_set.frames[0]);
-    scaling.is_off_grid = scaling.is_off_grid || of_set.is_off_grid;
-    scaling.orient_bound = std::max(scaling.orient_bound, of_set.orient_bound);
-    scaling.nearness_bound = std::max(scaling.nearness_bound, of_set.nearness_bound);
+    const Fitted<QueryScaling> of_set =
+        is_fixed ? fixed_point_scaling(points.by_set[s], asked_by_set[s], points.shift(s))
+                 : query_scaling(both, points.shift(s), limits);
+    if (!of_set) return of_set;
+    scaling.frames.push_back(of_set->frames[0]);
+    scaling.is_off_grid = scaling.is_off_grid || of_set->is_off_grid;
+    scaling.orient_bound = std::max(scaling.orient_bound, of_set->orient_bound);
+    scaling.nearness_bound = std::max(scaling.nearness_bound, of_set->nearness_bound);
   }
   return scaling;
 }

@@ -44,18 +44,17 @@ constexpr QueryLimits kCircleLimits{kernel::LARGEST_EXPONENT, kernel::LOWEST_EXP
 
 /// Inspects queries and chooses their scaling: the same for all sets, or if magnitudes differ too much, one
 /// for each. Waits once, or twice. Throws Error(input), which names a query, if one is not finite, too fine
-/// or too far away. In fixed point throws TooWideForFixedPoint, too.
-QueryScaling query_scaling(host::Runtime& runtime, const PointRange& points,
-                           const host::Buffer<cl_double>& queries,
-                           const std::vector<std::size_t>& query_offsets,
-                           const QueryLimits& limits = kOrientLimits);
+/// or too far away. In fixed point, queries that are very much finer or farther away than points do not fit.
+geometry::Fitted<QueryScaling> query_scaling(host::Runtime& runtime, const PointRange& points,
+                                             const host::Buffer<cl_double>& queries,
+                                             const std::vector<std::size_t>& query_offsets,
+                                             const QueryLimits& limits = kOrientLimits);
 
-/// Chooses the scaling of one set in fixed point. Throws TooWideForFixedPoint for queries that are very much
-/// finer or farther away than points.
-QueryScaling fixed_point_scaling(const geometry::Magnitudes& points, const geometry::Magnitudes& asked,
-                                 int point_shift);
+/// Chooses the scaling of one set in fixed point.
+geometry::Fitted<QueryScaling> fixed_point_scaling(const geometry::Magnitudes& points,
+                                                   const geometry::Magnitudes& asked, int point_shift);
 
-/// Chooses the scaling of one set, whose points and queries together have accepted magnitudes.
+/// Chooses the scaling of one set with doubles, whose points and queries together have accepted magnitudes.
 QueryScaling query_scaling(const geometry::Magnitudes& both, int point_shift,
                            const QueryLimits& limits = kOrientLimits);
 

@@ -79,7 +79,7 @@ TEST(SmallFans, OfNoPolygons) {
   result.representatives.resize(40);
   const auto representatives = runtime.output(result.representatives);
   const Blocks blocks =
-      make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()), {0, 40}, representatives);
+      *make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()), {0, 40}, representatives);
   Rings rings = divide(call.work, blocks, representatives);
   await_rings(call.work, blocks, rings);
   EXPECT_EQ(rings.ties, 0u);

@@ -21,7 +21,7 @@ void run_mesh(Call& call, const Blocks& blocks, const Rings& rings, bool neighbo
   result.neighbors.assign(neighbors ? rows : 0, -7);
   result.halfedges.assign(neighbors ? rows : 0, -7);
   result.hull.assign(sizes.hull_vertices(), -7);
-  MeshBuffers buffers;
+  DeviceMesh buffers;
   buffers.triangles = runtime.output(result.triangles);
   if (neighbors) buffers.neighbors = runtime.output(result.neighbors);
   if (neighbors) buffers.halfedges = runtime.output(result.halfedges);
@@ -76,7 +76,7 @@ TEST(SmallMesh, NumbersThatDoNotFitAreReported) {
   result.representatives.resize(10);
   const auto representatives = runtime.output(result.representatives);
   const Blocks blocks =
-      make_blocks(call.work, runtime.view(coordinates.data(), 20), {0, 10}, representatives);
+      *make_blocks(call.work, runtime.view(coordinates.data(), 20), {0, 10}, representatives);
   Rings rings = divide(call.work, blocks, representatives);
   await_rings(call.work, blocks, rings);
   const auto edges = call.read(rings.edges, rings.edges.size());

@@ -34,18 +34,20 @@ Triangulation run_blocks(Runtime& runtime, const Coordinates& coordinates, const
     values.assign(count, -7);
     return runtime.output(values);
   };
-  MeshBuffers mesh;
+  points::DeviceMesh mesh;
   const Exchange exchange{[&] { return runtime.view(coordinates.data(), coordinates.size()); },
                           room(result.representatives, coordinates.size() / 2), true,
                           [&](const MeshSizes& sizes) {
                             const std::size_t corners = 3 * sizes.triangles();
-                            return mesh = {room(result.triangles, corners), room(result.neighbors, corners),
-                                           room(result.halfedges, corners),
-                                           room(result.hull, sizes.hull_vertices())};
+                            mesh.triangles = room(result.triangles, corners);
+                            mesh.neighbors = room(result.neighbors, corners);
+                            mesh.halfedges = room(result.halfedges, corners);
+                            mesh.hull = room(result.hull, sizes.hull_vertices());
+                            return mesh;
                           }};
   const Options options;
   statistics::Phases phases(options);
-  Outcome outcome = run(runtime, call.work.persistent, offsets, exchange, phases);
+  Outcome outcome = *run(runtime, call.work.persistent, offsets, exchange, phases);
   runtime.fetch_later(exchange.representatives, result.representatives);
   runtime.fetch_later(mesh.triangles, result.triangles);
   runtime.fetch_later(mesh.neighbors, result.neighbors);

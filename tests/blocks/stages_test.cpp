@@ -30,8 +30,8 @@ Triangulation check_stages(Runtime& runtime, const Coordinates& coordinates, con
   // Not yet written, as the library's caller has it.
   result.representatives.assign(offsets.back(), -7);
   const auto representatives = runtime.output(result.representatives);
-  const Blocks blocks = make_blocks(call.work, call.runtime.view(coordinates.data(), coordinates.size()),
-                                    offsets, representatives);
+  const Blocks blocks = *make_blocks(call.work, call.runtime.view(coordinates.data(), coordinates.size()),
+                                     offsets, representatives);
   HostRings g;
   check_blocks(call, coordinates, offsets, blocks, representatives, g, met);
   if (::testing::Test::HasFatalFailure()) return result;

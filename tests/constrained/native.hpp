@@ -23,15 +23,16 @@ inline std::unique_ptr<call::Engine> make_tuned_engine(const std::string& tuning
 }
 
 /// Makes segments edges of the mesh, which is a Delaunay triangulation.
-inline void insert_on(call::Engine& engine, const std::vector<double>& points,
-                      const std::vector<std::size_t>& offsets, const std::vector<std::int32_t>& segments,
-                      bool with_halfedges, ConstrainedTriangulation& mesh) {
+inline geometry::Fitted<geometry::Done> insert_on(call::Engine& engine, const std::vector<double>& points,
+                                                  const std::vector<std::size_t>& offsets,
+                                                  const std::vector<std::int32_t>& segments,
+                                                  bool with_halfedges, ConstrainedTriangulation& mesh) {
   Constraints constraints;
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
   Options options;
   options.halfedges = with_halfedges;
-  call::insert_segments_on(engine, points.data(), offsets, constraints, options, mesh);
+  return call::insert_segments_on(engine, points.data(), offsets, constraints, options, mesh);
 }
 
 inline ConstrainedTriangulation insert(const std::vector<double>& points,
@@ -40,7 +41,7 @@ inline ConstrainedTriangulation insert(const std::vector<double>& points,
   static call::Engine engine(tuning_in_environment());
   ConstrainedTriangulation mesh;
   static_cast<Triangulation&>(mesh) = std::move(delaunay);
-  insert_on(engine, points, offsets, segments, false, mesh);
+  *insert_on(engine, points, offsets, segments, false, mesh);
   return mesh;
 }
 

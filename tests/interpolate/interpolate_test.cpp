@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+#include "blocks/run.hpp"
 #include "host/opencl/programs.hpp"
 #include "tests/locate/support.hpp"
 
@@ -32,7 +33,7 @@ struct Located {
       : runtime(Runtimes::get(tuning)), own(runtime.memory()), input(given) {
     if (runtime.sizes().separate_buffers) own.separate_buffers();
     const host::Arena::Scope scope(runtime.arena());
-    locator = make_locator(runtime, own, upload_mesh(runtime, input));
+    locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
   }
 
   /// method(runtime, locator, table, queries...) is one of derived/interpolate/interpolate.hpp.
@@ -47,20 +48,16 @@ struct Located {
     return download(runtime, results, m * columns);
   }
 
-  std::vector<cl_int> located(void (*answer)(Runtime&, Locator&, const host::Buffer<cl_double>&, std::size_t,
-                                             const Offsets&, const host::Buffer<cl_int>&)) {
+  template <typename Answer>
+  std::vector<cl_int> located(const Answer& answer) {
     const host::Arena::Scope scope(runtime.arena());
     const std::size_t m = input.query_count();
     const auto found = guarded<cl_int>(runtime, m);
-    answer(runtime, locator, upload(runtime, input.queries), m, input.query_offsets, found);
+    *answer(runtime, locator, upload(runtime, input.queries), m, input.query_offsets, found);
     return download(runtime, found, m);
   }
   /// Per query; that these are right is the subject of locate_test.cpp.
-  std::vector<cl_int> triangles() {
-    return located([](auto& r, auto& l, const auto& q, std::size_t m, const auto& o, const auto& found) {
-      locate::locate(r, l, q, m, o, found);
-    });
-  }
+  std::vector<cl_int> triangles() { return located(locate::locate); }
   std::vector<cl_int> nearest() { return located(locate::nearest); }
 
   Runtime& runtime;

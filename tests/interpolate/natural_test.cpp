@@ -202,7 +202,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   host::Arena own(runtime.memory());
   if (runtime.sizes().separate_buffers) own.separate_buffers();
   host::Arena::Scope scope(runtime.arena());
-  const Locator locator = locate::make_locator(runtime, own, upload_mesh(runtime, input));
+  const Locator locator = *locate::make_locator(runtime, own, upload_mesh(runtime, input), nullptr);
   const std::size_t m = input.query_count();
   const auto queries = upload(runtime, input.queries), values = upload(runtime, table_for(input));
   const auto results = guarded<cl_double>(runtime, kColumns * m),

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/run.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/locate/levels.hpp"
 #include "derived/locate/locator.hpp"
@@ -48,21 +49,31 @@ struct Answers {
   std::vector<double> values;
 };
 
-Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& values) {
+Fitted<Answers> ask_if_it_fits(Runtime& runtime, const Case& input, const std::vector<double>& values) {
   Arena own(runtime.memory());
   if (runtime.sizes().separate_buffers) own.separate_buffers();
   Arena::Scope scope(runtime.arena());
-  Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+  Fitted<Locator> made = make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
+  if (!made) return made.too_wide();
+  Locator locator = *std::move(made);
   const std::size_t m = input.query_count();
   const auto queries = upload(runtime, input.queries);
   const auto triangles = guarded<cl_int>(runtime, m), points = guarded<cl_int>(runtime, m);
   const auto results = guarded<cl_double>(runtime, m);
-  locate(runtime, locator, queries, m, input.query_offsets, triangles);
-  nearest(runtime, locator, queries, m, input.query_offsets, points);
-  if (is_fixed_point(runtime)) return {download(runtime, triangles, m), download(runtime, points, m), {}};
+  const Fitted<Done> located = locate(runtime, locator, queries, m, input.query_offsets, triangles);
+  if (!located) return located.too_wide();
+  const Fitted<Done> found = nearest(runtime, locator, queries, m, input.query_offsets, points);
+  if (!found) return found.too_wide();
+  Answers answers{download(runtime, triangles, m), download(runtime, points, m), {}};
+  if (is_fixed_point(runtime)) return answers;
   interpolate::linear(runtime, locator, {upload(runtime, values), 1, std::nan("")}, queries, m,
                       input.query_offsets, results);
-  return {download(runtime, triangles, m), download(runtime, points, m), download(runtime, results, m)};
+  answers.values = download(runtime, results, m);
+  return answers;
+}
+
+Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& values) {
+  return *ask_if_it_fits(runtime, input, values);
 }
 
 bool contains(const Case& input, std::size_t t, const double* q) {
@@ -123,17 +134,14 @@ bool is_too_wide(const Case& input, std::size_t set) {
          asked.largest - points.largest > kernel::FINER_PLACES - 2;
 }
 
-/// Answers in fixed point; none where these refuse what is too wide.
-std::unique_ptr<Answers> ask_if_it_fits(Runtime& runtime, const Case& input,
-                                        const std::vector<double>& values) {
-  try {
-    return std::make_unique<Answers>(ask(runtime, input, values));
-  } catch (const TooWideForFixedPoint&) {
-    bool is_any = false;
-    for (std::size_t s = 0; s < input.sets(); ++s) is_any = is_any || is_too_wide(input, s);
-    EXPECT_TRUE(is_fixed_point(runtime) && is_any);
-    return nullptr;
-  }
+/// Answers; in fixed point none if these refuse what is too wide.
+Fitted<Answers> checked_answers(Runtime& runtime, const Case& input, const std::vector<double>& values) {
+  Fitted<Answers> answers = ask_if_it_fits(runtime, input, values);
+  if (answers) return answers;
+  bool is_any = false;
+  for (std::size_t s = 0; s < input.sets(); ++s) is_any = is_any || is_too_wide(input, s);
+  EXPECT_TRUE(is_fixed_point(runtime) && is_any);
+  return answers;
 }
 
 /// expected: by the twin, for answers that are right otherwise.
@@ -168,7 +176,7 @@ int check_answers(const Case& input, const std::vector<std::string>& names = tun
   for (const std::string& name : names) {
     SCOPED_TRACE("tuning " + name);
     Runtime& runtime = Runtimes::get(name);
-    const std::unique_ptr<Answers> all = ask_if_it_fits(runtime, input, values);
+    const Fitted<Answers> all = checked_answers(runtime, input, values);
     if (!all) continue;
     const Answers& answers = *all;
     EXPECT_TRUE(same(answers.triangles, triangles));
@@ -233,7 +241,7 @@ void check_orders(const Case& input) {
       Tuning tuning = before;
       tuning.sorted_queries_least = least;
       runtime.set_sizes(std::make_shared<Tuning>(tuning));
-      const std::unique_ptr<Answers> all = ask_if_it_fits(runtime, input, values);
+      const Fitted<Answers> all = checked_answers(runtime, input, values);
       if (!all) continue;
       const Answers& answers = *all;
       if (!first) first = std::make_unique<Answers>(answers);
@@ -381,10 +389,10 @@ double looked_at(const Case& input) {
   Runtime& runtime = Runtimes::get("own");
   Arena own(runtime.memory());
   Arena::Scope scope(runtime.arena());
-  Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+  Locator locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
   const std::size_t m = input.query_count();
   const auto answers = guarded<cl_int>(runtime, m);
-  nearest(runtime, locator, upload(runtime, input.queries), m, input.query_offsets, answers);
+  *nearest(runtime, locator, upload(runtime, input.queries), m, input.query_offsets, answers);
   if (locator.levels.count == 0) make_levels(runtime, locator);
   const std::vector<cl_int> expected = download(runtime, answers, m);
   const Levels& levels = locator.levels;
@@ -502,7 +510,7 @@ TEST(Levels, BoxesFansAndStarsAreThoseOfTwins) {
       Arena own(runtime.memory());
       Arena::Scope scope(runtime.arena());
       const Case input = make_case(make_fixture(name, n, 3), 0, 4);
-      Locator locator = make_locator(runtime, own, upload_mesh(runtime, input));
+      Locator locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
       make_levels(runtime, locator);
       const LocatorOnHost mesh(runtime, locator);
       const auto starts = all_of(runtime, locator.levels.stars.starts);

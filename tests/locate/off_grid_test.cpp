@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "derived/locate/read_back.hpp"
+#include "points/download.hpp"
 #include "tests/locate/support.hpp"
 #include "tests/support/test_kernels.hpp"
 
@@ -181,24 +182,24 @@ TEST(SmallOffGrid, FramesHoldPointsAndQueries) {
   const int point_shift = 61;
   const Magnitudes points = spanning(-53, 0);
   // What the two fill together, just and not quite.
-  const QueryScaling fits = fixed_point_scaling(points, spanning(-61, -3), point_shift);
+  const QueryScaling fits = *fixed_point_scaling(points, spanning(-61, -3), point_shift);
   EXPECT_FALSE(fits.is_off_grid);
   EXPECT_EQ(fits.frames[0].shift, 61);
-  EXPECT_EQ(fixed_point_scaling(points, spanning(-53, 8), point_shift).frames[0].shift, 53);
-  EXPECT_FALSE(fixed_point_scaling(points, spanning(-53, 8), point_shift).is_off_grid);
-  EXPECT_TRUE(fixed_point_scaling(points, spanning(-53, 9), point_shift).is_off_grid);
-  EXPECT_TRUE(fixed_point_scaling(points, spanning(-62, -3), point_shift).is_off_grid);
+  EXPECT_EQ(fixed_point_scaling(points, spanning(-53, 8), point_shift)->frames[0].shift, 53);
+  EXPECT_FALSE(fixed_point_scaling(points, spanning(-53, 8), point_shift)->is_off_grid);
+  EXPECT_TRUE(fixed_point_scaling(points, spanning(-53, 9), point_shift)->is_off_grid);
+  EXPECT_TRUE(fixed_point_scaling(points, spanning(-62, -3), point_shift)->is_off_grid);
   // Points stay on the grid, and leave one more place for queries beyond.
-  EXPECT_EQ(fixed_point_scaling(points, spanning(-70, 9), point_shift).frames[0].shift, 60);
-  EXPECT_EQ(fixed_point_scaling(spanning(-61, 0), spanning(-70, 9), point_shift).frames[0].shift, 61);
-  EXPECT_EQ(fixed_point_scaling(points, spanning(-70, -20), point_shift).frames[0].shift, 61);
+  EXPECT_EQ(fixed_point_scaling(points, spanning(-70, 9), point_shift)->frames[0].shift, 60);
+  EXPECT_EQ(fixed_point_scaling(spanning(-61, 0), spanning(-70, 9), point_shift)->frames[0].shift, 61);
+  EXPECT_EQ(fixed_point_scaling(points, spanning(-70, -20), point_shift)->frames[0].shift, 61);
   // The ends of the range.
-  EXPECT_TRUE(fixed_point_scaling(spanning(-61, 0), spanning(-125, 63), point_shift).is_off_grid);
-  EXPECT_THROW(fixed_point_scaling(spanning(-61, 0), spanning(-126, 63), point_shift), TooWideForFixedPoint);
-  EXPECT_THROW(fixed_point_scaling(spanning(-61, 0), spanning(-125, 64), point_shift), TooWideForFixedPoint);
+  EXPECT_TRUE(fixed_point_scaling(spanning(-61, 0), spanning(-125, 63), point_shift)->is_off_grid);
+  EXPECT_FALSE(fixed_point_scaling(spanning(-61, 0), spanning(-126, 63), point_shift));
+  EXPECT_FALSE(fixed_point_scaling(spanning(-61, 0), spanning(-125, 64), point_shift));
   // Filters are exact on coordinates of few bits.
-  EXPECT_EQ(fixed_point_scaling(spanning(0, 9), spanning(0, 9), 52).nearness_bound, 0);
-  EXPECT_GT(fixed_point_scaling(spanning(0, 9), spanning(-1, 9), 52).nearness_bound, 0);
+  EXPECT_EQ(fixed_point_scaling(spanning(0, 9), spanning(0, 9), 52)->nearness_bound, 0);
+  EXPECT_GT(fixed_point_scaling(spanning(0, 9), spanning(-1, 9), 52)->nearness_bound, 0);
 }
 
 /// A locator in fixed point has all that it was made of, but for points that are equal to others.
@@ -219,18 +220,21 @@ TEST(SmallOffGrid, MeshesAreReadBack) {
     input.triangulate();
     Arena own(runtime.memory());
     Arena::Scope scope(runtime.arena());
-    const ReadMesh mesh = read_back(runtime, make_locator(runtime, own, upload_mesh(runtime, input)));
+    const Locator locator = *make_locator(runtime, own, upload_mesh(runtime, input), nullptr);
+    const DeviceMesh mesh = read_back(runtime, locator, runtime);
+    const auto read = [&runtime](const auto& from) { return points::download(runtime, from, from.size()); };
     EXPECT_EQ(mesh.point_offsets, input.offsets);
-    EXPECT_EQ(mesh.triangulation.triangle_offsets, input.mesh.triangle_offsets);
-    EXPECT_EQ(mesh.triangulation.hull_offsets, input.mesh.hull_offsets);
-    EXPECT_EQ(mesh.triangulation.triangles, input.mesh.triangles);
-    EXPECT_EQ(mesh.triangulation.neighbors, input.mesh.neighbors);
-    EXPECT_EQ(mesh.triangulation.hull, input.mesh.hull);
-    ASSERT_EQ(mesh.coordinates.size(), input.points.size());
+    EXPECT_EQ(mesh.triangle_offsets, input.mesh.triangle_offsets);
+    EXPECT_EQ(mesh.hull_offsets, input.mesh.hull_offsets);
+    EXPECT_EQ(read(mesh.triangles), input.mesh.triangles);
+    EXPECT_EQ(read(mesh.neighbors), input.mesh.neighbors);
+    EXPECT_EQ(read(mesh.hull), input.mesh.hull);
+    const std::vector<double> coordinates = read(mesh.coordinates);
+    ASSERT_EQ(coordinates.size(), input.points.size());
     for (std::size_t i = 0; i < input.size(); ++i) {
       if (input.mesh.representatives[i] != static_cast<std::int32_t>(i)) continue;
-      EXPECT_EQ(mesh.coordinates[2 * i], input.points[2 * i]) << i;
-      EXPECT_EQ(mesh.coordinates[2 * i + 1], input.points[2 * i + 1]) << i;
+      EXPECT_EQ(coordinates[2 * i], input.points[2 * i]) << i;
+      EXPECT_EQ(coordinates[2 * i + 1], input.points[2 * i + 1]) << i;
     }
   }
 }

@@ -65,8 +65,8 @@ TEST(SmallDistribute, BadInputIsRefused) {
     std::vector<cl_int> representatives(coordinates.size() / 2);
     const auto output = runtime.output(representatives);
     try {
-      make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()),
-                  {0, coordinates.size() / 2}, output);
+      *make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()),
+                   {0, coordinates.size() / 2}, output);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
       return std::string(error.what());
@@ -87,7 +87,7 @@ void check_blocks_of_tiles(Runtime& runtime, const Nested& sets) {
   const std::size_t n = sets.offsets.back();
   const auto representatives = call.work.persistent.allocate<cl_int>(n);
   const auto input = testing::upload(runtime, sets.coordinates);
-  const Blocks blocks = make_blocks(call.work, input, sets.offsets, representatives);
+  const Blocks blocks = *make_blocks(call.work, input, sets.offsets, representatives);
   check_blocks(call, sets.coordinates, sets.offsets, blocks, representatives, g, met);
 }
 

@@ -112,7 +112,7 @@ TEST(SmallInspect, SetsAreScaledOneByOne) {
     const SetsOfManyScales sets(30);
     host::Arena::Scope scope(runtime.arena());
     const std::size_t n = sets.offsets.back();
-    const UniformPoints uniform = make_uniform(runtime, testing::upload(runtime, sets.points), sets.offsets);
+    const UniformPoints uniform = *make_uniform(runtime, testing::upload(runtime, sets.points), sets.offsets);
     EXPECT_EQ(uniform.scaling.shift, 0);
     EXPECT_GT(uniform.scaling.bounds.circle, 0);
     Coordinates found(2 * n);
@@ -136,7 +136,7 @@ TEST(SmallInspect, PointsOfOneScaleAreNotCopied) {
   host::Arena::Scope scope(runtime.arena());
   const Coordinates points = testing::scaled(make_fixture("uniform", 40, 1), 0x1p-500);
   const auto given = testing::upload(runtime, points);
-  const UniformPoints uniform = make_uniform(runtime, given, {0, 10, 40});
+  const UniformPoints uniform = *make_uniform(runtime, given, {0, 10, 40});
   EXPECT_EQ(uniform.coordinates.memory(), given.memory());
   EXPECT_EQ(uniform.scaling.shift, scaling_for(points.data(), 0, 40, magnitudes_twin(points, 0, 40)).shift);
 }

@@ -13,10 +13,10 @@ struct ScaledPoints {
   geometry::Bounds bounds;
 };
 
-/// Uploads one set of points. Throws geometry::TooWideForFixedPoint if they do not fit.
+/// Uploads one set of points, which must fit.
 inline ScaledPoints upload_points(host::Runtime& runtime, const std::vector<double>& coordinates) {
   const std::size_t n = coordinates.size() / 2;
-  const points::UniformPoints uniform = points::make_uniform(runtime, upload(runtime, coordinates), {0, n});
+  const points::UniformPoints uniform = *points::make_uniform(runtime, upload(runtime, coordinates), {0, n});
   return {points::scaled(runtime, uniform.coordinates, n, uniform.scaling.shift), uniform.scaling.bounds};
 }
 

@@ -41,10 +41,11 @@ struct ScaledPoints {
   geometry::Bounds bounds{};
 };
 
-ScaledPoints scale_points(host::Runtime& runtime, const DeviceMesh& mesh) {
-  const points::UniformPoints uniform = points::make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
-  return {points::scaled(runtime, uniform.coordinates, mesh.points(), uniform.scaling.shift),
-          uniform.scaling.bounds};
+geometry::Fitted<ScaledPoints> scale_points(host::Runtime& runtime, const DeviceMesh& mesh) {
+  const auto uniform = points::make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
+  if (!uniform) return uniform.too_wide();
+  return ScaledPoints{points::scaled(runtime, uniform->coordinates, mesh.points(), uniform->scaling.shift),
+                      uniform->scaling.bounds};
 }
 
 // Pairs of ends, each pair once, in the order of their places.
@@ -659,11 +660,14 @@ class Insertion {
 
 }  // namespace
 
-void constrain(host::Runtime& runtime, const DeviceMesh& delaunay, const Buffer<cl_int>& segments,
-               std::size_t segment_count, const ConstrainedBuffers& result, const ProvideEdges& provide) {
+geometry::Fitted<geometry::Done> constrain(host::Runtime& runtime, const DeviceMesh& delaunay,
+                                           const Buffer<cl_int>& segments, std::size_t segment_count,
+                                           const ConstrainedBuffers& result, const ProvideEdges& provide) {
   Arena::Scope scope(runtime.arena());
-  const ScaledPoints points = scale_points(runtime, delaunay);
-  Insertion(runtime, delaunay, segments, segment_count, points, result).run(provide);
+  const auto points = scale_points(runtime, delaunay);
+  if (!points) return points.too_wide();
+  Insertion(runtime, delaunay, segments, segment_count, *points, result).run(provide);
+  return geometry::Done();
 }
 
 }  // namespace flaunay::constrained

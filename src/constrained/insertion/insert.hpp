@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "geometry/magnitudes.hpp"
 #include "points/device_mesh.hpp"
 
 namespace flaunay::constrained {
@@ -27,14 +28,15 @@ struct ConstrainedBuffers {
 /// Called once with the number of constraint edges; returns the buffer for them, two ends per edge.
 using ProvideEdges = std::function<Buffer<cl_int>(std::size_t edges)>;
 
-/// Makes segments edges of a triangulation in device memory. segments: two indices of points each. Throws
-/// geometry::TooWideForFixedPoint before anything is changed; Error(usage) if an index is no point, or if the
-/// ends of a segment are in different sets; Error(input) if two segments cross at a place that is no point.
-/// That names the first segment that crosses one with a smaller index, the one with the smallest index of
-/// those, and the place. Results are unspecified then. Waits about once per round, of which there are
-/// O(log segments) as a rule. The edges of segments that have very many in common, more than 16 per point and
+/// Makes segments edges of a triangulation in device memory. segments: two indices of points each. If points
+/// do not fit fixed point, nothing is changed. Throws Error(usage) if an index is no point, or if the ends of
+/// a segment are in different sets; Error(input) if two segments cross at a place that is no point. That
+/// names the first segment that crosses one with a smaller index, the one with the smallest index of those,
+/// and the place. Results are unspecified then. Waits about once per round, of which there are O(log
+/// segments) as a rule. The edges of segments that have very many in common, more than 16 per point and
 /// segment, are found on the host.
-void constrain(host::Runtime& runtime, const points::DeviceMesh& delaunay, const Buffer<cl_int>& segments,
-               std::size_t segment_count, const ConstrainedBuffers& result, const ProvideEdges& provide);
+geometry::Fitted<geometry::Done> constrain(host::Runtime& runtime, const points::DeviceMesh& delaunay,
+                                           const Buffer<cl_int>& segments, std::size_t segment_count,
+                                           const ConstrainedBuffers& result, const ProvideEdges& provide);
 
 }  // namespace flaunay::constrained

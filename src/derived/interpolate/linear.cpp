@@ -23,7 +23,7 @@ void nearest(host::Runtime& runtime, Locator& locator, const Table& table, const
              std::size_t m, const std::vector<std::size_t>& query_offsets, const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const auto points = runtime.arena().allocate<cl_int>(m);
-  locate::nearest(runtime, locator, queries, m, query_offsets, points);
+  *locate::nearest(runtime, locator, queries, m, query_offsets, points);
   runtime.map(m, kernels::take_nearest{.columns = table.columns,
                                        .outside = table.outside,
                                        .nearest = points,

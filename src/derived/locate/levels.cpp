@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "blocks/run.hpp"
 #include "derived/locate/locator.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
@@ -121,7 +120,7 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
     runtime.map(2 * samples,
                 kernels::give_coordinates{.coordinates = coordinates, .given = given.as<cl_ulong>()});
   }
-  DeviceMesh mesh = blocks::run(runtime, persistent, sizes.offsets, given, results);
+  DeviceMesh mesh = locator.triangulate(runtime, persistent, sizes.offsets, given, results);
   mesh.coordinates = coordinates;
   const auto samples_locator = std::make_shared<Locator>(make_walk_locator(runtime, own, mesh));
   measure_clearances(runtime, *samples_locator);

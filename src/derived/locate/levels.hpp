@@ -14,6 +14,11 @@ namespace flaunay::locate {
 
 struct Locator;
 
+/// Triangulates sets of points. The mesh is in `results`; `persistent` has what is needed meanwhile.
+using Triangulate = points::DeviceMesh (*)(host::Runtime& runtime, host::Arena& persistent,
+                                           const std::vector<std::size_t>& offsets,
+                                           const host::Buffer<cl_double>& coordinates, host::Arena& results);
+
 /// What begins the stars of a triangulation's vertices, and the fans in it.
 struct Stars {
   host::Buffer<cl_int> starts{};

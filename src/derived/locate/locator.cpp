@@ -225,8 +225,9 @@ void sort_queries(host::Runtime& runtime, const Locator& locator, const Buffer<c
                                         .placed = pass.placed});
 }
 
-Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const QueryLimits& limits = kOrientLimits) {
+Fitted<Pass> prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries,
+                     std::size_t m, const std::vector<std::size_t>& query_offsets,
+                     const QueryLimits& limits = kOrientLimits) {
   check_offsets(query_offsets);
   if (query_offsets.size() != locator.sets + 1 || query_offsets.back() != m) {
     throw Error(
@@ -235,7 +236,9 @@ Pass prepare(host::Runtime& runtime, const Locator& locator, const Buffer<cl_dou
                     query_offsets.size() - 1, query_offsets.back(), m, locator.sets));
   }
   Pass pass{};
-  QueryScaling scaling = query_scaling(runtime, locator.range, queries, query_offsets, limits);
+  Fitted<QueryScaling> fitted = query_scaling(runtime, locator.range, queries, query_offsets, limits);
+  if (!fitted) return fitted.too_wide();
+  QueryScaling scaling = *std::move(fitted);
   pass.orient_bound = scaling.orient_bound;
   pass.nearness_bound = scaling.nearness_bound;
   pass.is_off_grid = scaling.is_off_grid;
@@ -296,10 +299,10 @@ void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass&
                                           .answers = answers});
 }
 
-// Goes on from vertices to those nearest to queries off the grid, and makes points of all. Waits once. Throws
-// TooWideForFixedPoint if one is far to go to.
-void nearest_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
-                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& points) {
+// Goes on from vertices to those nearest to queries off the grid, and makes points of all. Waits once. A
+// query to which it is far to go does not fit.
+Fitted<Done> nearest_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
+                              const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& points) {
   const auto unanswered = runtime.arena().allocate<cl_int>(1);
   runtime.fill(unanswered, 1, cl_int{0});
   runtime.map(m, kernels::nearest_off_grid{.placed_queries = placed_queries(pass),
@@ -315,7 +318,8 @@ void nearest_off_grid(host::Runtime& runtime, const Locator& locator, const Pass
                                            .hull = locator.hull,
                                            .nearest = points,
                                            .unanswered = unanswered});
-  if (m > 0 && runtime.read_one(unanswered, 0) != 0) throw TooWideForFixedPoint(pass.both);
+  if (m > 0 && runtime.read_one(unanswered, 0) != 0) return TooWide{pass.both};
+  return Done();
 }
 
 // input: the points of the mesh. vertices_per_leaf: of the trees.
@@ -391,12 +395,15 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
 
 }  // namespace
 
-Locator make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
+Fitted<Locator> make_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh,
+                             Triangulate triangulate) {
   Arena::Scope scope(runtime.arena());
-  const UniformPoints input = make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
-  Locator locator = make_locator(runtime, own, mesh, input, tuning_of(runtime).vertices_per_leaf);
-  locator.range = {input.by_set, input.shifts};
-  if (input.by_set.empty()) {
+  const Fitted<UniformPoints> input = make_uniform(runtime, mesh.coordinates, mesh.point_offsets);
+  if (!input) return input.too_wide();
+  Locator locator = make_locator(runtime, own, mesh, *input, tuning_of(runtime).vertices_per_leaf);
+  locator.triangulate = triangulate;
+  locator.range = {input->by_set, input->shifts};
+  if (input->by_set.empty()) {
     locator.range.by_set = inspect_sets(runtime, mesh.coordinates, mesh.point_offsets);
   }
   return locator;
@@ -416,22 +423,28 @@ void measure_clearances(host::Runtime& runtime, Locator& locator) {
   locator.has_clearances = true;
 }
 
-void locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-            const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& triangles) {
+Fitted<Done> locate(host::Runtime& runtime, const Locator& locator, const Buffer<cl_double>& queries,
+                    std::size_t m, const std::vector<std::size_t>& query_offsets,
+                    const Buffer<cl_int>& triangles) {
   Arena::Scope scope(runtime.arena());
-  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
-  if (!pass.is_off_grid) {
-    return find_triangles(runtime, locator, pass, true, kNoLimits, queries, m, triangles);
+  const Fitted<Pass> pass = prepare(runtime, locator, queries, m, query_offsets);
+  if (!pass) return pass.too_wide();
+  if (!pass->is_off_grid) {
+    find_triangles(runtime, locator, *pass, true, kNoLimits, queries, m, triangles);
+    return Done();
   }
   const auto found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
-  locate_off_grid(runtime, locator, pass, queries, m, found, triangles);
+  find_triangles(runtime, locator, *pass, false, kNoLimits, queries, m, found);
+  locate_off_grid(runtime, locator, *pass, queries, m, found, triangles);
+  return Done();
 }
 
-void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const Buffer<cl_int>& points) {
+Fitted<Done> nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& queries,
+                     std::size_t m, const std::vector<std::size_t>& query_offsets,
+                     const Buffer<cl_int>& points) {
   Arena::Scope scope(runtime.arena());
-  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
+  const Fitted<Pass> pass = prepare(runtime, locator, queries, m, query_offsets);
+  if (!pass) return pass.too_wide();
   const auto found = runtime.arena().allocate<cl_int>(m), unanswered = runtime.arena().allocate<cl_int>(1);
   const Tuning& tuning = tuning_of(runtime);
   const WalkLimits limits{tuning.levels_from, tuning.walk_most};
@@ -440,30 +453,21 @@ void nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_double>& 
     // A later call may use another queue.
     runtime.finish();
   }
-  find_triangles(runtime, locator, pass, false, limits, queries, m, found);
+  find_triangles(runtime, locator, *pass, false, limits, queries, m, found);
   runtime.fill(unanswered, 1, cl_int{0});
-  nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
+  nearest_points(runtime, locator, *pass, limits, m, found, points, unanswered);
   if (m > 0 && locator.most_triangles >= limits.long_from && locator.levels.count == 0 &&
       runtime.read_one(unanswered, 0) != 0) {
     make_levels(runtime, locator);
-    nearest_points(runtime, locator, pass, limits, m, found, points, unanswered);
+    nearest_points(runtime, locator, *pass, limits, m, found, points, unanswered);
   }
-  if (pass.is_off_grid) nearest_off_grid(runtime, locator, pass, queries, m, points);
-}
-
-LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
-                               const Buffer<cl_double>& queries, std::size_t m,
-                               const std::vector<std::size_t>& query_offsets) {
-  const Pass pass = prepare(runtime, locator, queries, m, query_offsets);
-  const auto found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
-  return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};
+  return pass->is_off_grid ? nearest_off_grid(runtime, locator, *pass, queries, m, points) : Done();
 }
 
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
-  const Pass pass = prepare(runtime, locator, queries, m, query_offsets, limits);
+  const Pass pass = *prepare(runtime, locator, queries, m, query_offsets, limits);
   const auto found = runtime.arena().allocate<cl_int>(m);
   find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
   return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};

@@ -35,13 +35,15 @@ struct Locator {
   bool has_clearances = false;               ///< measured only when queries for nearest points come
   /// For the search of nearest points. There are none until a query needs them.
   Levels levels{};
+  Triangulate triangulate = nullptr;         ///< makes the levels of samples
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
 };
 
 /// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
 /// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
 /// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
-Locator make_locator(host::Runtime& runtime, host::Arena& own, const points::DeviceMesh& mesh);
+geometry::Fitted<Locator> make_locator(host::Runtime& runtime, host::Arena& own,
+                                       const points::DeviceMesh& mesh, Triangulate triangulate);
 
 /// The same without trees, of points that are scaled already. Not for queries of callers.
 Locator make_walk_locator(host::Runtime& runtime, host::Arena& own, const points::DeviceMesh& mesh);
@@ -58,17 +60,20 @@ void measure_clearances(host::Runtime& runtime, Locator& locator);
 
 /// Finds for each query the triangle that contains it, the smallest one if there are several; -1 outside of
 /// the hull.
-void locate(host::Runtime& runtime, const Locator& locator, const host::Buffer<cl_double>& queries,
-            std::size_t m, const std::vector<std::size_t>& query_offsets,
-            const host::Buffer<cl_int>& triangles);
+geometry::Fitted<geometry::Done> locate(host::Runtime& runtime, const Locator& locator,
+                                        const host::Buffer<cl_double>& queries, std::size_t m,
+                                        const std::vector<std::size_t>& query_offsets,
+                                        const host::Buffer<cl_int>& triangles);
 
 /// Finds for each query the nearest point, the lexicographically first one if there are several, as the index
 /// of its representative; -1 if the set is empty. About O(log n) steps per query, except at a vertex with
 /// very many neighbours that are no fan and are all about as near. If a query is far to walk to, makes the
 /// locator's levels; until there are levels, waits once more. The first call measures the clearances, and
 /// waits once more for that.
-void nearest(host::Runtime& runtime, Locator& locator, const host::Buffer<cl_double>& queries, std::size_t m,
-             const std::vector<std::size_t>& query_offsets, const host::Buffer<cl_int>& points);
+geometry::Fitted<geometry::Done> nearest(host::Runtime& runtime, Locator& locator,
+                                         const host::Buffer<cl_double>& queries, std::size_t m,
+                                         const std::vector<std::size_t>& query_offsets,
+                                         const host::Buffer<cl_int>& points);
 
 /// The queries of one call, in the order in which kernels answer them, with their triangles.
 struct LocatedQueries {
@@ -81,8 +86,8 @@ struct LocatedQueries {
   host::Buffer<cl_int> found{};                ///< per place, the triangle; less than 0 outside of the hull
 };
 
-/// Finds the triangle of each query, for kernels that continue from there. The result is allocated in the
-/// runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
+/// Finds the triangle of each query with doubles, for kernels that continue from there. The result is
+/// allocated in the runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const host::Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets,

@@ -20,7 +20,7 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   runtime.write(given, 0, 2 * n, coordinates);
   const auto device_offsets = runtime.upload(scratch, std::vector<cl_int>(offsets.begin(), offsets.end()));
 
-  const points::UniformPoints input = points::make_uniform(runtime, given, offsets);
+  const points::UniformPoints input = *points::make_uniform(runtime, given, offsets);
   const auto pairs = input.coordinates.as<cl_double2>();
   work.bounds = input.scaling.bounds;
   const kernel::scaling scale = input.scaling.powers();
