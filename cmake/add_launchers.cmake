@@ -2,7 +2,8 @@
 # generates a C++ header with launchers for each kernel file of the directory: OUTPUT/flattened/cut.cl.hpp for
 # flattened/cut.cl. If another kernel file includes the file, that one is its program. For those of NATIVE, it also
 # generates C++ files that compile the kernels for the host, such as NATIVE_OUTPUT/blocks/mesh.cpp. Kernels of one name in
-# two files are an error: their launchers would be structs of one name, which the linker mixes up without a word.
+# two files are an error: their launchers would be structs of one name, which the linker mixes up without a word. So are
+# lists of arguments of one name in two headers named arguments.h.
 function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
   cmake_parse_arguments(PARSE_ARGV 3 GIVEN "" "NATIVE_OUTPUT" "FILES;NATIVE")
   foreach(FILE IN LISTS GIVEN_FILES)
@@ -27,6 +28,17 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
   endforeach()
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/launchers.cmake)
   file(GLOB LISTS CONFIGURE_DEPENDS ${DIRECTORY}/*/arguments.h)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${LISTS})
+  foreach(HEADER IN ITEMS ${LISTS})
+    file(READ ${HEADER} TEXT)
+    string(REGEX MATCHALL "#define [A-Z_]+\\(" NAMES "${TEXT}")
+    foreach(NAME IN LISTS NAMES)
+      if(DEFINED HEADER_OF_${NAME})
+        message(FATAL_ERROR "${HEADER} and ${HEADER_OF_${NAME}} both have a list of arguments: ${NAME}PREFIX)")
+      endif()
+      set(HEADER_OF_${NAME} ${HEADER})
+    endforeach()
+  endforeach()
   set(LAUNCHERS "")
   set(NATIVE_SOURCES "")
   foreach(FILE IN LISTS GIVEN_FILES)
