@@ -34,10 +34,18 @@ enum class Form {
   ArgReduce,   ///< the arguments of kernels/operations/segmented_arg_reduce.h
 };
 
+/// An array of the host itself, for native kernels that are launched without a runtime
+/// (host/native/launch.hpp). It must outlive the launch.
+template <typename T>
+struct Here {
+  T* values;
+};
+
 /// An array that a kernel reads. The launcher keeps it alive.
 template <typename T>
 struct In {
   In(const Buffer<T>& buffer) : memory(buffer.kept_memory()) {}
+  In(Here<T> here) : memory(std::shared_ptr<void>(), handle_of(here.values)) {}
   std::shared_ptr<_cl_mem> memory;
 };
 
@@ -45,6 +53,7 @@ struct In {
 template <typename T>
 struct Out {
   Out(const Buffer<T>& buffer) : memory(buffer.kept_memory()) {}
+  Out(Here<T> here) : memory(std::shared_ptr<void>(), handle_of(here.values)) {}
   std::shared_ptr<_cl_mem> memory;
 };
 

@@ -1,63 +1,45 @@
 #include "blocks/small.hpp"
 
-// clang-format off: before the headers of kernels
-#include "host/native/opencl.hpp"
-// clang-format on
-
 #include <algorithm>
 #include <numeric>
 
-#include "arithmetic/bit_account.h"
 #include "arithmetic/coordinates.h"
-#include "arithmetic/records.h"
 #include "blocks/codes.h"
-#include "blocks/halving.h"
-#include "blocks/pipeline.hpp"
-#include "blocks/rings_account.h"
-#include "blocks/rows.h"
 #include "blocks/run.hpp"
 #include "geometry/magnitudes.hpp"
+#include "host/native/launch.hpp"
 #include "host/of_thread.hpp"
-#include "mesh/halfedges.h"
+#include "launchers/blocks/divide.cl.hpp"
+#include "launchers/blocks/fans.cl.hpp"
+#include "launchers/blocks/mesh.cl.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"
-#include "mesh/rings.h"
-#include "operations/prefetch.h"
-#include "operations/search.h"
-#include "points/cut_tree.h"
-
-namespace flaunay::kernel {
-#include "host/native/words.h"
-//
-#include "blocks/divide.cl"
-#include "blocks/fans.cl"
-#include "blocks/mesh.cl"
-#include "points/inspect.cl"
-//
-#include "host/native/end_of_words.h"
-}  // namespace flaunay::kernel
 
 namespace flaunay::blocks {
 namespace {
 
+using host::here;
+using host::Here;
+using host::map_natively;
+
 // The arrays of a call, as the stages of mode blocks describe them; they are used by the next call of the
 // thread.
 struct Scratch {
-  std::vector<int> offsets, set_blocks;
-  std::vector<kernel::double2> vertices;
-  std::vector<int> source;
+  std::vector<cl_int> offsets, set_blocks;
+  std::vector<cl_double2> vertices;
+  std::vector<cl_int> source;
   std::vector<kernel::ring_edge> edges;
-  std::vector<int> vertex_edge;
+  std::vector<cl_int> vertex_edge;
   std::vector<kernel::solved_block> solved;
-  std::vector<int> distinct;
+  std::vector<cl_int> distinct;
   // Of the largest block.
-  std::vector<kernel::double2> points;
-  std::vector<int> point_source;
-  std::vector<kernel::int2> ranks;
-  std::vector<kernel::uchar> axes;
-  std::vector<kernel::uchar> inside, found;
-  std::vector<kernel::uint> first_rows;
-  std::vector<int> walked, hull_offsets, corner_of_edge;
+  std::vector<cl_double2> points;
+  std::vector<cl_int> point_source;
+  std::vector<cl_int2> ranks;
+  std::vector<cl_uchar> axes;
+  std::vector<cl_uchar> inside, found;
+  std::vector<cl_uint> first_rows;
+  std::vector<cl_int> walked, hull_offsets, corner_of_edge;
 
   std::size_t bytes() const {
     const auto sum = [](const auto&... arrays) {
@@ -70,23 +52,16 @@ struct Scratch {
 
 // Returns an array of this size, whose elements may have any value.
 template <typename T>
-T* sized(std::vector<T>& array, std::size_t size) {
+Here<T> sized(std::vector<T>& array, std::size_t size) {
   if (array.size() < size) array.resize(size);
-  return array.data();
+  return here(array.data());
 }
 
-// Runs a kernel with n work-items.
-template <typename Work>
-void for_each_item(std::size_t n, const Work& work) {
-  kernel::work_item = {0, n};
-  for (; kernel::work_item.number < n; ++kernel::work_item.number) work();
-}
-
-geometry::Magnitudes inspected(const double* coordinates, std::size_t first, std::size_t last) {
-  geometry::Magnitudes magnitudes;
-  kernel::inspect_points(static_cast<int>(first), static_cast<int>(last),
-                         reinterpret_cast<const kernel::double_bits*>(coordinates), &magnitudes.largest);
-  return magnitudes;
+// Returns a result of this size.
+template <typename T>
+Here<T> result_of(std::vector<T>& array, std::size_t size) {
+  array.resize(size);
+  return here(array);
 }
 
 }  // namespace
@@ -94,10 +69,10 @@ geometry::Magnitudes inspected(const double* coordinates, std::size_t first, std
 void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
                Triangulation& result) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
-  const auto point_count = static_cast<int>(n), set_count = static_cast<int>(sets);
-  const geometry::SetScalings scalings = geometry::set_scalings(
-      coordinates, offsets,
-      [coordinates](std::size_t first, std::size_t last) { return inspected(coordinates, first, last); });
+  const geometry::SetScalings scalings =
+      geometry::set_scalings(coordinates, offsets, [coordinates](std::size_t first, std::size_t last) {
+        return geometry::inspect(coordinates, first, last);
+      });
 
   Scratch& s = host::of_thread<Scratch>();
   s.offsets.assign(offsets.begin(), offsets.end());
@@ -106,82 +81,106 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   std::size_t largest = 0;
   for (std::size_t b = 0; b < sets; ++b) largest = std::max(largest, offsets[b + 1] - offsets[b]);
 
-  result.representatives.resize(n);
+  const auto representatives = result_of(result.representatives, n);
   std::iota(result.representatives.begin(), result.representatives.end(), 0);
-  int* const source = sized(s.source, n);
-  std::iota(source, source + n, 0);
-  kernel::double2* const vertices = sized(s.vertices, n);
+  const auto source = sized(s.source, n);
+  std::iota(s.source.begin(), s.source.begin() + static_cast<std::ptrdiff_t>(n), 0);
+  const auto vertices = sized(s.vertices, n);
   for (std::size_t set = 0; set < sets; ++set) {
     const kernel::scaling scale = kernel::scale_of(scalings.shift(set));
-    for (int i = s.offsets[set]; i < s.offsets[set + 1]; ++i) {
-      vertices[i] = kernel::scaled_point(i, coordinates, scale);
+    for (std::size_t i = offsets[set]; i < offsets[set + 1]; ++i) {
+      const kernel::double2 p = kernel::scaled_point(static_cast<int>(i), coordinates, scale);
+      s.vertices[i] = {p.x, p.y};
     }
   }
 
-  kernel::ring_edge* const edges = sized(s.edges, kernel::EDGES_PER_VERTEX * n);
-  int* const vertex_edge = sized(s.vertex_edge, n);
-  kernel::solved_block* const solved = sized(s.solved, sets);
-  s.distinct.resize(sets);
-  int next = 0;
-  kernel::uint account[kernel::RINGS_NUMBERS] = {};
-  for_each_item(1, [&] {
-    kernel::solve_blocks(1, set_count, static_cast<int>(largest), -1, s.offsets.data(), scalings.bounds,
-                         &next, vertices, source, result.representatives.data(), solved, s.distinct.data(),
-                         edges, vertex_edge, account, sized(s.points, largest),
-                         sized(s.point_source, largest), sized(s.ranks, 3 * largest), sized(s.axes, largest));
-  });
+  const auto edges = sized(s.edges, kernel::EDGES_PER_VERTEX * n);
+  const auto vertex_edge = sized(s.vertex_edge, n);
+  const auto solved = sized(s.solved, sets);
+  cl_int next = 0;
+  cl_uint counts[kernel::RINGS_NUMBERS] = {};
+  const auto account = here(counts);
+  host::run_natively(1,
+                     kernels::solve_blocks{.workers = 1,
+                                           .blocks = sets,
+                                           .capacity = largest,
+                                           .larger = -1,
+                                           .offsets = here(s.offsets),
+                                           .bounds = scalings.bounds,
+                                           .next = here(&next),
+                                           .block_points = {.points = vertices,
+                                                            .source = source,
+                                                            .representatives = representatives,
+                                                            .solved = solved,
+                                                            .distinct_counts = result_of(s.distinct, sets)},
+                                           .edges = edges,
+                                           .vertex_edge = vertex_edge,
+                                           .account = account,
+                                           .block_scratch = {.scratch_points = sized(s.points, largest),
+                                                             .scratch_source = sized(s.point_source, largest),
+                                                             .scratch_ranks = sized(s.ranks, 3 * largest)},
+                                           .scratch_axes = sized(s.axes, largest)});
 
-  const int pairs = kernel::PAIRS_PER_VERTEX * point_count;
-  if (account[kernel::RINGS_TIES] > 0) {
-    kernel::uchar* const inside = sized(s.inside, static_cast<std::size_t>(pairs));
-    kernel::uchar* const found = sized(s.found, static_cast<std::size_t>(pairs));
-    const auto for_each_pair = [pairs](const auto& work) {
-      for_each_item(static_cast<std::size_t>(pairs), work);
-    };
-    const double bound = scalings.bounds.circle;
-    for_each_pair([&] { kernel::find_inside(pairs, bound, account, vertices, edges, inside); });
-    for_each_pair([&] { kernel::find_inside_exactly(pairs, bound, account, vertices, edges, inside); });
-    for_each_item(n, [&] { kernel::leave_inside(point_count, account, edges, inside, vertex_edge); });
-    for_each_pair([&] { kernel::find_fans(pairs, account, vertices, edges, inside, found); });
-    for_each_pair([&] { kernel::build_fans(pairs, account, inside, found, edges); });
+  const std::size_t pairs = kernel::PAIRS_PER_VERTEX * n;
+  if (counts[kernel::RINGS_TIES] > 0) {
+    const auto inside = sized(s.inside, pairs), found = sized(s.found, pairs);
+    const float bound = scalings.bounds.circle;
+    map_natively(
+        pairs, kernels::find_inside{
+                   .bound = bound, .account = account, .points = vertices, .edges = edges, .inside = inside});
+    map_natively(
+        pairs, kernels::find_inside_exactly{
+                   .bound = bound, .account = account, .points = vertices, .edges = edges, .inside = inside});
+    map_natively(n, kernels::leave_inside{
+                        .account = account, .edges = edges, .inside = inside, .vertex_edge = vertex_edge});
+    map_natively(
+        pairs, kernels::find_fans{
+                   .account = account, .points = vertices, .edges = edges, .inside = inside, .found = found});
+    map_natively(pairs,
+                 kernels::build_fans{.account = account, .inside = inside, .found = found, .edges = edges});
   }
 
-  kernel::uint* const first_rows = sized(s.first_rows, n + 1);
-  for_each_item(n, [&] { kernel::vertex_triangles(point_count, vertex_edge, first_rows); });
-  s.walked.resize(sets);
-  for_each_item(sets, [&] {
-    kernel::mark_outside(set_count, s.set_blocks.data(), solved, vertex_edge, edges, first_rows,
-                         s.walked.data());
-  });
-  first_rows[n] = 0;
-  std::exclusive_scan(first_rows, first_rows + n + 1, first_rows, kernel::uint{0});
-  MeshSizes sizes = mesh_sizes(s.set_blocks, s.distinct, s.walked, first_rows[n]);
+  const auto first_rows = sized(s.first_rows, n + 1);
+  map_natively(n, kernels::vertex_triangles{.vertex_edge = vertex_edge, .counts = first_rows});
+  const auto set_blocks = here(s.set_blocks);
+  map_natively(sets, kernels::mark_outside{.set_blocks = set_blocks,
+                                           .solved = solved,
+                                           .vertex_edge = vertex_edge,
+                                           .edges = edges,
+                                           .counts = first_rows,
+                                           .hull_sizes = result_of(s.walked, sets)});
+  s.first_rows[n] = 0;
+  std::exclusive_scan(s.first_rows.data(), s.first_rows.data() + n + 1, s.first_rows.data(), cl_uint{0});
+  MeshSizes sizes = mesh_sizes(s.set_blocks, s.distinct, s.walked, s.first_rows[n]);
 
   const bool with_corners = options.neighbors || options.halfedges;
-  int* const corner_of_edge = with_corners ? sized(s.corner_of_edge, kernel::EDGES_PER_VERTEX * n) : nullptr;
-  result.triangles.resize(3 * sizes.triangles());
-  for_each_item(1, [&] {
-    kernel::write_triangles(pairs, pairs, with_corners, vertices, source, edges, first_rows,
-                            result.triangles.data(), corner_of_edge);
-  });
+  const auto corner_of_edge = sized(s.corner_of_edge, with_corners ? kernel::EDGES_PER_VERTEX * n : 0);
+  const std::size_t rows = 3 * sizes.triangles();
+  host::run_chunk_natively(pairs, kernels::write_triangles{.with_corners = with_corners,
+                                                           .points = vertices,
+                                                           .source = source,
+                                                           .edges = edges,
+                                                           .first_rows = first_rows,
+                                                           .triangles = result_of(result.triangles, rows),
+                                                           .corner_of_edge = corner_of_edge});
   if (options.neighbors) {
-    result.neighbors.resize(3 * sizes.triangles());
-    for_each_item(static_cast<std::size_t>(pairs),
-                  [&] { kernel::write_neighbors(pairs, corner_of_edge, result.neighbors.data()); });
+    map_natively(pairs, kernels::write_neighbors{.corner_of_edge = corner_of_edge,
+                                                 .neighbors = result_of(result.neighbors, rows)});
   }
   if (options.halfedges) {
-    result.halfedges.resize(3 * sizes.triangles());
-    for_each_item(static_cast<std::size_t>(pairs),
-                  [&] { kernel::write_halfedges(pairs, corner_of_edge, result.halfedges.data()); });
+    map_natively(pairs, kernels::write_halfedges{.corner_of_edge = corner_of_edge,
+                                                 .halfedges = result_of(result.halfedges, rows)});
   }
-  result.hull.resize(sizes.hull_vertices());
   s.hull_offsets.assign(sizes.hull_offsets.begin(), sizes.hull_offsets.end());
-  for_each_item(sets, [&] {
-    kernel::write_hulls(set_count, s.set_blocks.data(), solved, vertex_edge, edges, source,
-                        s.hull_offsets.data(), result.hull.data());
-  });
+  map_natively(sets, kernels::write_hulls{.set_blocks = set_blocks,
+                                          .solved = solved,
+                                          .vertex_edge = vertex_edge,
+                                          .edges = edges,
+                                          .source = source,
+                                          .offsets = here(s.hull_offsets),
+                                          .hull = result_of(result.hull, sizes.hull_vertices())});
   result.statistics.device_bytes_peak = s.bytes();
-  Outcome outcome{std::move(sizes), account[kernel::RINGS_UNDECIDED]};
+  Outcome outcome{std::move(sizes), counts[kernel::RINGS_UNDECIDED]};
   outcome.write(n, result.statistics);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);

@@ -1,5 +1,5 @@
-// Mode blocks for sets of at most a block's points each, on the calling thread: the kernels' text, compiled
-// as C++, without a runtime around it. What a launch costs would be most of the time of such a call.
+// Mode blocks for sets of at most a block's points each, on the calling thread: native kernels, launched
+// without a runtime, arenas and a frame, which would take half as long again as a call on 32 points.
 #pragma once
 
 #include <cstddef>
