@@ -6,9 +6,10 @@ namespace flaunay::blocks {
 
 void Milestones::set(const char* stage, double done) {
   if (!are_wanted()) return;
+  const cl_event reached = runtime_.mark();
   // Native kernels have run when they are enqueued.
-  if (runtime_.is_native()) return phases_.progress(stage, done);
-  milestones_.push_back({stage, done, std::shared_ptr<_cl_event>(runtime_.mark(), clReleaseEvent)});
+  if (reached == nullptr) return phases_.progress(stage, done);
+  milestones_.push_back({stage, done, std::shared_ptr<_cl_event>(reached, clReleaseEvent)});
 }
 
 void Milestones::report() {
