@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "geometry/sort.hpp"
+#include "statistics/counter.hpp"
 
 namespace flaunay::call {
 namespace {
 
 void count_sorting(const std::vector<std::size_t>& offsets, research::Work& work) {
-  research::OperationCounts& start = work.start[static_cast<std::size_t>(research::Component::cut)];
+  research::OperationCounts& start = statistics::part_of(work.start, research::Component::cut);
   std::uint64_t path = 0;
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
     start.arithmetic += geometry::comparisons_to_sort(offsets[s + 1] - offsets[s]);

@@ -38,6 +38,10 @@ class Counter {
   OperationCounts counts_;
 };
 
+inline OperationCounts& part_of(Work::Components& components, Component component) {
+  return components[static_cast<std::size_t>(component)];
+}
+
 /// The sum over all components and levels, which are done one after the other.
 inline OperationCounts sum_of(const Work& work) {
   OperationCounts sum;

@@ -58,7 +58,8 @@ void check_prune(Call& call, const ExactPoints& points, const PointTable& table,
   const HostPaths host_paths(points, frames, paths);
   const Paths uploaded = upload_paths(call, host_paths);
   level.projections = upload_projections(call, points, regions, frames);
-  const Pruned pruned = allocate_pruned(call.work, level);
+  const Pruned pruned =
+      allocate_pruned(call.work, level, call.work.scratch().allocate<cl_uchar>(level.points + level.corners));
   prune(call.work, table, level, uploaded, keep_on, pruned);
   ASSERT_EQ(pruned.elements, level.points + level.corners);
   const auto flags = call.read(pruned.flags, pruned.elements);

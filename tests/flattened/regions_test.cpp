@@ -18,7 +18,6 @@
 #include "call/modes.hpp"
 #include "modes/dwyer/dwyer.hpp"
 #include "modes/flattened/levels.hpp"
-#include "modes/flattened/partition.hpp"
 #include "modes/partition/regions.hpp"
 #include "tests/flattened/support.hpp"
 #include "tests/support/neighbors_twin.hpp"

@@ -25,16 +25,6 @@ using namespace statistics;
 
 namespace {
 
-OperationCounts& of(Work::Components& components, Component component) {
-  return components[static_cast<std::size_t>(component)];
-}
-
-// The nodes of a level are independent: their counts are added, and the level has the longest critical path.
-void add(OperationCounts& level, OperationCounts node, std::uint64_t critical_path) {
-  node.critical_path = critical_path;
-  add_beside(level, node);
-}
-
 enum Axis { kX = 0, kY = 1 };
 constexpr Axis other(Axis axis) { return axis == kX ? kY : kX; }
 
@@ -88,7 +78,8 @@ class Builder {
     if (work_ != nullptr) {
       OperationCounts counts;
       counts.arithmetic = comparisons_to_sort(n_);
-      add(of(work_->start, Component::cut), counts, depth_of_sort(n_));
+      counts.critical_path = depth_of_sort(n_);
+      add_beside(part_of(work_->start, Component::cut), counts);
     }
   }
 
@@ -113,13 +104,13 @@ class Builder {
     counts.arithmetic = comparisons;
     counts.orientations = rings_.counted.orientations;
     counts.circles = rings_.counted.circles;
-    record(depth, Component::merge, counts, counts.operations());
+    counts.critical_path = counts.operations();
+    record(depth, Component::merge, counts);
   }
 
-  void record(std::size_t depth, Component component, const OperationCounts& counts,
-              std::uint64_t critical_path) {
+  void record(std::size_t depth, Component component, const OperationCounts& counts) {
     if (work_->levels.size() <= depth) work_->levels.resize(depth + 1);
-    add(of(work_->levels[depth], component), counts, critical_path);
+    add_beside(part_of(work_->levels[depth], component), counts);
   }
 
   // Splits both orders: that of the axis by position, the other one by a stable split.
@@ -140,7 +131,8 @@ class Builder {
     if (work_ != nullptr) {
       OperationCounts counts;
       counts.arithmetic = end - begin;
-      record(depth, Component::cut, counts, 1 + 2 * log2_ceiling(end - begin));
+      counts.critical_path = 1 + 2 * log2_ceiling(end - begin);
+      record(depth, Component::cut, counts);
     }
   }
 

@@ -45,7 +45,7 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   project(work, table, planar);
   const Paths paths = hulls(work, table, planar, ignored);
 
-  const Pruned on = allocate_pruned(work, planar);
+  const Pruned on = allocate_pruned(work, planar, scratch.allocate<cl_uchar>(2 * n));
   prune(work, table, planar, paths, true, on);
   const auto counts = scratch.allocate<cl_uint>(2 * n + 1);
   host::count_flags(runtime, on.flags, 2 * n, 1, counts);

@@ -62,7 +62,7 @@ void Counting::end_step(int level) {
     counts.critical_path = std::max(counts.critical_path, depth_[c]);
     depth_[c] = 0;
   }
-  components[static_cast<std::size_t>(Component::cut)].arithmetic += sort_comparisons_;
+  part_of(components, Component::cut).arithmetic += sort_comparisons_;
   sort_comparisons_ = 0;
 }
 

@@ -41,9 +41,7 @@ Paths pruned_hull(Workspace& work, const PointTable& table, const Level& level, 
   {
     Arena::Scope scope(scratch);
     const Paths paths = chord_paths(work, table, level, statistics);
-    const std::size_t elements = level.points + level.corners;
-    const Pruned pruned{elements, flags, scratch.allocate<cl_int>(elements),
-                        scratch.allocate<cl_double>(elements)};
+    const Pruned pruned = allocate_pruned(work, level, flags);
     prune(work, table, level, paths, false, pruned);
     survivors = gather_below(work, table, level, paths, pruned, *work.children);
   }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "geometry/point_sets.hpp"
 #include "geometry/region_arrays.hpp"
 #include "modes/flattened/stages.hpp"
 
@@ -69,5 +70,14 @@ class Recursion {
   std::size_t largest_ = 0;  ///< no first region has more internal points
   std::size_t finished_points_ = 0;
 };
+
+/// Copies the distinct points to the host.
+geometry::PointSets to_host(Workspace& work, const PointTable& table,
+                            const std::vector<std::int32_t>& representatives);
+
+/// Converts regions from ids to indices of input points. In Region::points, internal points precede those of
+/// the border.
+std::vector<research::Region> to_input(Workspace& work, const PointTable& table,
+                                       const geometry::RegionArrays& regions);
 
 }  // namespace flaunay::flattened

@@ -1,6 +1,7 @@
-#include "modes/flattened/partition.hpp"
-
+// Partitions: the regions that are left after a few levels, for the host.
 #include <algorithm>
+
+#include "modes/flattened/levels.hpp"
 
 namespace flaunay::flattened {
 using namespace geometry;

@@ -51,11 +51,10 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
   return points;
 }
 
-Pruned allocate_pruned(Workspace& work, const Level& level) {
-  Arena& scratch = work.scratch();
+Pruned allocate_pruned(Workspace& work, const Level& level, const Buffer<cl_uchar>& flags) {
   const std::size_t elements = level.points + level.corners;
-  return {elements, scratch.allocate<cl_uchar>(elements), scratch.allocate<cl_int>(elements),
-          scratch.allocate<cl_double>(elements)};
+  return {elements, flags, work.scratch().allocate<cl_int>(elements),
+          work.scratch().allocate<cl_double>(elements)};
 }
 
 namespace {

@@ -7,7 +7,6 @@
 
 #include "geometry/mesh.hpp"
 #include "modes/flattened/levels.hpp"
-#include "modes/flattened/partition.hpp"
 #include "modes/flattened/regions.hpp"
 #include "modes/flattened/stages.hpp"
 #include "statistics/phases.hpp"
@@ -37,12 +36,12 @@ bool ends_in_blocks(const research::Options& options) {
          !options.count;
 }
 
-// The state of one call: the sorted points, and statistics so far.
+// The state of one call: the sorted points, and the result so far.
 class Call {
  public:
   Call(host::Runtime& runtime, const Memory& memory, const double* coordinates,
-       const std::vector<std::size_t>& offsets, const research::Options& wanted, Statistics& statistics,
-       std::vector<LevelStatistics>& levels, Work& work_done, std::vector<std::int32_t>& representatives);
+       const std::vector<std::size_t>& offsets, const research::Options& options,
+       research::Triangulation& result);
 
   /// To be called after the last level: checks invariants, and reads the largest regions and the counts.
   void end_levels(std::size_t done, std::size_t wanted);
@@ -50,7 +49,7 @@ class Call {
 
   statistics::Phases phases;
   const research::Options& options;
-  Statistics& statistics;
+  research::Triangulation& result;
 
  private:
   Arena::Scope scope_;
@@ -64,13 +63,13 @@ class Call {
 };
 
 Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinates,
-           const std::vector<std::size_t>& offsets, const research::Options& wanted, Statistics& noted,
-           std::vector<LevelStatistics>& levels, Work& work_done, std::vector<std::int32_t>& representatives)
+           const std::vector<std::size_t>& offsets, const research::Options& wanted,
+           research::Triangulation& made)
     : phases(wanted, [&runtime] { return runtime.working_clock(); }),
       options(wanted),
-      statistics(noted),
+      result(made),
       scope_(memory.persistent),
-      work{runtime, memory.persistent, levels} {
+      work{runtime, memory.persistent, made.levels} {
   const std::size_t n = offsets.back();
   Arena& persistent = memory.persistent;
   persistent.reserve(n * kPersistentBytesPerPoint);
@@ -89,20 +88,20 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
   runtime.fill(work.broken, 1, cl_int{0});
   runtime.fill(work.undecided, 1, cl_uint{0});
   if (options.count) {
-    counting_ = std::make_unique<Counting>(runtime, persistent, work_done);
+    counting_ = std::make_unique<Counting>(runtime, persistent, result.work);
     work.counting = counting_.get();
   }
   phases.progress("sorting", 0.0);
-  representatives.resize(n);
-  table = ingest(work, coordinates, offsets, representatives.data());
+  result.representatives.resize(n);
+  table = ingest(work, coordinates, offsets, result.representatives.data());
   if (counting_) {
     const std::vector<cl_int> distinct = read_all(work, table.set_offsets, table.sets + 1);
     counting_->add_sort(offsets);
     counting_->add_sort({distinct.begin(), distinct.end()});
   }
-  statistics.device = runtime.name();
-  statistics.points = n;
-  statistics.duplicates = n - table.count;
+  result.statistics.device = runtime.name();
+  result.statistics.points = n;
+  result.statistics.duplicates = n - table.count;
   phases.end("sort");
   phases.progress("borders", kSorted);
 }
@@ -127,6 +126,7 @@ void Call::end_levels(std::size_t done, std::size_t wanted) {
 }
 
 void Call::finish_statistics(const Borders& borders) {
+  Statistics& statistics = result.statistics;
   statistics.undecided += work.runtime.read_one(work.undecided, 0);
   statistics.triangles = borders.triangles;
   statistics.hull_vertices = borders.size;
@@ -135,19 +135,16 @@ void Call::finish_statistics(const Borders& borders) {
 
 // Copies all results to the host.
 void write_result(Call& call, const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
-                  const Borders& borders, research::Triangulation& result) {
-  Workspace& work = call.work;
-  const PointTable& table = call.table;
+                  const Borders& borders) {
   call.phases.progress("output", kCanonical);
-  read_rows(work, table, triangles, twins, borders.triangles, call.options, result);
-  result.hull = read_indices(work, table, borders.hull, borders.size);
-  result.hull_offsets = borders.hull_offsets;
+  read_rows(call.work, call.table, triangles, twins, borders.triangles, call.options, call.result);
+  call.result.hull = read_indices(call.work, call.table, borders.hull, borders.size);
+  call.result.hull_offsets = borders.hull_offsets;
   call.phases.end("output");
 }
 
 // Runs the levels to the bottom. Then makes the triangles canonical and finds neighbours.
-void finish_levels(Call& call, Recursion& recursion, const Borders& borders,
-                   research::Triangulation& result) {
+void finish_levels(Call& call, Recursion& recursion, const Borders& borders) {
   if (call.options.mode == research::Mode::flattened) {
     recursion.flattened();
   } else {
@@ -162,17 +159,16 @@ void finish_levels(Call& call, Recursion& recursion, const Borders& borders,
   const Buffer<cl_int>& triangles = recursion.triangles();
   Arena::Scope scope(work.scratch());
   const auto twins = work.scratch().allocate<cl_int>(3 * count);
-  result.triangle_offsets = order_by_sets(work, table, triangles, {}, count);
+  call.result.triangle_offsets = order_by_sets(work, table, triangles, {}, count);
   match_edges(work, triangles, count, twins);
   canonicalize(work, table, triangles, count, twins);
   check_invariants(work);
   call.phases.end("canonical form");
-  write_result(call, triangles, twins, borders, result);
+  write_result(call, triangles, twins, borders);
 }
 
 // Runs levels until regions are as small as blocks, which the solver of blocks triangulates.
-void finish_blocks(Call& call, Recursion& recursion, const Borders& borders, const BlockSolver& solver,
-                   research::Triangulation& result) {
+void finish_blocks(Call& call, Recursion& recursion, const Borders& borders, const BlockSolver& solver) {
   Workspace& work = call.work;
   const PointTable& table = call.table;
   recursion.flattened(recursion.levels_to(tuning_of(work.runtime).region_points));
@@ -186,23 +182,24 @@ void finish_blocks(Call& call, Recursion& recursion, const Borders& borders, con
   const SolvedRegions solved = solve_regions(work, table, recursion.level(), recursion.other_arena(), solver,
                                              triangles, recursion.done(), twins);
   call.end_levels(recursion.done() + solved.triangles, borders.triangles);
-  call.statistics.undecided += solved.undecided;
+  call.result.statistics.undecided += solved.undecided;
   call.phases.end("regions");
   call.phases.progress("canonical form", kTriangulated);
   if (match_loose_edges(work, table, triangles, count, twins) || solved.ties > 0) {
     canonicalize(work, table, triangles, count, twins);
     check_invariants(work);
   }
-  result.triangle_offsets = order_by_sets(work, table, triangles, twins, count);
+  call.result.triangle_offsets = order_by_sets(work, table, triangles, twins, count);
   call.phases.end("canonical form");
-  write_result(call, triangles, twins, borders, result);
+  write_result(call, triangles, twins, borders);
 }
 
 // Runs a few levels on the device. The host triangulates the remaining regions and makes the result
 // canonical.
 void finish_partition(Call& call, Recursion& recursion, const Borders& borders, int levels,
-                      const SolveRegions& solve_regions, research::Triangulation& result) {
+                      const SolveRegions& solve_regions) {
   const research::Options& options = call.options;
+  research::Triangulation& result = call.result;
   recursion.flattened(std::min<int>(levels, kMostLevels));
   const geometry::PointSets sets = to_host(call.work, call.table, result.representatives);
   std::vector<std::int32_t> triangles = recursion.read_triangles();
@@ -215,7 +212,7 @@ void finish_partition(Call& call, Recursion& recursion, const Borders& borders, 
   call.end_levels(triangles.size() / 3, borders.triangles);
   Work& work = result.work;
   Work::Components& last = work.levels.empty() ? work.start : work.levels.back();
-  statistics::add_beside(last[static_cast<std::size_t>(Component::endgame)], counts);
+  add_beside(part_of(last, Component::endgame), counts);
   call.phases.end("regions");
   call.phases.progress("canonical form", kTriangulated);
   Triangulation finished = finish(sets, std::move(triangles), {}, options);
@@ -229,19 +226,18 @@ void finish_partition(Call& call, Recursion& recursion, const Borders& borders, 
 void run(host::Runtime& runtime, const Memory& memory, const double* coordinates,
          const std::vector<std::size_t>& offsets, const research::Options& options, const Solvers& solvers,
          research::Triangulation& result) {
-  Call call(runtime, memory, coordinates, offsets, options, result.statistics, result.levels, result.work,
-            result.representatives);
+  Call call(runtime, memory, coordinates, offsets, options, result);
   const bool ends_early = ends_in_blocks(options) || options.mode == research::Mode::partition;
   Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd},
                       ends_early ? kPartitioned : kTriangulated);
   const Borders borders = recursion.begin();
   call.phases.end("borders");
   if (options.mode == research::Mode::partition) {
-    finish_partition(call, recursion, borders, solvers.partition_levels, solvers.regions, result);
+    finish_partition(call, recursion, borders, solvers.partition_levels, solvers.regions);
   } else if (ends_in_blocks(options)) {
-    finish_blocks(call, recursion, borders, solvers.blocks, result);
+    finish_blocks(call, recursion, borders, solvers.blocks);
   } else {
-    finish_levels(call, recursion, borders, result);
+    finish_levels(call, recursion, borders);
   }
   call.finish_statistics(borders);
   call.phases.progress("output", 1);
@@ -249,10 +245,8 @@ void run(host::Runtime& runtime, const Memory& memory, const double* coordinates
 
 void partition(host::Runtime& runtime, const Memory& memory, const double* coordinates, std::size_t n,
                int levels, const research::Options& options, research::Partition& result) {
-  std::vector<std::int32_t> representatives;
-  Work uncounted;
-  Call call(runtime, memory, coordinates, {0, n}, options, result.statistics, result.levels, uncounted,
-            representatives);
+  research::Triangulation made;
+  Call call(runtime, memory, coordinates, {0, n}, options, made);
   Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd}, kTriangulated);
   const Borders borders = recursion.begin();
   call.phases.end("borders");
@@ -262,6 +256,8 @@ void partition(host::Runtime& runtime, const Memory& memory, const double* coord
   result.triangles = read_indices(call.work, call.table, recursion.triangles(), 3 * recursion.done());
   call.phases.end("levels");
   call.finish_statistics(borders);
+  result.statistics = std::move(made.statistics);
+  result.levels = std::move(made.levels);
   call.phases.progress("levels", 1);
 }
 

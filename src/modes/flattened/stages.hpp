@@ -174,7 +174,7 @@ struct Pruned {
   Buffer<cl_int> chord{};
   Buffer<cl_double> depth{};
 };
-Pruned allocate_pruned(Workspace& work, const Level& level);
+Pruned allocate_pruned(Workspace& work, const Level& level, const Buffer<cl_uchar>& flags);
 /// Compares all elements with the paths, and flags those below them. keep_on: also flags those on the paths.
 void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
            const Pruned& pruned);

@@ -73,10 +73,8 @@ class Recursion {
 
   void note_region(const Region& region, int level);
   LevelStatistics& level_statistics(int level) { return result_.levels[level]; }
-  OperationCounts& start(Component component) { return work_.start[static_cast<std::size_t>(component)]; }
-  void note_work(Component component, int level, const Counter& counter) {
-    auto& components = level == kStart ? work_.start : work_.levels[level];
-    add_beside(components[static_cast<std::size_t>(component)], counter.counts());
+  void note_work(Component component, int level, const OperationCounts& counts) {
+    add_beside(part_of(level == kStart ? work_.start : work_.levels[level], component), counts);
   }
 
   const PointSets& sets_;
@@ -95,12 +93,12 @@ Region Recursion::whole_set(std::int32_t low, std::int32_t high) {
   Counter sorting;
   Region region;
   region.border = first_border(sets_, low, high, options_.hull, hull);
-  add_beside(start(Component::hull), hull);
+  note_work(Component::hull, kStart, hull);
   for (const Corner& corner : region.border) on_border_[corner.vertex] = 1;
   const auto count = static_cast<std::size_t>(high - low);
   sorting.arithmetic(comparisons_to_sort(count));
   sorting.critical_path(depth_of_sort(count));
-  note_work(Component::cut, kStart, sorting);
+  note_work(Component::cut, kStart, sorting.counts());
   if (region.border.empty()) return region;
   std::vector<Keyed> by_y;
   for (std::int32_t id = low; id < high; ++id) {
@@ -126,7 +124,7 @@ Line Recursion::cut(const Region& region, int level) {
     Counter counter;
     counter.arithmetic(kernel::CUT_OPERATIONS);
     counter.sequential();
-    note_work(Component::cut, level, counter);
+    note_work(Component::cut, level, counter.counts());
   }
   return {axis, axis == kernel::AXIS_X ? x(count / 2) : y(count / 2)};
 }
@@ -154,7 +152,7 @@ LowerHull Recursion::dividing_path(const Region& region, const Line& line, int l
   counter.critical_path(log2_ceiling(points.corners.size()));
   LowerHull hull = lower_hull(predicates_, points, options_.hull, counter, level_statistics(level));
   level_statistics(level).path_vertices += hull.path.size();
-  note_work(Component::hull, level, counter);
+  note_work(Component::hull, level, counter.counts());
   return hull;
 }
 
@@ -170,7 +168,7 @@ std::array<Region, 2> Recursion::split(const Region& region, const Line& line, c
   Counter merge_counter, split_counter;
   SplitBorder borders =
       merge_border(predicates_, points_, line, region.border, hull, is_internal, merge_counter);
-  note_work(Component::merge, level, merge_counter);
+  note_work(Component::merge, level, merge_counter.counts());
 
   std::array<Region, 2> parts;
   for (int side = 0; side < 2; ++side) parts[side].border = std::move(borders[side]);
@@ -190,14 +188,14 @@ std::array<Region, 2> Recursion::split(const Region& region, const Line& line, c
     if (!on_border_[id]) parts[side_of(id)].by_y.push_back(id);
   }
   split_counter.critical_path(1 + scan_depth(region.by_x.size()));
-  note_work(Component::split, level, split_counter);
+  note_work(Component::split, level, split_counter.counts());
   return parts;
 }
 
 void Recursion::finish(const Border& border, int level) {
   Counter counter;
   end_game(predicates_, points_, border, solve_large_, triangles_, counter);
-  note_work(Component::endgame, level, counter);
+  note_work(Component::endgame, level, counter.counts());
   const std::size_t size = std::min<std::size_t>(border.size(), kernel::MOST_COUNTED_SIZE);
   if (work_.endgame_sizes.size() <= size) work_.endgame_sizes.resize(size + 1);
   ++work_.endgame_sizes[size];
