@@ -24,8 +24,7 @@
 // 2. interpolate_natural_exactly decides exactly. It multiplies and adds positive numbers with small relative errors
 //    alone, which interpolate/determinants.h computes, so that its weights have small relative errors, whatever the
 //    points.
-// docs/exactness.md has the bounds. Lists of neighbours with weights take count_neighbors and, after a scan of the
-// counts, list_neighbors. Each does both for its query, one after the other.
+// docs/exactness.md has the bounds.
 
 #include "arithmetic/coordinates.h"
 #include "interpolate/arguments.h"
@@ -52,27 +51,14 @@ typedef struct {
 // What becomes of the weights
 
 typedef struct {
-  int count;                    // of the neighbours so far
-  int columns, is_by_vertex;    // TO_VALUES
+  int columns, is_by_vertex;
   global const double* values;  // a row per point, or per vertex
   global double* row;
-  global int* neighbors;  // TO_LIST
-  global double* weights;
 } receiver;
 
-#define TO_NOTHING 0
-#define TO_VALUES 1
-#define TO_LIST 2
-
-static inline void give(receiver* to, int what, natural_mesh mesh, int vertex, double weight) {
-  if (what == TO_VALUES) {
-    global const double* row = to->values + (size_t)(to->is_by_vertex ? vertex : mesh.source[vertex]) * to->columns;
-    for (int c = 0; c < to->columns; ++c) to->row[c] += weight * row[c];
-  } else if (what == TO_LIST) {
-    to->neighbors[to->count] = mesh.source[vertex];
-    to->weights[to->count] = weight;
-  }
-  ++to->count;
+static inline void give(receiver* to, natural_mesh mesh, int vertex, double weight) {
+  global const double* row = to->values + (size_t)(to->is_by_vertex ? vertex : mesh.source[vertex]) * to->columns;
+  for (int c = 0; c < to->columns; ++c) to->row[c] += weight * row[c];
 }
 
 static inline void clear_row(receiver* to, double value) {
@@ -80,12 +66,8 @@ static inline void clear_row(receiver* to, double value) {
 }
 
 // What the receiver has got by the sum of the weights.
-static inline void divide_by(receiver* to, int what, double sum) {
-  if (what == TO_VALUES) {
-    for (int c = 0; c < to->columns; ++c) to->row[c] /= sum;
-  } else if (what == TO_LIST) {
-    for (int k = 0; k < to->count; ++k) to->weights[k] /= sum;
-  }
+static inline void divide_by(receiver* to, double sum) {
+  for (int c = 0; c < to->columns; ++c) to->row[c] /= sum;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -99,12 +81,12 @@ static inline double2 place_of(natural_mesh mesh, int vertex) { return mesh.unit
 
 // At a vertex, and on an edge of the hull, where both methods tend to the linear
 // interpolation between its ends. Returns 0 if q lies on neither, UNDECIDED, or WEIGHED.
-static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exactly, int what, receiver* to) {
+static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exactly, receiver* to) {
   const face f = mesh.faces[start];
   for (int k = 0; k < 3; ++k) {
     const double2 at = place_of(mesh, f.corner[k]);
     if (at.x == q.x && at.y == q.y) {
-      give(to, what, mesh, f.corner[k], 1.0);
+      give(to, mesh, f.corner[k], 1.0);
       return WEIGHED;
     }
   }
@@ -117,8 +99,8 @@ static inline int weigh_on_hull(natural_mesh mesh, double2 q, int start, int exa
     if (side != 0) continue;
     const int along_x = fabs(b.x - a.x) >= fabs(b.y - a.y);
     const double behind = fabs(along_x ? q.x - a.x : q.y - a.y), ahead = fabs(along_x ? b.x - q.x : b.y - q.y);
-    give(to, what, mesh, from, ahead / (behind + ahead));
-    give(to, what, mesh, to_vertex, behind / (behind + ahead));
+    give(to, mesh, from, ahead / (behind + ahead));
+    give(to, mesh, to_vertex, behind / (behind + ahead));
     return WEIGHED;
   }
   return 0;
@@ -234,10 +216,10 @@ static inline double laplace_weight(sight v, centre from, centre to, estimate* a
   return (v.at.x * along.y - v.at.y * along.x) * inverse;
 }
 
-static inline void give_estimate(receiver* to, int what, natural_mesh mesh, sight v, double weight, estimate* all) {
+static inline void give_estimate(receiver* to, natural_mesh mesh, sight v, double weight, estimate* all) {
   const double positive = max(weight, 0.0) * all->unit;
   all->weights += positive;
-  give(to, what, mesh, v.vertex, positive);
+  give(to, mesh, v.vertex, positive);
 }
 
 // A triangle of the cavity that the walk has entered: its centre, and its last edge, which leads to a vertex and has
@@ -270,8 +252,7 @@ static inline void enter(entered* top, centre middle, sight to, int triangle, in
 // Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. Triangles that the
 // walk is in, from `start` on, are kept, so that each is tested once. A piece takes the centres of the triangles that
 // the walk is in while it is at a vertex. Gives weights, of which *all has the sum. Returns WEIGHED or UNDECIDED.
-static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int method, int what, estimate* all,
-                                   receiver* to) {
+static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int method, estimate* all, receiver* to) {
   entered path[MOST_ENTERED];
   const face f = mesh.faces[start];
   // The edge from x to y, which has triangle t on its left and u beyond.
@@ -321,9 +302,9 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
       is_first = 0;
     } else if (is_sibson) {
       go_to(&around, before, all);
-      give_estimate(to, what, mesh, x, around.area, all);
+      give_estimate(to, mesh, x, around.area, all);
     } else {
-      give_estimate(to, what, mesh, x, laplace_weight(x, before, after, all), all);
+      give_estimate(to, mesh, x, laplace_weight(x, before, after, all), all);
     }
     before = after;
     around.area = 0.0;
@@ -343,25 +324,25 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
   if (is_sibson) {
     around.last = first_after;
     go_to(&around, before, all);
-    give_estimate(to, what, mesh, first, around.area + first_area, all);
+    give_estimate(to, mesh, first, around.area + first_area, all);
   } else {
-    give_estimate(to, what, mesh, first, laplace_weight(first, before, first_after, all), all);
+    give_estimate(to, mesh, first, laplace_weight(first, before, first_after, all), all);
   }
   return WEIGHED;
 }
 
 // Returns WEIGHED, or UNDECIDED if the weights are not certain.
-static inline int weigh_by_estimate(natural_mesh mesh, double2 q, int start, int method, int what, receiver* to) {
-  const int on_hull = weigh_on_hull(mesh, q, start, 0, what, to);
+static inline int weigh_by_estimate(natural_mesh mesh, double2 q, int start, int method, receiver* to) {
+  const int on_hull = weigh_on_hull(mesh, q, start, 0, to);
   if (on_hull != 0) return on_hull;
   estimate all = {0.0, 0.0, 1.0, 0, 1};
-  const int outcome = estimate_weights(mesh, q, start, method, what, &all, to);
+  const int outcome = estimate_weights(mesh, q, start, method, &all, to);
   const double errors = all.errors * (1.0 + 0.125 * all.steps) * all.unit;
   if (outcome != WEIGHED || !all.is_sound || !(all.weights > LEAST_WEIGHTS * all.unit) ||
       !(errors <= NATURAL_ERROR / (2.0 * ROUNDOFF) * all.weights)) {
     return UNDECIDED;
   }
-  divide_by(to, what, all.weights);
+  divide_by(to, all.weights);
   return WEIGHED;
 }
 
@@ -497,16 +478,16 @@ static inline int weigh_exactly_at(natural_mesh mesh, double2 q, int method, sta
   if (method == SIBSON) {
     *part = wide_sum(*part, wide_term(q, p, v, c, at->a.at, q, behind, wide_area(q, v, c)));
     *part = wide_quotient(*part, wide_area(q, p, v));
-  } else if (method == LAPLACE) {
+  } else {
     *part = wide_quotient(wide_circle(q, p, v, c), wide_product(wide_area(q, p, v), wide_area(q, v, c)));
   }
   return 1;
 }
 
-// Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. whole: the sum of
-// the weights if it is known, else 0, and then no weights are given; sum: that sum. Returns WEIGHED, or ASTRAY after so
+// Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. gives: whether
+// weights are given, of which `whole` is the sum; sum: that sum. Returns WEIGHED, or ASTRAY after so
 // many steps, which happens only if the mesh is no Delaunay triangulation.
-static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int steps, int method, int what, wide whole,
+static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int steps, int method, int gives, wide whole,
                                wide* sum, receiver* to) {
   stand at;
   at.t = start;
@@ -522,7 +503,7 @@ static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int step
     wide part;
     if (!weigh_exactly_at(mesh, q, method, &at, &steps, &part)) return ASTRAY;
     *sum = wide_sum(*sum, part);
-    give(to, what, mesh, vertex, what == TO_NOTHING ? 0.0 : narrow_quotient(part, whole));
+    if (gives) give(to, mesh, vertex, narrow_quotient(part, whole));
     const corner_point apex = at.a;
     at.a = at.v;
     at.v = at.c;
@@ -537,16 +518,13 @@ static inline int most_steps(int triangles) { return (int)min((long)INT_MAX, 4L 
 
 // One walk for the sum of the weights, and one for the weights. triangles: of the query's set. Returns WEIGHED or
 // ASTRAY.
-static inline int weigh_exactly(natural_mesh mesh, double2 q, int start, int triangles, int method, int what,
-                                receiver* to) {
-  to->count = 0;
-  if (weigh_on_hull(mesh, q, start, 1, what, to) == WEIGHED) return WEIGHED;
+static inline int weigh_exactly(natural_mesh mesh, double2 q, int start, int triangles, int method, receiver* to) {
+  if (weigh_on_hull(mesh, q, start, 1, to) == WEIGHED) return WEIGHED;
   const int steps = most_steps(triangles);
   const wide none = {0.0, NO_EXPONENT};
   wide whole = none, again = none;
-  if (walk_exactly(mesh, q, start, steps, method, TO_NOTHING, none, &whole, to) != WEIGHED) return ASTRAY;
-  to->count = 0;
-  return walk_exactly(mesh, q, start, steps, method, what, whole, &again, to);
+  if (walk_exactly(mesh, q, start, steps, method, 0, none, &whole, to) != WEIGHED) return ASTRAY;
+  return walk_exactly(mesh, q, start, steps, method, 1, whole, &again, to);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -592,11 +570,11 @@ kernel void interpolate_natural(int n, PLACED_QUERIES(), int columns, int is_by_
     fetch_query(i, n, found, faces, points);
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {0, columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0};
+    receiver to = {columns, is_by_vertex, values, results + (size_t)order[i] * columns};
     int outcome = WEIGHED;
     if (found[i] >= 0) {
       clear_row(&to, 0.0);
-      outcome = weigh_by_estimate(mesh, placed[i], found[i], method, TO_VALUES, &to);
+      outcome = weigh_by_estimate(mesh, placed[i], found[i], method, &to);
     } else {
       clear_row(&to, outside);
     }
@@ -612,51 +590,10 @@ kernel void interpolate_natural_exactly(int n, PLACED_QUERIES(), int columns, in
   if (i < n && left[i]) {
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {0, columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0};
+    receiver to = {columns, is_by_vertex, values, results + (size_t)order[i] * columns};
     clear_row(&to, 0.0);
-    if (weigh_exactly(mesh, placed[i], found[i], records[s].triangles, method, TO_VALUES, &to) != WEIGHED) {
+    if (weigh_exactly(mesh, placed[i], found[i], records[s].triangles, method, &to) != WEIGHED) {
       clear_row(&to, outside);
-    }
-  }
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Lists of neighbours
-
-// counts, by query: the neighbours; none outside of the hull.
-kernel void count_neighbors(int n, PLACED_QUERIES(), global const mesh_set* restrict records, FACES(),
-                            global const int* restrict found, global uint* restrict counts) {
-  const int i = get_global_id(0);
-  if (i < n) {
-    const int s = set_of_query(i, sets, query_offsets);
-    const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {0, 0, 0, 0, 0, 0, 0};
-    if (found[i] >= 0 && weigh_on_hull(mesh, placed[i], found[i], 1, TO_NOTHING, &to) != WEIGHED) {
-      const int steps = most_steps(records[s].triangles);
-      wide sum = {0.0, NO_EXPONENT};
-      if (walk_exactly(mesh, placed[i], found[i], steps, NO_WEIGHTS, TO_NOTHING, sum, &sum, &to) != WEIGHED) {
-        to.count = 0;
-      }
-    }
-    counts[order[i]] = (uint)to.count;
-  }
-}
-
-// offsets, by query: where its neighbours begin.
-kernel void list_neighbors(int n, PLACED_QUERIES(), int method, global const mesh_set* restrict records, FACES(),
-                           global const int* restrict found, global const uint* restrict offsets,
-                           global int* restrict neighbors, global double* restrict weights) {
-  const int i = get_global_id(0);
-  if (i < n) {
-    const uint first = offsets[order[i]];
-    if (offsets[order[i] + 1] != first) {
-      const int s = set_of_query(i, sets, query_offsets);
-      const natural_mesh mesh = {points, source, faces, frames[s].unit};
-      receiver to = {0, 0, 0, 0, 0, neighbors + first, weights + first};
-      const int triangles = records[s].triangles;
-      if (weigh_by_estimate(mesh, placed[i], found[i], method, TO_LIST, &to) != WEIGHED) {
-        weigh_exactly(mesh, placed[i], found[i], triangles, method, TO_LIST, &to);
-      }
     }
   }
 }

@@ -180,20 +180,21 @@ Weights natural_twin(const Case& input, std::size_t set, const double* query, Na
 // ---- The device
 
 struct NaturalAnswers {
-  std::vector<double> values, exact_values;  // rows of kColumns
-  std::vector<cl_uint> offsets;
-  std::vector<cl_int> points;
-  std::vector<double> weights;
+  std::vector<double> values, exact_values;  // rows of columns_for
 };
 
 constexpr std::size_t kColumns = 3;
 
-// x, y and numbers at random.
+// kColumns, and one per point: its weight.
+std::size_t columns_for(const Case& input) { return kColumns + input.size(); }
+
+// x, y and numbers at random; then a 1 for the point itself.
 std::vector<double> table_for(const Case& input) {
   std::vector<double> table;
   const std::vector<double> random = locate::values_for(input.size());
   for (std::size_t i = 0; i < input.size(); ++i) {
     table.insert(table.end(), {input.points[2 * i], input.points[2 * i + 1], random[i]});
+    for (std::size_t k = 0; k < input.size(); ++k) table.push_back(k == i ? 1 : 0);
   }
   return table;
 }
@@ -205,9 +206,10 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   const Locator locator = *locate::make_locator(runtime, own, upload_mesh(runtime, input), nullptr);
   const std::size_t m = input.query_count();
   const auto queries = upload(runtime, input.queries), values = upload(runtime, table_for(input));
-  const auto results = guarded<cl_double>(runtime, kColumns * m),
-             exact = guarded<cl_double>(runtime, kColumns * m);
-  natural(runtime, locator, method, {values, kColumns, kOutside}, queries, m, input.query_offsets, results);
+  const std::size_t columns = columns_for(input);
+  const auto results = guarded<cl_double>(runtime, columns * m),
+             exact = guarded<cl_double>(runtime, columns * m);
+  natural(runtime, locator, method, {values, columns, kOutside}, queries, m, input.query_offsets, results);
 
   // All by the exact kernel, except outside of the hull, which is not left to it.
   const locate::LocatedQueries located =
@@ -216,7 +218,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   runtime.read(located.found, 0, m, found.data());
   std::vector<cl_uchar> left;
   for (const cl_int triangle : found) left.push_back(triangle >= 0);
-  runtime.copy(results, 0, exact, 0, kColumns * m);
+  runtime.copy(results, 0, exact, 0, columns * m);
   runtime.map_in_small_groups(
       m, kernels::interpolate_natural_exactly{
              .placed_queries = {.sets = located.sets,
@@ -224,7 +226,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
                                 .frames = located.frames,
                                 .order = located.order,
                                 .placed = located.placed},
-             .columns = kColumns,
+             .columns = columns,
              .is_by_vertex = 0,
              .method = static_cast<cl_int>(method),
              .outside = kOutside,
@@ -234,18 +236,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
              .values = values,
              .left = upload(runtime, left),
              .results = exact});
-  const auto offsets = guarded<cl_uint>(runtime, m + 1);
-  NaturalLists lists;
-  std::size_t count = 0;
-  natural_neighbors(runtime, locator, method, queries, m, input.query_offsets, offsets,
-                    [&](std::size_t total) {
-                      count = total;
-                      lists = {guarded<cl_int>(runtime, total), guarded<cl_double>(runtime, total)};
-                      return lists;
-                    });
-  return {download(runtime, results, kColumns * m), download(runtime, exact, kColumns * m),
-          download(runtime, offsets, m + 1), download(runtime, lists.points, count),
-          download(runtime, lists.weights, count)};
+  return {download(runtime, results, columns * m), download(runtime, exact, columns * m)};
 }
 
 template <typename T>
@@ -253,7 +244,8 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), sizeof(T) * a.size()) == 0);
 }
 
-void check_row(const double* row, const std::vector<double>& table, const Weights& weights) {
+void check_row(const double* row, std::size_t columns, const std::vector<double>& table,
+               const Weights& weights) {
   for (std::size_t c = 0; c < kColumns; ++c) {
     if (weights.empty()) {
       ASSERT_EQ(row[c], kOutside);
@@ -261,7 +253,7 @@ void check_row(const double* row, const std::vector<double>& table, const Weight
     }
     mpq_class sum = 0, largest = 0;
     for (const auto& [point, weight] : weights) {
-      const mpq_class value = table[kColumns * static_cast<std::size_t>(point) + c];
+      const mpq_class value = table[columns * static_cast<std::size_t>(point) + c];
       sum += weight * value;
       largest = std::max(largest, mpq_class(abs(value)));
     }
@@ -276,6 +268,7 @@ void check_row(const double* row, const std::vector<double>& table, const Weight
 
 void check_natural(const Case& input) {
   const std::vector<double> table = table_for(input);
+  const std::size_t columns = columns_for(input);
   for (const NaturalWeights method : kBoth) {
     SCOPED_TRACE(method == NaturalWeights::sibson ? "Sibson" : "Laplace");
     std::vector<Weights> twins;
@@ -290,28 +283,28 @@ void check_natural(const Case& input) {
       const NaturalAnswers answers = ask_natural(Runtimes::get(name), input, method);
       for (std::size_t i = 0; i < twins.size(); ++i) {
         SCOPED_TRACE("query " + std::to_string(i));
-        Weights listed;
-        for (std::size_t k = answers.offsets[i]; k < answers.offsets[i + 1]; ++k) {
-          listed[answers.points[k]] = mpq_class(answers.weights[k]);
+        const double* const row = &answers.values[columns * i];
+        const double* const exact = &answers.exact_values[columns * i];
+        check_row(row, columns, table, twins[i]);
+        check_row(exact, columns, table, twins[i]);
+        if (twins[i].empty()) continue;
+        std::size_t neighbors = 0;
+        mpq_class errors = 0, exact_errors = 0;
+        for (std::size_t point = 0; point < input.size(); ++point) {
+          const auto found = twins[i].find(static_cast<int>(point));
+          const mpq_class weight = found == twins[i].end() ? mpq_class(0) : found->second;
+          errors += abs(mpq_class(row[kColumns + point]) - weight);
+          exact_errors += abs(mpq_class(exact[kColumns + point]) - weight);
+          ASSERT_EQ(exact[kColumns + point] != 0, found != twins[i].end()) << point;
+          neighbors += exact[kColumns + point] != 0;
         }
-        ASSERT_EQ(listed.size(), answers.offsets[i + 1] - answers.offsets[i])
-            << "a neighbour is listed twice";
-        ASSERT_EQ(listed.size(), twins[i].size());
-        mpq_class errors = 0;
-        for (const auto& [point, weight] : twins[i]) {
-          ASSERT_EQ(listed.count(point), 1u) << point;
-          errors += abs(listed[point] - weight);
-        }
+        ASSERT_EQ(neighbors, twins[i].size());
         ASSERT_LE(errors, mpq_class(NATURAL_ERROR)) << errors.get_d();
-        check_row(&answers.values[kColumns * i], table, twins[i]);
-        check_row(&answers.exact_values[kColumns * i], table, twins[i]);
+        ASSERT_LE(exact_errors, mpq_class(NATURAL_ERROR)) << exact_errors.get_d();
       }
       if (!first) first = std::make_unique<NaturalAnswers>(answers);
       EXPECT_TRUE(same_bytes(first->values, answers.values));
       EXPECT_TRUE(same_bytes(first->exact_values, answers.exact_values));
-      EXPECT_TRUE(same(first->offsets, answers.offsets));
-      EXPECT_TRUE(same(first->points, answers.points));
-      EXPECT_TRUE(same_bytes(first->weights, answers.weights));
     }
   }
 }
@@ -409,11 +402,15 @@ TEST(Natural, ARing) {
     // All points but duplicates are neighbours, and linear functions are exact.
     const std::set<cl_int> distinct(input.mesh.representatives.begin(), input.mesh.representatives.end());
     for (std::size_t i = 0; i < input.query_count(); ++i) {
-      EXPECT_EQ(answers.offsets[i + 1] - answers.offsets[i], distinct.size());
+      const std::size_t row = columns_for(input) * i;
+      const auto weights = answers.exact_values.begin() + static_cast<std::ptrdiff_t>(row + kColumns);
+      EXPECT_EQ(std::count_if(weights, weights + static_cast<std::ptrdiff_t>(input.size()),
+                              [](double weight) { return weight != 0; }),
+                static_cast<std::ptrdiff_t>(distinct.size()));
       for (std::size_t c = 0; c < 2; ++c) {
         const double error = static_cast<double>(far) * NATURAL_ERROR;
-        EXPECT_NEAR(answers.values[kColumns * i + c], input.query(i)[c], error);
-        EXPECT_NEAR(answers.exact_values[kColumns * i + c], input.query(i)[c], error);
+        EXPECT_NEAR(answers.values[row + c], input.query(i)[c], error);
+        EXPECT_NEAR(answers.exact_values[row + c], input.query(i)[c], error);
       }
     }
   }

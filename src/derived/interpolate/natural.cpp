@@ -1,7 +1,6 @@
 #include "derived/interpolate/natural.hpp"
 
 #include "derived/interpolate/arguments.hpp"
-#include "host/launch/vector_operations.hpp"
 #include "launchers/interpolate/natural.cl.hpp"
 
 namespace flaunay::interpolate {
@@ -48,31 +47,6 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                                    .values = values,
                                                                    .left = left,
                                                                    .results = results});
-}
-
-void natural_neighbors(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
-                       const Buffer<cl_double>& queries, std::size_t m,
-                       const std::vector<std::size_t>& query_offsets, const Buffer<cl_uint>& offsets,
-                       const std::function<NaturalLists(std::size_t total)>& allocate) {
-  host::Arena::Scope scope(runtime.arena());
-  const locate::LocatedQueries located =
-      locate::locate_by_place(runtime, locator, queries, m, query_offsets, points::kCircleLimits);
-  runtime.map_in_small_groups(m, kernels::count_neighbors{.placed_queries = placed_queries(located),
-                                                          .records = locator.records,
-                                                          .faces = faces_of(locator),
-                                                          .found = located.found,
-                                                          .counts = offsets});
-  host::exclusive_scan(runtime, offsets, m, offsets);
-  const std::size_t total = runtime.read_one(offsets, m);
-  const NaturalLists lists = allocate(total);
-  runtime.map_in_small_groups(m, kernels::list_neighbors{.placed_queries = placed_queries(located),
-                                                         .method = static_cast<cl_int>(method),
-                                                         .records = locator.records,
-                                                         .faces = faces_of(locator),
-                                                         .found = located.found,
-                                                         .offsets = offsets,
-                                                         .neighbors = lists.points,
-                                                         .weights = lists.weights});
 }
 
 }  // namespace flaunay::interpolate
