@@ -168,8 +168,8 @@ def triangulate(
         ``"blocks"`` alone.
     out : mapping of str to ndarray of int32, or an object with such attributes, optional
         Arrays for ``triangles``, ``neighbors``, ``halfedges``, ``hull``, ``representatives`` and ``areas``
-        (float64), or some of them, with as many rows as there are results or more. n points have fewer than 2 n triangles. The
-        result has views of their first rows; it costs one copy.
+        (float64), or some of them, with as many rows as there are results or more. n points have fewer than
+        2 n triangles. The result has views of their first rows; it costs one copy.
 
     Returns
     -------
