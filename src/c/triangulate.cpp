@@ -157,40 +157,21 @@ flaunay_status flaunay_triangulate_on_host(const double* coordinates, size_t n, 
 
 void flaunay_triangulation_destroy(flaunay_triangulation* triangulation) { delete triangulation; }
 
-size_t flaunay_triangulation_point_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.point_count; });
-}
-
-size_t flaunay_triangulation_set_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.set_count; });
-}
-
-size_t flaunay_triangulation_triangle_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.triangle_count; });
-}
-
-size_t flaunay_triangulation_hull_count(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.hull_count; });
-}
-
-#define ACCESSOR(type, name, ...)                                                        \
-  const type* flaunay_triangulation_##name(const flaunay_triangulation* triangulation) { \
-    return read(triangulation, [](const auto& handle) { return handle.view.name; });     \
+#define ACCESSOR(type, name)                                                         \
+  type flaunay_triangulation_##name(const flaunay_triangulation* triangulation) {    \
+    return read(triangulation, [](const auto& handle) { return handle.view.name; }); \
   }
-FLAUNAY_TRIANGULATION_ARRAYS(ACCESSOR)
+#define ARRAY(type, name, ...) ACCESSOR(const type*, name)
+ACCESSOR(size_t, point_count)
+ACCESSOR(size_t, set_count)
+ACCESSOR(size_t, triangle_count)
+ACCESSOR(size_t, hull_count)
+FLAUNAY_TRIANGULATION_ARRAYS(ARRAY)
+ACCESSOR(const size_t*, triangle_offsets)
+ACCESSOR(const size_t*, hull_offsets)
+ACCESSOR(const flaunay_statistics*, statistics)
+#undef ARRAY
 #undef ACCESSOR
-
-const size_t* flaunay_triangulation_triangle_offsets(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.triangle_offsets; });
-}
-
-const size_t* flaunay_triangulation_hull_offsets(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.hull_offsets; });
-}
-
-const flaunay_statistics* flaunay_triangulation_statistics(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.view.statistics; });
-}
 
 const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* triangulation) {
   return read(triangulation, [](const auto& handle) { return &handle.view; });
@@ -198,43 +179,20 @@ const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* tria
 
 FLAUNAY_DEVICE_RESULT(triangulation, "the triangulation")
 
-unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::to_bits(handle.cpp.parts); });
-}
-
-size_t flaunay_device_triangulation_point_count(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.cpp.points; });
-}
-
-size_t flaunay_device_triangulation_set_count(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::set_count(handle.cpp.point_offsets); });
-}
-
-size_t flaunay_device_triangulation_triangle_count(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::total(handle.cpp.triangle_offsets); });
-}
-
-size_t flaunay_device_triangulation_hull_count(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::total(handle.cpp.hull_offsets); });
-}
-
-const size_t* flaunay_device_triangulation_point_offsets(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.point_offsets); });
-}
-
-const size_t* flaunay_device_triangulation_triangle_offsets(
-    const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.triangle_offsets); });
-}
-
-const size_t* flaunay_device_triangulation_hull_offsets(const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return c::elements(handle.cpp.hull_offsets); });
-}
-
-const flaunay_statistics* flaunay_device_triangulation_statistics(
-    const flaunay_device_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return handle.statistics.get(); });
-}
+#define ACCESSOR(type, name, value)                                                             \
+  type flaunay_device_triangulation_##name(const flaunay_device_triangulation* triangulation) { \
+    return read(triangulation, [](const auto& handle) { return value; });                       \
+  }
+ACCESSOR(unsigned, parts, c::to_bits(handle.cpp.parts))
+ACCESSOR(size_t, point_count, handle.cpp.points)
+ACCESSOR(size_t, set_count, c::set_count(handle.cpp.point_offsets))
+ACCESSOR(size_t, triangle_count, c::total(handle.cpp.triangle_offsets))
+ACCESSOR(size_t, hull_count, c::total(handle.cpp.hull_offsets))
+ACCESSOR(const size_t*, point_offsets, c::elements(handle.cpp.point_offsets))
+ACCESSOR(const size_t*, triangle_offsets, c::elements(handle.cpp.triangle_offsets))
+ACCESSOR(const size_t*, hull_offsets, c::elements(handle.cpp.hull_offsets))
+ACCESSOR(const flaunay_statistics*, statistics, handle.statistics.get())
+#undef ACCESSOR
 
 flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                           const flaunay_device_points* points, unsigned parts,
