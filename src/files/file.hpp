@@ -105,19 +105,14 @@ class InputFile {
         expected_(expected),
         descriptor_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     struct stat status {};
-    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
-      const int reason = errno;
+    const bool is_open = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0;
+    const int reason = !is_open ? errno : S_ISDIR(status.st_mode) ? EISDIR : 0;
+    if (reason != 0) {
       close();
-      fail(name_, "cannot be opened: {}; expected {}", system_reason(reason), expected_);
+      fail(name_, "cannot be {}: {}; expected {}", is_open ? "read" : "opened", system_reason(reason),
+           expected_);
     }
-    if (S_ISDIR(status.st_mode)) {
-      close();
-      fail(name_, "cannot be read: {}; expected {}", system_reason(EISDIR), expected_);
-    }
-    // The size of a regular file is known; room for one byte more detects the end in the same call. For pipes
-    // the buffer grows.
     if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = status.st_size;
-    whole_ = size_ >= 0 ? static_cast<std::size_t>(size_) + 1 : 1 << 16;
   }
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -140,23 +135,16 @@ class InputFile {
     is_loaded_ = true;
   }
 
-  /// Reads the bytes [begin, begin + count), begin being at most the count of the last call of first(),
-  /// straight to their place. Returns how many there are. Nothing can be read afterwards.
-  std::size_t read_from(std::size_t begin, std::size_t count, void* to) {
-    const std::size_t known = std::min(used_ - std::min(begin, used_), count);
-    if (known > 0) std::memcpy(to, bytes_.data() + begin, known);
-    std::size_t got = known;
-    while (got < count && !ended_) got += read_some(static_cast<char*>(to) + got, count - got);
-    return got;
-  }
-
   /// Reads the next bytes after those of earlier calls of this function, without the others. Returns how many
   /// there are; fewer than `count` at the end.
-  std::size_t read_next(void* to, std::size_t count) {
-    std::size_t got = 0;
-    while (got < count && !ended_) got += read_some(static_cast<char*>(to) + got, count - got);
+  std::size_t read_next(char* to, std::size_t count) {
+    if (ended_) return 0;
+    const std::size_t got =
+        move_bytes(count, [&](std::size_t done) { return ::read(descriptor_, to + done, count - done); });
+    if (got < count && errno != 0) fail(name_, "cannot be read: {}", system_reason(errno));
+    ended_ = got < count;
     used_ += got;
-    if (used_ == 0 && ended_) fail_empty();
+    if (used_ == 0 && ended_) fail(name_, "is empty (zero bytes); expected {}", expected_);
     return got;
   }
 
@@ -188,24 +176,16 @@ class InputFile {
 
  private:
   void load() {
-    for (std::size_t room = whole_; !ended_; room *= 2) read_until(room);
+    // Room for one byte more than a regular file has detects its end in the same call. For pipes the buffer
+    // grows.
+    std::size_t room = size_ >= 0 ? static_cast<std::size_t>(size_) + 1 : std::size_t{1} << 16;
+    for (; !ended_; room *= 2) read_until(room);
     bytes_.resize(used_);
   }
   /// Reads until there are `count` bytes or the file ends.
   void read_until(std::size_t count) {
     if (bytes_.size() < count) bytes_.resize(count);
-    while (used_ < count && !ended_) {
-      used_ += read_some(&bytes_[used_], count - used_);
-    }
-    if (used_ == 0 && ended_) fail_empty();
-  }
-  [[noreturn]] void fail_empty() const { fail(name_, "is empty (zero bytes); expected {}", expected_); }
-  std::size_t read_some(char* to, std::size_t most) {
-    const ssize_t got = ::read(descriptor_, to, most);
-    if (got < 0 && errno == EINTR) return 0;
-    if (got < 0) fail(name_, "cannot be read: {}", system_reason(errno));
-    ended_ = got == 0;
-    return static_cast<std::size_t>(got);
+    if (used_ < count) read_next(&bytes_[used_], count - used_);
   }
   void close() {
     if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
@@ -215,8 +195,7 @@ class InputFile {
   std::string expected_;
   int descriptor_;
   std::int64_t size_ = -1;
-  std::size_t whole_ = 0;  // room for all bytes of a regular file
-  std::string bytes_;      // the first used_ bytes were read
+  std::string bytes_;  // the first used_ bytes were read
   std::size_t used_ = 0;
   bool ended_ = false, is_loaded_ = false;
 };

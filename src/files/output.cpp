@@ -100,7 +100,10 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
 }
 
 OutputFile::OutputFile(const std::string& path, const std::string& partial)
-    : path_(path), partial_(partial), descriptor_(::open(partial.c_str(), O_WRONLY | O_CLOEXEC)) {
+    : path_(path),
+      partial_(partial),
+      descriptor_(::open(partial.c_str(), O_WRONLY | O_CLOEXEC)),
+      is_used_(true) {
   if (descriptor_ < 0) fail(path_, "cannot be opened for writing: {}", system_reason(errno));
 }
 
@@ -109,6 +112,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::start() {
+  is_used_ = true;
   if (!target_.is_direct) return;
   descriptor_ = path_ == "-" ? STDOUT_FILENO : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) fail(path_, "cannot be opened for writing: {}", system_reason(errno));
@@ -150,24 +154,19 @@ void Outputs::announce(const std::string& path) {
   }
   auto file = std::make_unique<OutputFile>(path);
   const auto is_same = [&](const auto& other) { return is_one_file(other->path_, path); };
-  if (file->target_.is_direct && (std::any_of(announced_.begin(), announced_.end(), is_same) ||
-                                  std::any_of(files_.begin(), files_.end(), is_same))) {
-    fail_same_path(path);
-  }
-  announced_.push_back(std::move(file));
+  if (file->target_.is_direct && std::ranges::any_of(files_, is_same)) fail_same_path(path);
+  files_.push_back(std::move(file));
 }
 
 OutputFile& Outputs::open(const std::string& path) {
   const auto find = [&] {
-    return std::find_if(announced_.begin(), announced_.end(),
-                        [&](const auto& file) { return file->path_ == path; });
+    return std::ranges::find_if(files_,
+                                [&](const auto& file) { return !file->is_used_ && file->path_ == path; });
   };
-  if (find() == announced_.end()) announce(path);
-  const auto announced = find();
-  files_.push_back(std::move(*announced));
-  announced_.erase(announced);
-  files_.back()->start();
-  return *files_.back();
+  if (find() == files_.end()) announce(path);
+  OutputFile& file = **find();
+  file.start();
+  return file;
 }
 
 OutputFile& Outputs::join(const std::string& path, const std::string& partial) {
@@ -176,6 +175,7 @@ OutputFile& Outputs::join(const std::string& path, const std::string& partial) {
 
 void Outputs::close() {
   for (auto file = files_.rbegin(); file != files_.rend() && (*file)->descriptor_ >= 0; ++file) {
+    if (!(*file)->is_used_) continue;
     (*file)->close();
     closed_in_ = (*file)->target_.folder;
   }
@@ -183,7 +183,7 @@ void Outputs::close() {
 
 void Outputs::write_out() {
   for (const auto& file : files_) {
-    if (file->descriptor_ < 0) continue;
+    if (!file->is_used_ || file->descriptor_ < 0) continue;
     file->flush();
     // Some file systems find only now that the disk is full. Others have no such call.
     const bool is_written = file->target_.is_direct || ::fsync(file->descriptor_) == 0;
@@ -199,6 +199,7 @@ void Outputs::write_out() {
 }
 
 void Outputs::commit() {
+  std::erase_if(files_, [](const auto& file) { return !file->is_used_; });
   write_out();
   const Uninterrupted until_placed;
   for (const auto& file : files_) file->close();

@@ -79,6 +79,7 @@ class OutputFile {
   Target target_;
   Temporary partial_;
   int descriptor_ = -1;
+  bool is_used_ = false;  // Outputs::open has returned it
   fmt::memory_buffer buffer_;
 };
 
@@ -118,7 +119,7 @@ class Outputs {
   std::string take_back();
 
   std::vector<std::string> inputs_;
-  std::vector<std::unique_ptr<OutputFile>> announced_, files_;
+  std::vector<std::unique_ptr<OutputFile>> files_;
   std::vector<std::string> removed_;
   std::vector<Placed> placed_;
   std::string closed_in_;  // a folder with files that were closed before they were on the disk

@@ -21,8 +21,6 @@ namespace flaunay::cli {
 
 namespace {
 
-using Solutions = std::vector<std::vector<std::int32_t>>;
-
 struct AssembleRequest {
   std::string input;
   std::string folder;
@@ -36,13 +34,13 @@ struct AssembleRequest {
 std::vector<std::string> find_solutions(const PartitionReader& reader, bool solve) {
   std::vector<std::string> paths;
   for (std::size_t r = 0; r < reader.regions(); ++r) paths.push_back(reader.solution_path(r));
-  const auto missing = static_cast<std::size_t>(std::count(paths.begin(), paths.end(), ""));
-  if (missing > 0 && !solve) {
-    const auto first = static_cast<std::size_t>(std::find(paths.begin(), paths.end(), "") - paths.begin());
+  const auto first = std::ranges::find(paths, "");
+  if (first != paths.end() && !solve) {
     throw Error(ErrorKind::input,
                 fmt::format("{}.npy: is missing, and so are .ele and .1.ele; {} of {} regions have no "
                             "solution (--solve computes what is missing)",
-                            reader.stem(first), missing, paths.size()));
+                            reader.stem(static_cast<std::size_t>(first - paths.begin())),
+                            std::ranges::count(paths, ""), paths.size()));
   }
   return paths;
 }
@@ -59,46 +57,13 @@ std::vector<std::int32_t> solve_region(const io::Points& points, const research:
   return research::triangulate_on_host(own.data(), {0, region.points.size()}, options).triangles;
 }
 
-Solutions read_solutions(const std::vector<std::string>& paths) {
-  Solutions solutions;
-  for (const std::string& path : paths) {
-    solutions.push_back(path.empty() ? std::vector<std::int32_t>() : io::read_triangles(path));
-  }
-  return solutions;
-}
-
-void solve_missing(const io::Points& points, const research::Partition& partition,
-                   const std::vector<std::string>& paths, int threads, Solutions& solutions) {
-  std::vector<std::size_t> unsolved;
+// The library's messages name a region by its number or speak of "the parts".
+std::vector<ElementFile> files_of(const PartitionReader& reader, const std::vector<std::string>& paths) {
+  std::vector<ElementFile> files = {{"the parts ", reader.description_path()}};
   for (std::size_t r = 0; r < paths.size(); ++r) {
-    if (paths[r].empty()) unsolved.push_back(r);
+    files.push_back({fmt::format("region {}: ", r), paths[r].empty() ? reader.stem(r) + ".node" : paths[r]});
   }
-  host::Threads(static_cast<std::size_t>(threads)).share_each(unsolved.size(), [&](std::size_t k) {
-    solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
-  });
-}
-
-// The library's messages name a region by its number or speak of "the parts"; here the file is named too.
-[[noreturn]] void fail_with_file(const Error& error, const PartitionReader& reader,
-                                 const std::vector<std::string>& paths) {
-  const std::string message = error.what();
-  for (std::size_t r = 0; r < paths.size(); ++r) {
-    if (message.rfind(fmt::format("region {}: ", r), 0) != 0) continue;
-    const std::string file = paths[r].empty() ? reader.stem(r) + ".node" : paths[r];
-    throw Error(error.kind(), fmt::format("{}: {}", file, message));
-  }
-  const bool of_parts = message.rfind("the parts ", 0) == 0;
-  throw Error(error.kind(), of_parts ? fmt::format("{}: {}", reader.description_path(), message) : message);
-}
-
-Triangulation put_together(const io::Points& points, const research::Partition& partition,
-                           const Solutions& solutions, const PartitionReader& reader,
-                           const std::vector<std::string>& paths, const Options& options) {
-  try {
-    return research::assemble(points.coordinates.data(), points.size(), partition, solutions, options);
-  } catch (const Error& error) {
-    fail_with_file(error, reader, paths);
-  }
+  return files;
 }
 
 int assemble(const AssembleRequest& request) {
@@ -118,18 +83,30 @@ int assemble(const AssembleRequest& request) {
   progress.update("reading");
   const io::Points points = io::read_points(request.input);
   const research::Partition partition = reader.read(request.input, points);
-  Solutions solutions = read_solutions(paths);
+  std::vector<std::vector<std::int32_t>> solutions(paths.size());
+  std::vector<std::size_t> unsolved;
+  for (std::size_t r = 0; r < paths.size(); ++r) {
+    if (paths[r].empty()) {
+      unsolved.push_back(r);
+    } else {
+      solutions[r] = io::read_triangles(paths[r]);
+    }
+  }
   facts.reading_seconds = stopwatch.restart();
 
   progress.update("solving");
-  solve_missing(points, partition, paths, request.threads, solutions);
+  host::Threads(static_cast<std::size_t>(request.threads)).share_each(unsolved.size(), [&](std::size_t k) {
+    solutions[unsolved[k]] = solve_region(points, partition.regions[unsolved[k]]);
+  });
   facts.solving_seconds = stopwatch.seconds();
 
   Options options;
   ask_for(request.results, options);
   options.progress = progress.callback();
   research::Triangulation mesh;
-  static_cast<Triangulation&>(mesh) = put_together(points, partition, solutions, reader, paths, options);
+  static_cast<Triangulation&>(mesh) = naming_files(files_of(reader, paths), [&] {
+    return research::assemble(points.coordinates.data(), points.size(), partition, solutions, options);
+  });
 
   write_results(request.results, points, mesh, facts, progress, outputs);
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <utility>
 
 #include "app/command/errors.hpp"
@@ -61,13 +62,12 @@ void add_index(CLI::App* command, std::string& index) {
 }
 
 std::vector<std::string> devices_of(const std::string& list) {
+  if (list.empty()) return {};
   std::vector<std::string> devices;
-  if (list.empty()) return devices;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    if (end == begin) throw Error(ErrorKind::usage, fmt::format("--device: '{}' has an empty name", list));
-    devices.push_back(list.substr(begin, end - begin));
-    begin = end + 1;
+  std::istringstream names(list + ",");
+  for (std::string name; std::getline(names, name, ',');) {
+    if (name.empty()) throw Error(ErrorKind::usage, fmt::format("--device: '{}' has an empty name", list));
+    devices.push_back(name);
   }
   return devices;
 }

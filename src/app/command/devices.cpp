@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -41,10 +38,8 @@ int devices() {
   const DeviceInfo host = Triangulator("host").device();
   const std::vector<DeviceInfo> found = opencl_devices();
 
-  constexpr std::size_t kColumns = 11;
-  using Row = std::array<std::string, kColumns>;
-  std::vector<Row> rows = {{"#", "name", "type", "platform", "driver", "fp64", "memory", "available",
-                            "largest buffer", "units", "self-test"}};
+  std::vector<std::vector<std::string>> rows = {{"#", "name", "type", "platform", "driver", "fp64", "memory",
+                                                 "available", "largest buffer", "units", "self-test"}};
   rows.push_back({"-", host.name, host.type, host.platform, host.version, "yes", gibibytes(host.memory_bytes),
                   gibibytes(host.available_bytes), "-", std::to_string(host.compute_units), self_test(host)});
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -54,18 +49,7 @@ int devices() {
                     gibibytes(device.available_bytes), gibibytes(device.largest_buffer_bytes),
                     std::to_string(device.compute_units), self_test(device)});
   }
-  std::array<std::size_t, kColumns> widths{};
-  for (const Row& row : rows) {
-    for (std::size_t c = 0; c < kColumns; ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  std::string table;
-  for (const Row& row : rows) {
-    for (std::size_t c = 0; c + 1 < kColumns; ++c) {
-      fmt::format_to(std::back_inserter(table), "{:<{}}  ", row[c], widths[c]);
-    }
-    table += row.back() + "\n";
-  }
-  print(table);
+  print(aligned(rows));
   return kSuccess;
 }
 

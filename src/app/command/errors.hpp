@@ -3,9 +3,9 @@
 
 #include <cstddef>
 #include <cstdio>
-#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "files/file.hpp"
 #include "files/printable.hpp"
@@ -46,20 +46,20 @@ inline int report_error(const char* program, int code, std::string_view message)
 /// What the messages of an Error about an element begin with, such as "point", and the file with these
 /// elements.
 struct ElementFile {
-  std::string_view element;
+  std::string element;
   std::string path;
 };
 
 /// Calls function. An Error whose message begins with an element gets the name of its file, since the library
 /// does not know where elements come from.
 template <typename Function>
-auto naming_files(std::initializer_list<ElementFile> files, const Function& function) {
+auto naming_files(const std::vector<ElementFile>& files, const Function& function) {
   try {
     return function();
   } catch (const Error& error) {
     const std::string message = error.what();
     for (const ElementFile& file : files) {
-      if (message.rfind(file.element, 0) == 0) {
+      if (message.starts_with(file.element)) {
         throw Error(error.kind(), io::printable(io::shown_path(file.path) + ": " + message));
       }
     }

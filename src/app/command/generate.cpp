@@ -46,11 +46,11 @@ int generate(const GenerateRequest& request) {
 }
 
 std::string distribution_table() {
-  std::vector<std::pair<std::string, std::string>> rows;
+  std::vector<std::vector<std::string>> rows;
   for (const io::Distribution& distribution : io::distributions()) {
-    rows.emplace_back(distribution.name, distribution.description);
+    rows.push_back({"  " + distribution.name, distribution.description});
   }
-  return help_table("Distributions", rows);
+  return "Distributions:\n" + aligned(rows);
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
 #include <limits>
 
 #include "app/files/formats.hpp"
@@ -24,17 +22,6 @@ CLI::Option* add_path(CLI::App* command, const std::string& option, std::string&
       [](std::string& text) { return text.empty() ? std::string("the path is empty") : std::string(); },
       "PATH");
   return command->add_option(option, path, description)->check(not_empty);
-}
-
-std::string help_table(const std::string& title,
-                       const std::vector<std::pair<std::string, std::string>>& rows) {
-  std::size_t width = 0;
-  for (const auto& row : rows) width = std::max(width, row.first.size());
-  std::string table = title + ":\n";
-  for (const auto& [name, meaning] : rows) {
-    fmt::format_to(std::back_inserter(table), "  {:<{}}  {}\n", name, width, meaning);
-  }
-  return table;
 }
 
 void add_cut(CLI::App* command, Cut& cut) {

@@ -28,10 +28,6 @@ void add_input(CLI::App* command, std::string& path);
 CLI::Option* add_path(CLI::App* command, const std::string& option, std::string& path,
                       const std::string& description);
 
-/// A table for the end of a subcommand's --help. Each row is a name and its meaning.
-std::string help_table(const std::string& title,
-                       const std::vector<std::pair<std::string, std::string>>& rows);
-
 void add_cut(CLI::App* command, Cut& cut);
 /// variants: those that the subcommand supports.
 void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>& variants,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -18,6 +19,20 @@ bool print(const std::string& text) {
     return true;
   if (errno == EPIPE || errno == EBADF) return false;
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) text += fmt::format("{:<{}}  ", row[c], widths[c]);
+    text += row.back() + "\n";
+  }
+  return text;
 }
 
 void OutputFiles::add_mesh(const std::string& path, bool with_constraints) {

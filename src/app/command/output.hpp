@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "files/output.hpp"
 
@@ -11,6 +12,9 @@ namespace flaunay::cli {
 /// output or the pipe is closed, which is not an error; throws Error(input) for any other failure, such as a
 /// full disk.
 bool print(const std::string& text);
+
+/// Rows as lines, in columns that are as wide as their widest entries; the last one is not filled up.
+std::string aligned(const std::vector<std::vector<std::string>>& rows);
 
 /// The files that one run writes, by what is in them.
 class OutputFiles : public io::Outputs {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <system_error>
 
+#include "app/command/json.hpp"
 #include "app/command/options.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/npy.hpp"
@@ -19,7 +19,6 @@
 namespace flaunay::cli {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -80,12 +79,10 @@ std::string description(const research::Partition& partition, const PartitionFac
   json["hull_variant"] = to_string(facts.dividing_paths);
   json["finished_triangles"] = partition.triangles.size() / 3;
   json["number_of_regions"] = partition.regions.size();
-  json["regions"] = Json::array();
-  for (const research::Region& region : partition.regions) {
-    json["regions"].push_back({{"points", region.points.size()}, {"border_edges", region.border.size() / 2}});
-  }
-  // JSON must be UTF-8, but names of files need not be.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json["regions"] = list_json(partition.regions, [](const research::Region& region) -> Json {
+    return {{"points", region.points.size()}, {"border_edges", region.border.size() / 2}};
+  });
+  return text_of(json);
 }
 
 Json parse(const std::string& path) {
@@ -194,15 +191,12 @@ research::Partition PartitionReader::read(const std::string& input, const io::Po
   if (triangles != finished_triangles_) {
     io::fail(finished, "has {} triangles; expected {}", triangles, finished_triangles_);
   }
-  for (std::size_t r = 0; r < regions(); ++r) partition.regions.push_back(read_region(r, input, points));
+  for (std::size_t r = 0; r < regions(); ++r) {
+    const io::StoredRegion stored = io::read_region(stem(r), sizes_[r].points, sizes_[r].border_edges);
+    check_points(stem(r) + ".node", stored, input, points);
+    partition.regions.push_back(stored.region);
+  }
   return partition;
-}
-
-research::Region PartitionReader::read_region(std::size_t r, const std::string& input,
-                                              const io::Points& points) const {
-  const io::StoredRegion stored = io::read_region(stem(r), sizes_[r].points, sizes_[r].border_edges);
-  check_points(stem(r) + ".node", stored, input, points);
-  return stored.region;
 }
 
 void check_no_partition_file(const std::string& folder, const std::string& path) {

@@ -54,7 +54,6 @@ class PartitionReader {
     std::size_t points;
     std::size_t border_edges;
   };
-  research::Region read_region(std::size_t r, const std::string& input, const io::Points& points) const;
 
   std::string folder_;
   std::size_t input_points_ = 0;

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
+
+#include "app/command/json.hpp"
 
 namespace flaunay::cli {
 
@@ -81,8 +82,6 @@ std::uint64_t count_chunks(const ChunkStatistics& statistics) {
   return chunks;
 }
 
-using Json = nlohmann::ordered_json;
-
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json constraints_json(const std::optional<ConstraintFacts>& constraints) {
@@ -96,19 +95,6 @@ Json constraints_json(const std::optional<ConstraintFacts>& constraints) {
           {"crossings", constraints->crossings},
           {"outside", constraints->outside},
           {"fill", constraints->fill}};
-}
-
-Json phases_json(const std::vector<PhaseStatistics>& phases) {
-  Json list = Json::array();
-  for (const PhaseStatistics& phase : phases) {
-    list.push_back({{"name", phase.name}, {"seconds", phase.seconds}});
-  }
-  return list;
-}
-
-// JSON must be UTF-8, but names of files need not be.
-std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 OperationCounts sum_over_levels(const Work& work, std::size_t component) {
@@ -146,33 +132,29 @@ std::string chunk_statistics_json(const ChunkStatistics& statistics, const RunFa
   json["flaunay"] = version();
   json["mode"] = facts.mode;
   json["input"] = facts.input;
-  json["points"] = statistics.points;
-  json["duplicates"] = statistics.duplicates;
-  json["triangles"] = statistics.triangles;
-  json["hull_vertices"] = statistics.hull_vertices;
+  add_counts(json, statistics);
   json["seconds"] = {{"reading", facts.reading_seconds},
                      {"triangulating", statistics.seconds},
                      {"writing", facts.writing_seconds}};
   json["points_per_second"] = points_per_second(statistics);
   json["undecided_predicates"] = statistics.undecided;
   json["phases"] = phases_json(statistics.phases);
-  Json& chunks = json["chunks"];
-  chunks["number"] = count_chunks(statistics);
-  chunks["points"] = statistics.chunk_points;
-  chunks["scratch_bytes"] = statistics.scratch_bytes;
-  chunks["rounds"] = Json::array();
-  for (const ChunkRound& round : statistics.rounds) {
-    chunks["rounds"].push_back({{"points", round.points},
-                                {"chunks", round.chunks},
-                                {"triangles", round.triangles},
-                                {"handed_on", round.handed_on}});
-  }
-  chunks["devices"] = Json::array();
+  Json devices = Json::array();
   for (std::size_t k = 0; k < statistics.devices.size(); ++k) {
-    chunks["devices"].push_back(
-        {{"device", statistics.devices[k]}, {"points", statistics.device_points.at(k)}});
+    devices.push_back({{"device", statistics.devices[k]}, {"points", statistics.device_points.at(k)}});
   }
-  chunks["host_points"] = statistics.host_points;
+  json["chunks"] = {{"number", count_chunks(statistics)},
+                    {"points", statistics.chunk_points},
+                    {"scratch_bytes", statistics.scratch_bytes},
+                    {"rounds", list_json(statistics.rounds,
+                                         [](const ChunkRound& round) -> Json {
+                                           return {{"points", round.points},
+                                                   {"chunks", round.chunks},
+                                                   {"triangles", round.triangles},
+                                                   {"handed_on", round.handed_on}};
+                                         })},
+                    {"devices", devices},
+                    {"host_points", statistics.host_points}};
   json["note"] = text_or_null(statistics.note);
   return text_of(json);
 }
@@ -247,10 +229,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["cut"] = text_or_null(facts.cut);
   json["hull_variant"] = text_or_null(facts.dividing_paths);
   json["input"] = facts.input;
-  json["points"] = statistics.points;
-  json["duplicates"] = statistics.duplicates;
-  json["triangles"] = statistics.triangles;
-  json["hull_vertices"] = statistics.hull_vertices;
+  add_counts(json, statistics);
   json["constraints"] = constraints_json(facts.constraints);
   json["seconds"] = {{"reading", facts.reading_seconds},
                      {"opening_device", facts.opening_seconds},
@@ -271,28 +250,25 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["round_points"] = statistics.round_points;
   json["merged_points"] = statistics.merged_points;
   json["phases"] = phases_json(statistics.phases);
-  json["levels"] = Json::array();
-  for (const LevelStatistics& level : result.levels) {
-    json["levels"].push_back({{"regions", level.regions},
-                              {"internal_points", level.internal_points},
-                              {"corners", level.corners},
-                              {"largest_region", level.largest_region},
-                              {"candidates", level.candidates},
-                              {"survivors", level.survivors},
-                              {"path_vertices", level.path_vertices},
-                              {"candidate_rounds", level.candidate_rounds},
-                              {"hull_rounds", level.hull_rounds},
-                              {"seconds", level.seconds}});
-  }
+  json["levels"] = list_json(result.levels, [](const LevelStatistics& level) -> Json {
+    return {{"regions", level.regions},
+            {"internal_points", level.internal_points},
+            {"corners", level.corners},
+            {"largest_region", level.largest_region},
+            {"candidates", level.candidates},
+            {"survivors", level.survivors},
+            {"path_vertices", level.path_vertices},
+            {"candidate_rounds", level.candidate_rounds},
+            {"hull_rounds", level.hull_rounds},
+            {"seconds", level.seconds}};
+  });
   if (!statistics.kernels.empty()) {
-    json["kernels"] = Json::array();
-    for (const KernelStatistics& kernel : statistics.kernels) {
-      json["kernels"].push_back(
-          {{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});
-    }
+    json["kernels"] = list_json(statistics.kernels, [](const KernelStatistics& kernel) -> Json {
+      return {{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}};
+    });
   }
   if (facts.counted) {
-    const auto components = [](const Work::Components& work) {
+    const auto components = [](const Work::Components& work) -> Json {
       constexpr const char* kNames[kComponents] = {"cut", "hull", "merge", "split", "endgame"};
       Json named;
       for (std::size_t c = 0; c < kComponents; ++c) {
@@ -307,8 +283,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
       return named;
     };
     json["work"]["start"] = components(result.work.start);
-    json["work"]["levels"] = Json::array();
-    for (const auto& level : result.work.levels) json["work"]["levels"].push_back(components(level));
+    json["work"]["levels"] = list_json(result.work.levels, components);
     json["work"]["endgame_sizes"] = result.work.endgame_sizes;
   }
   return text_of(json);

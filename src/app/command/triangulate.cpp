@@ -202,10 +202,11 @@ std::vector<Mode> all_modes() {
 }
 
 std::string mode_table() {
-  std::vector<std::pair<std::string, std::string>> rows;
-  for (const research::ModeInfo& info : research::list_modes())
-    rows.emplace_back(info.name, info.description);
-  return help_table("Modes", rows);
+  std::vector<std::vector<std::string>> rows;
+  for (const research::ModeInfo& info : research::list_modes()) {
+    rows.push_back({"  " + std::string(info.name), info.description});
+  }
+  return "Modes:\n" + aligned(rows);
 }
 
 }  // namespace

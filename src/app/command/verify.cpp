@@ -21,7 +21,6 @@
 #include "app/files/npy.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
-#include "app/files/rows.hpp"
 #include "app/verify/chunks.hpp"
 #include "app/verify/constrained.hpp"
 #include "files/file.hpp"

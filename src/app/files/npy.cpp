@@ -8,7 +8,6 @@
 #include <type_traits>
 
 #include "app/files/formats.hpp"
-#include "app/files/rows.hpp"
 #include "files/file.hpp"
 #include "host/memory/huge_pages.hpp"
 
@@ -192,7 +191,6 @@ class Array {
     promised_ = check_header(path, header_, layout);
   }
 
-  const Header& header() const { return header_; }
   const std::string& dtype() const { return header_.descr; }
   std::size_t rows() const { return header_.shape[0]; }
   std::size_t data_begin() const { return header_.data_begin; }
@@ -200,7 +198,11 @@ class Array {
   /// Checks the size of the file.
   void check_size() const {
     file_.load_pipe();
-    check(static_cast<std::size_t>(file_.size()) - header_.data_begin);
+    const std::size_t found = static_cast<std::size_t>(file_.size()) - header_.data_begin;
+    if (found == promised_) return;
+    fail(path_, "{}: shape {} of '{}' needs {} bytes after the header, found {}",
+         found < promised_ ? "is truncated" : fmt::format("has {} bytes too many", found - promised_),
+         shape_text(header_.shape), header_.descr, promised_, found);
   }
 
   template <typename Value>
@@ -211,22 +213,11 @@ class Array {
     all.reserve(promised_ / sizeof(Value));
     host::prefer_huge_pages(all.data(), promised_);
     all.resize(promised_ / sizeof(Value));
-    check(file_.read_from(header_.data_begin, promised_, all.data()));
+    file_.read_at(header_.data_begin, promised_, all.data());
     return all;
   }
 
  private:
-  void check(std::size_t found) const {
-    if (found < promised_) {
-      fail(path_, "is truncated: shape {} of '{}' needs {} bytes after the header, found {}",
-           shape_text(header_.shape), header_.descr, promised_, found);
-    }
-    if (found > promised_) {
-      fail(path_, "has {} bytes too many: shape {} of '{}' needs {} bytes after the header, found {}",
-           found - promised_, shape_text(header_.shape), header_.descr, promised_, found);
-    }
-  }
-
   const std::string& path_;
   InputFile& file_;
   Header header_;
@@ -267,8 +258,8 @@ class NpyRows : public RowSource {
     const Array array(path_, file_, kRows);
     array.check_size();
     is_wide_ = array.dtype() == "<i8";
-    size_ = array.header().shape[0];
-    begin_ = array.header().data_begin;
+    size_ = array.rows();
+    begin_ = array.data_begin();
   }
 
   std::uint64_t size() const override { return size_; }
@@ -298,7 +289,7 @@ PointRecords npy_points(const std::string& path, InputFile& file) {
   const Layout layout = {"n", 2, {"<f8", "<f4"}};
   const Array array(path, file, layout);
   array.check_size();
-  PointRecords records{array.header().shape[0], array.header().data_begin};
+  PointRecords records{array.rows(), array.data_begin()};
   if (array.dtype() == "<f4") {
     records.bytes = 2 * sizeof(float);
     records.decode = [](const char* from, std::size_t count, double* coordinates) {

@@ -1,14 +1,30 @@
-// NumPy's array files.
+// NumPy's array files of indices.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "files/npy_header.hpp"
 
 namespace flaunay::io {
+
+/// An array of m x 3 indices that need not fit memory.
+class RowSource {
+ public:
+  virtual ~RowSource() = default;
+  /// The number of rows.
+  virtual std::uint64_t size() const = 0;
+  /// Reads the rows [first, first + count): 3 count values. Several threads may call it at a time. Throws
+  /// Error(input) if it cannot.
+  virtual void read(std::uint64_t first, std::size_t count, std::int64_t* values) = 0;
+};
+
+/// Opens an .npy file (int32 or int64, m x 3). Throws Error(input) that names the place; values are not
+/// checked.
+std::unique_ptr<RowSource> open_npy_rows(const std::string& path);
 
 /// Reads an array of m x 3 indices, int32 or int64.
 std::vector<std::int32_t> read_npy_triangles(const std::string& path);

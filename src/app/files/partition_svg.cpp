@@ -1,9 +1,10 @@
 // A picture of a partition's regions, one colour each.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/files/drawing.hpp"
@@ -33,22 +34,17 @@ std::string region_color(std::size_t r, double saturation, double lightness) {
 /// A border as closed walks. Where it passes a point several times, any walk on is right: what lies inside is
 /// what the edges wind around once, whatever their order.
 std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32_t>& border) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  for (std::size_t k = 0; k + 1 < border.size(); k += 2) edges.emplace_back(border[k], border[k + 1]);
-  std::sort(edges.begin(), edges.end());
-  std::vector<char> walked(edges.size(), 0);
+  std::multiset<std::array<std::int32_t, 2>> edges;
+  for (std::size_t k = 0; k + 1 < border.size(); k += 2) edges.insert({border[k], border[k + 1]});
   std::vector<std::vector<std::int32_t>> walks;
-  for (std::size_t first = 0; first < edges.size(); ++first) {
-    if (walked[first]) continue;
-    walks.emplace_back();
-    for (std::size_t e = first;;) {
-      walked[e] = 1;
-      walks.back().push_back(edges[e].first);
-      const std::int32_t at = edges[e].second;
-      const auto next = std::lower_bound(edges.begin(), edges.end(), std::make_pair(at, std::int32_t{0}));
-      e = static_cast<std::size_t>(next - edges.begin());
-      while (e < edges.size() && edges[e].first == at && walked[e]) ++e;
-      if (e == edges.size() || edges[e].first != at) break;
+  while (!edges.empty()) {
+    std::vector<std::int32_t>& walk = walks.emplace_back();
+    for (auto edge = edges.begin(); edge != edges.end();) {
+      const auto [from, to] = *edge;
+      walk.push_back(from);
+      edges.erase(edge);
+      edge = edges.lower_bound({to, 0});
+      if (edge != edges.end() && (*edge)[0] != to) break;
     }
   }
   return walks;

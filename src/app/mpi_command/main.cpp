@@ -10,13 +10,13 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/command/chunks.hpp"
 #include "app/command/errors.hpp"
+#include "app/command/json.hpp"
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
@@ -83,37 +83,30 @@ void share_cores(const Ranks& ranks) {
 
 std::string statistics_json(const Request& request, const Statistics& statistics,
                             const std::vector<Use>& uses, double reading, double writing) {
-  nlohmann::ordered_json json;
+  cli::Json json;
   json["flaunay"] = version();
   json["input"] = request.input;
-  json["points"] = statistics.points;
-  json["duplicates"] = statistics.duplicates;
-  json["triangles"] = statistics.triangles;
-  json["hull_vertices"] = statistics.hull_vertices;
+  cli::add_counts(json, statistics);
   json["seconds"] = {{"reading", reading}, {"triangulating", statistics.seconds}, {"writing", writing}};
   json["points_per_second"] = static_cast<double>(statistics.points) / statistics.seconds;
   json["undecided_predicates"] = statistics.undecided;
   json["device"] = statistics.device;
   json["host_points"] = statistics.host_points;
-  json["phases"] = nlohmann::ordered_json::array();
-  for (const PhaseStatistics& phase : statistics.phases)
-    json["phases"].push_back({{"name", phase.name}, {"seconds", phase.seconds}});
-  json["rounds"] = nlohmann::ordered_json::array();
-  for (const Round& round : statistics.rounds) {
-    json["rounds"].push_back({{"points", round.points},
-                              {"ranks", round.ranks},
-                              {"most_points_of_a_rank", round.most},
-                              {"triangles", round.triangles},
-                              {"handed_on", round.handed_on}});
-  }
-  json["ranks"] = nlohmann::ordered_json::array();
-  for (const Use& use : uses) {
-    json["ranks"].push_back({{"triangles", use.triangles},
-                             {"bytes_sent", use.bytes_sent},
-                             {"cpu_seconds", use.cpu_seconds},
-                             {"peak_bytes", use.peak_bytes}});
-  }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  json["phases"] = cli::phases_json(statistics.phases);
+  json["rounds"] = cli::list_json(statistics.rounds, [](const Round& round) -> cli::Json {
+    return {{"points", round.points},
+            {"ranks", round.ranks},
+            {"most_points_of_a_rank", round.most},
+            {"triangles", round.triangles},
+            {"handed_on", round.handed_on}};
+  });
+  json["ranks"] = cli::list_json(uses, [](const Use& use) -> cli::Json {
+    return {{"triangles", use.triangles},
+            {"bytes_sent", use.bytes_sent},
+            {"cpu_seconds", use.cpu_seconds},
+            {"peak_bytes", use.peak_bytes}};
+  });
+  return cli::text_of(json);
 }
 
 std::string host_note(const Statistics& statistics) {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "app/files/rows.hpp"
+#include "app/files/npy.hpp"
 #include "app/verify/verify.hpp"
 #include "flaunay/chunks.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "app/files/rows.hpp"
+#include "app/files/npy.hpp"
 #include "app/verify/buffer.hpp"
 #include "app/verify/describe.hpp"
 #include "app/verify/exact.hpp"
