@@ -33,14 +33,14 @@ void check_stream_output(const std::string& path) {
 }
 
 void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
-                const std::string& scratch) {
+                const std::optional<std::string>& scratch) {
   std::vector<SizedOutput> files;
   for (const MeshArray array : {MeshArray::triangles, MeshArray::neighbors, MeshArray::representatives}) {
     const std::uint64_t entries = array == MeshArray::representatives ? n : 2 * n * columns_of(array);
     files.push_back({paths[static_cast<std::size_t>(array)], entries * bytes_of(type)});
   }
   // It may be on the same disk as an output.
-  files.push_back({scratch_folder(scratch), n * kScratchBytesPerPoint, true});
+  if (scratch) files.push_back({scratch_folder(*scratch), n * kScratchBytesPerPoint, true});
   check_disk_space(files);
 }
 

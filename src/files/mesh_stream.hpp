@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,10 +48,10 @@ class MeshFiles : public MeshSink {
 };
 
 /// Throws Error(input) if the disks have no room for the arrays of n points, which have at most 2 n
-/// triangles, and for the points of chunks in the scratch folder. The hull is not counted, since it is long
-/// for few inputs.
+/// triangles, and for the points of chunks in the scratch folder, if there is one. The hull is not counted,
+/// since it is long for few inputs.
 void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
-                const std::string& scratch);
+                const std::optional<std::string>& scratch);
 
 /// Entries per row of an array's file; 0: it has one dimension.
 std::size_t columns_of(MeshArray array);

@@ -23,17 +23,29 @@ namespace {
 constexpr std::uint64_t kMostPoints32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kMostPointsWithRows32 = kMostPoints32 / 2;
 
-ChunkStatistics triangulate_file(const ChunkRequest& request, PointSource& points, MeshSink& files,
-                                 Progress& progress) {
+// The names in a list that is separated by commas.
+std::vector<std::string> devices_of(const std::string& list) {
+  if (list.empty()) return {};
+  std::vector<std::string> devices;
+  std::istringstream names(list + ",");
+  for (std::string name; std::getline(names, name, ',');) {
+    if (name.empty()) throw Error(ErrorKind::usage, fmt::format("--device: '{}' has an empty name", list));
+    devices.push_back(name);
+  }
+  return devices;
+}
+
+ChunkStatistics triangulate_file(const Task& task, const ChunkRequest& request, PointSource& points,
+                                 MeshSink& files, Progress& progress) {
   ChunkOptions options;
   options.memory_bytes = request.memory_bytes;
   options.scratch = request.scratch;
-  options.devices = request.devices;
+  options.devices = devices_of(task.device);
   options.chunk_points = request.chunk_points;
   options.progress = [&progress](const std::string& stage, int round, double done) {
     progress.update(round > 0 ? fmt::format("{}, round {}", stage, round + 1) : stage, -1, done);
   };
-  return naming_files({{"point", request.input}}, [&] { return triangulate_chunks(points, files, options); });
+  return naming_files({{"point", task.input}}, [&] { return triangulate_chunks(points, files, options); });
 }
 
 }  // namespace
@@ -49,27 +61,14 @@ void add_chunk_options(CLI::App* command, ChunkRequest& request) {
   add_path(command, "--scratch", request.scratch,
            "Chunks: the folder for 24 bytes per point, in a file without a name; default: TMPDIR, or /tmp")
       ->check(CLI::ExistingDirectory);
-  add_index(command, request.index);
 }
 
 void add_index(CLI::App* command, std::string& index) {
-  index = "auto";
   command
       ->add_option("--index", index,
                    "Bits of the indices in .npy files; auto: 64 if there are more than 2^30 points")
       ->check(CLI::IsMember({"auto", "32", "64"}))
       ->capture_default_str();
-}
-
-std::vector<std::string> devices_of(const std::string& list) {
-  if (list.empty()) return {};
-  std::vector<std::string> devices;
-  std::istringstream names(list + ",");
-  for (std::string name; std::getline(names, name, ',');) {
-    if (name.empty()) throw Error(ErrorKind::usage, fmt::format("--device: '{}' has an empty name", list));
-    devices.push_back(name);
-  }
-  return devices;
 }
 
 bool asks_for_chunks(const CLI::App& command, const std::string& device_list) {
@@ -126,37 +125,30 @@ io::IndexType index_type(const std::string& choice, std::uint64_t points, const 
   return io::IndexType::int32;
 }
 
-int triangulate_in_chunks(const ChunkRequest& request, const std::string& note) {
-  OutputFiles outputs({request.input});
-  announce(outputs, request.results);
-  const auto paths = mesh_paths(request.results);
+int triangulate_in_chunks(const Task& task, const ChunkRequest& request, const std::string& note) {
+  OutputFiles outputs({task.input});
+  announce(outputs, task.results);
+  const auto paths = mesh_paths(task.results);
   for (const std::string& path : paths) io::check_stream_output(path);
 
   RunFacts facts;
-  facts.input = request.input;
+  facts.input = task.input;
   facts.mode = "blocks";
-  Progress progress(!request.quiet);
+  Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  const std::unique_ptr<PointSource> points = io::open_point_stream(request.input, request.scratch);
+  const std::unique_ptr<PointSource> points = io::open_point_stream(task.input, request.scratch);
   facts.reading_seconds = stopwatch.restart();
 
-  const io::IndexType type = index_type(request.index, points->size(), request.results);
+  const io::IndexType type = index_type(task.index, points->size(), task.results);
   io::check_room(paths, points->size(), type, request.scratch);
   io::MeshFiles files(outputs, paths, type);
-  const ChunkStatistics statistics = triangulate_file(request, *points, files, progress);
+  const ChunkStatistics statistics = triangulate_file(task, request, *points, files, progress);
 
-  stopwatch.restart();
-  progress.update("writing");
-  files.finish();
-  outputs.write_out();
-  facts.writing_seconds = stopwatch.seconds();
-  if (!request.results.stats.empty()) {
-    outputs.open(request.results.stats).print("{}", chunk_statistics_json(statistics, facts));
-  }
-  outputs.commit();
-  progress.finish();
-  if (!request.quiet) print(note + host_note(statistics.note) + chunk_summary(statistics, facts));
+  write_files(
+      task.results, facts, progress, outputs, [&] { files.finish(); },
+      [&] { return chunk_statistics_json(statistics, facts); });
+  if (!task.quiet) print(note + host_note(statistics.note) + chunk_summary(statistics, facts));
   return kSuccess;
 }
 

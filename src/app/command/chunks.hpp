@@ -14,23 +14,15 @@ namespace flaunay::cli {
 
 /// How to triangulate in chunks.
 struct ChunkRequest {
-  std::string input;
-  ResultPaths results;
-  std::string index;  ///< "auto", "32" or "64"
-  std::vector<std::string> devices;
   std::uint64_t memory_bytes = 0;  ///< 0: the library's choice
   std::size_t chunk_points = 0;    ///< 0: the library's choice
   std::string scratch;
-  bool quiet = false;
 };
 
-/// Adds --memory, --chunk-points, --scratch and --index.
+/// Adds --memory, --chunk-points and --scratch.
 void add_chunk_options(CLI::App* command, ChunkRequest& request);
 /// Adds --index: a choice for index_type.
 void add_index(CLI::App* command, std::string& index);
-
-/// The names in a list that is separated by commas.
-std::vector<std::string> devices_of(const std::string& list);
 
 /// Whether the options ask for chunks, by their size or by more than one device.
 bool asks_for_chunks(const CLI::App& command, const std::string& device_list);
@@ -49,6 +41,6 @@ std::string what_would_fit(const Triangulator& triangulator);
 io::IndexType index_type(const std::string& choice, std::uint64_t points, const ResultPaths& results);
 
 /// Reads, triangulates and writes. note: printed before the final line. Returns the exit code.
-int triangulate_in_chunks(const ChunkRequest& request, const std::string& note);
+int triangulate_in_chunks(const Task& task, const ChunkRequest& request, const std::string& note);
 
 }  // namespace flaunay::cli

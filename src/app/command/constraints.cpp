@@ -112,7 +112,7 @@ void check_carried(const io::Map& map, const std::string& input, const Constrain
 
 /// Whether the map is given to the library as polygons, which knows then which triangle is in which of them.
 /// Throws if the request needs that and it is not possible.
-bool are_polygons(const io::Map& map, const ConstrainedWork& work, const ConstraintRequest& request) {
+bool are_polygons(const io::Map& map, const Task& task, const ConstraintRequest& request) {
   const bool possible =
       map.polygon_count() > 0 && !map.has_others && map.holes.empty() && request.fill != FillRule::nesting;
   if (!possible && (request.separate || request.chose_overlaps || wants(request, AskedBy::map))) {
@@ -120,22 +120,21 @@ bool are_polygons(const io::Map& map, const ConstrainedWork& work, const Constra
         ErrorKind::usage,
         fmt::format("{}: --separate, --overlaps and --polygons need a file of polygons alone, without "
                     "lines and points, and neither --hole nor --fill nesting",
-                    io::printable(work.input)));
+                    io::printable(task.input)));
   }
   return possible;
 }
 
-ConstrainedOptions options_of(const ConstrainedWork& work, const ConstraintRequest& request,
-                              Progress& progress) {
+ConstrainedOptions options_of(const Task& task, const ConstraintRequest& request, Progress& progress) {
   ConstrainedOptions options;
-  ask_for(work.results, options);
+  ask_for(task.results, options);
   // Pictures draw the border.
-  options.neighbors = options.neighbors || !work.results.mesh.empty();
-  options.profile = work.profile;
+  options.neighbors = options.neighbors || !task.results.mesh.empty();
+  options.profile = task.profile;
   options.crossings = request.crossings;
   options.outside = request.outside;
   options.fill_rule = request.fill;
-  options.labels = io::shows_labels(work.results.mesh) || wants(request, AskedBy::labels);
+  options.labels = io::shows_labels(task.results.mesh) || wants(request, AskedBy::labels);
   options.progress = progress.callback();
   return options;
 }
@@ -220,24 +219,23 @@ std::string empty_note(const ConstrainedTriangulation& mesh, const ConstraintReq
   return "note: no triangles: no part of the plane is inside; --outside keep keeps what is outside\n";
 }
 
-void write_results(const ConstrainedWork& work, const ConstraintRequest& request, const io::Map& map,
+void write_results(const Task& task, const ConstraintRequest& request, const io::Map& map,
                    const ConstrainedTriangulation& mesh, RunFacts& facts, Progress& progress,
                    OutputFiles& outputs) {
-  Stopwatch stopwatch;
-  progress.update("writing");
-  const io::IndexType index = index_type(work.index, map.points.size(), work.results);
-  if (!work.results.mesh.empty()) {
-    io::write_mesh(outputs, work.results.mesh, {map.points, mesh, &mesh, &map, request.fill});
-  }
-  write_arrays(kTriangulationArrays, work.results.arrays, mesh, outputs, index);
-  write_arrays(kConstrainedArrays, request.arrays, mesh, outputs, index);
-  if (!request.points.empty()) io::write_points(outputs, request.points, map.points);
-  outputs.write_out();
-  facts.writing_seconds = stopwatch.seconds();
-  research::Triangulation statistics;
-  statistics.statistics = mesh.statistics;
-  commit_with_statistics(work.results, statistics, facts, outputs);
-  progress.finish();
+  const io::IndexType index = index_type(task.index, map.points.size(), task.results);
+  const auto write = [&] {
+    if (!task.results.mesh.empty()) {
+      io::write_mesh(outputs, task.results.mesh, {map.points, mesh, &mesh, &map, request.fill});
+    }
+    write_arrays(kTriangulationArrays, task.results.arrays, mesh, outputs, index);
+    write_arrays(kConstrainedArrays, request.arrays, mesh, outputs, index);
+    if (!request.points.empty()) io::write_points(outputs, request.points, map.points);
+  };
+  write_files(task.results, facts, progress, outputs, write, [&] {
+    research::Triangulation statistics;
+    statistics.statistics = mesh.statistics;
+    return statistics_json(statistics, facts);
+  });
 }
 
 }  // namespace
@@ -311,25 +309,20 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   const bool has_any = is_map || !request.segments.empty();
   if (!has_any) {
     for (const auto& options : {kChoices, file_options()}) {
-      for (const std::string& option : options) {
-        refuse(command, option, "needs segments: --constraints, or a .poly or .geojson file as input");
-      }
+      refuse_all(command, options, "needs segments: --constraints, or a .poly or .geojson file as input");
     }
     return false;
   }
   check_domain_options(command, input, request);
   if (io::ending_of(input) == ".poly" || !is_map) {
-    for (const char* option : {"--separate", "--overlaps", "--polygons"}) {
-      refuse(command, option, "needs polygons, from a .geojson file");
-    }
+    refuse_all(command, {"--separate", "--overlaps", "--polygons"}, "needs polygons, from a .geojson file");
   }
   if (request.separate) {
     refuse(command, "--hole", "does not say of which polygon, as it needs with --separate");
     refuse(command, "--overlaps", "with --separate, each polygon has triangles of its own");
   }
-  for (const char* option : {"--memory", "--chunk-points", "--scratch"}) {
-    refuse(command, option, "constraints need all points at once, not in chunks");
-  }
+  refuse_all(command, {"--memory", "--chunk-points", "--scratch"},
+             "constraints need all points at once, not in chunks");
   if (command.count("--mode") > 0 && command.get_option("--mode")->as<std::string>() != "blocks") {
     refuse(command, "--mode", "constraints need --mode blocks, the default");
   }
@@ -337,26 +330,26 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   return true;
 }
 
-int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRequest& asked) {
+int triangulate_with_constraints(const Task& task, const ConstraintRequest& asked) {
   ConstraintRequest request = asked;
-  OutputFiles outputs(io::is_map(work.input) ? io::files_of_map(work.input)
-                                             : std::vector<std::string>{work.input, request.segments});
-  announce(outputs, work.results, true);
+  OutputFiles outputs(io::is_map(task.input) ? io::files_of_map(task.input)
+                                             : std::vector<std::string>{task.input, request.segments});
+  announce(outputs, task.results, true);
   announce_constraints(outputs, request);
 
   RunFacts facts;
-  facts.input = work.input;
+  facts.input = task.input;
   facts.mode = "blocks";
-  Progress progress(!work.quiet);
+  Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Map map = read_domain(work.input, request);
-  check_carried(map, work.input, request);
-  const auto triangulate = are_polygons(map, work, request) ? triangulate_polygons : triangulate_segments;
+  io::Map map = read_domain(task.input, request);
+  check_carried(map, task.input, request);
+  const auto triangulate = are_polygons(map, task, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
 
   progress.update_slow("preparing the device", kCompiling);
-  Triangulator triangulator(work.device);
+  Triangulator triangulator(task.device);
   facts.opening_seconds = stopwatch.restart();
   const double* const coordinates = map.points.coordinates.data();
   facts.compiling_seconds = compile_kernels(map.points.size(), Mode::blocks, [&](std::size_t n) {
@@ -364,19 +357,19 @@ int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRe
   });
 
   ConstrainedTriangulation mesh = naming_files(
-      {{"segment", request.segments.empty() ? work.input : request.segments},
-       {"point", work.input},
-       {"polygon", work.input},
-       {"hole", work.input}},
-      [&] { return triangulate(triangulator, map, request, options_of(work, request, progress)); });
+      {{"segment", request.segments.empty() ? task.input : request.segments},
+       {"point", task.input},
+       {"polygon", task.input},
+       {"hole", task.input}},
+      [&] { return triangulate(triangulator, map, request, options_of(task, request, progress)); });
   facts.constraints = facts_of(map, request, mesh);
   map.points.coordinates.insert(map.points.coordinates.end(), mesh.added_points.begin(),
                                 mesh.added_points.end());
   map.points.markers = mesh.vertex_markers;
-  write_results(work, request, map, mesh, facts, progress, outputs);
+  write_results(task, request, map, mesh, facts, progress, outputs);
 
-  if (!work.quiet) {
-    std::string text = work.profile ? kernel_table(mesh.statistics) : "";
+  if (!task.quiet) {
+    std::string text = task.profile ? kernel_table(mesh.statistics) : "";
     for (const std::string& note : map.notes) text += "note: " + note + "\n";
     print(text + empty_note(mesh, request) + host_note(facts.compiling_note) +
           host_note(mesh.statistics.note) + summary(mesh.statistics, facts));

@@ -25,16 +25,6 @@ struct ConstraintRequest {
   bool chose_outside = false, chose_fill = false, chose_overlaps = false;
 };
 
-/// What a triangulation with constraints needs besides a ConstraintRequest.
-struct ConstrainedWork {
-  std::string input;
-  ResultPaths results;
-  std::string device;
-  std::string index;  ///< "auto", "32" or "64"
-  bool profile = false;
-  bool quiet = false;
-};
-
 void add_constraint_options(CLI::App* command, ConstraintRequest& request);
 /// Those of them that say what the segments are and what they bound: --constraints, --outside, --fill,
 /// --hole.
@@ -53,6 +43,6 @@ Rings rings_of(const io::Map& map, FillRule fill);
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request);
 
 /// Reads, triangulates and writes. Returns the exit code.
-int triangulate_with_constraints(const ConstrainedWork& work, const ConstraintRequest& request);
+int triangulate_with_constraints(const Task& task, const ConstraintRequest& request);
 
 }  // namespace flaunay::cli

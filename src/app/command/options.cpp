@@ -68,4 +68,8 @@ void refuse(const CLI::App& command, const std::string& option, const std::strin
   if (command.count(option) > 0) throw Error(ErrorKind::usage, fmt::format("{}: {}", option, reason));
 }
 
+void refuse_all(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason) {
+  for (const std::string& option : options) refuse(command, option, reason);
+}
+
 }  // namespace flaunay::cli

@@ -40,6 +40,7 @@ void add_quiet(CLI::App* command, bool& quiet);
 
 /// Throws Error(usage) with the reason if the option was given on the command line.
 void refuse(const CLI::App& command, const std::string& option, const std::string& reason);
+void refuse_all(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
 
 /// Names of values.
 template <typename Choice>

@@ -66,22 +66,25 @@ void announce(OutputFiles& outputs, const ResultPaths& paths, bool with_constrai
   outputs.add(paths.stats, ".json");
 }
 
-void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
-                            const RunFacts& facts, OutputFiles& outputs) {
-  if (!paths.stats.empty()) outputs.open(paths.stats).print("{}", statistics_json(mesh, facts));
+void write_files(const ResultPaths& paths, RunFacts& facts, Progress& progress, OutputFiles& outputs,
+                 const std::function<void()>& write, const std::function<std::string()>& statistics) {
+  const Stopwatch stopwatch;
+  progress.update("writing");
+  write();
+  outputs.write_out();
+  facts.writing_seconds = stopwatch.seconds();
+  if (!paths.stats.empty()) outputs.open(paths.stats).print("{}", statistics());
   outputs.commit();
+  progress.finish();
 }
 
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
                    RunFacts& facts, Progress& progress, OutputFiles& outputs, io::IndexType index) {
-  Stopwatch stopwatch;
-  progress.update("writing");
-  if (!paths.mesh.empty()) io::write_mesh(outputs, paths.mesh, {points, mesh});
-  write_arrays(kTriangulationArrays, paths.arrays, mesh, outputs, index);
-  outputs.write_out();
-  facts.writing_seconds = stopwatch.seconds();
-  commit_with_statistics(paths, mesh, facts, outputs);
-  progress.finish();
+  const auto write = [&] {
+    if (!paths.mesh.empty()) io::write_mesh(outputs, paths.mesh, {points, mesh});
+    write_arrays(kTriangulationArrays, paths.arrays, mesh, outputs, index);
+  };
+  write_files(paths, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
 }
 
 }  // namespace flaunay::cli

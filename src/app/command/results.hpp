@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -47,6 +48,16 @@ void add_array(CLI::App* command, const Array& array, std::string& path) {
   add_path(command, option_of(array.name), path, fmt::format("{}: .npy", array.text));
 }
 
+/// What every way to triangulate is asked for.
+struct Task {
+  std::string input;
+  ResultPaths results;
+  std::string device;
+  std::string index = "auto";  ///< "auto", "32" or "64"
+  bool profile = false;
+  bool quiet = false;
+};
+
 void add_results(CLI::App* command, ResultPaths& paths);
 /// Without --output; in_chunks: only the arrays that triangulations in chunks have.
 void add_result_arrays(CLI::App* command, ResultPaths& paths, bool in_chunks = false);
@@ -73,12 +84,12 @@ void write_arrays(const Table& table, const ArrayPaths<Table>& paths, const Mesh
     }
   });
 }
-/// Writes the statistics of `mesh`, if they have a path, and commits all files.
-void commit_with_statistics(const ResultPaths& paths, const research::Triangulation& mesh,
-                            const RunFacts& facts, OutputFiles& outputs);
+/// Calls `write`, which writes all files but the statistics, and then writes those, if they have a path,
+/// since they say how long writing the others took. Commits the files, and ends the progress.
+void write_files(const ResultPaths& paths, RunFacts& facts, Progress& progress, OutputFiles& outputs,
+                 const std::function<void()>& write, const std::function<std::string()>& statistics);
 
-/// Writes and commits the files, and ends the progress. The statistics come last, because they say how long
-/// writing the others took.
+/// Writes the files of a triangulation in this way.
 void write_results(const ResultPaths& paths, const io::Points& points, const research::Triangulation& mesh,
                    RunFacts& facts, Progress& progress, OutputFiles& outputs,
                    io::IndexType index = io::IndexType::int32);

@@ -24,9 +24,7 @@ namespace flaunay::cli {
 
 namespace {
 
-struct TriangulateRequest {
-  std::string input;
-  ResultPaths results;
+struct TriangulateRequest : Task {
   Mode mode = Mode::blocks;
   Cut cut = Cut::interquartile;
   Hull dividing_paths = Hull::prune;
@@ -34,11 +32,8 @@ struct TriangulateRequest {
   int partition_levels = 0;
   int threads = 0;
   bool count = false;
-  std::string device;
-  bool profile = false;
-  bool quiet = false;
   bool in_chunks = false;  ///< the options ask for it
-  ChunkRequest chunks;     ///< without what the other members say, too
+  ChunkRequest chunks;
   bool has_constraints = false;
   ConstraintRequest constraints;
 };
@@ -52,17 +47,15 @@ const research::ModeInfo& info_of(Mode mode) {
 void check_combination(const CLI::App& command, const TriangulateRequest& request) {
   const research::ModeInfo& mode = info_of(request.mode);
   if (mode.on_host) {
-    for (const char* option : {"--device", "--profile"}) {
-      refuse(command, option, fmt::format("mode {} runs on the host, without a device", mode.name));
-    }
+    refuse_all(command, {"--device", "--profile"},
+               fmt::format("mode {} runs on the host, without a device", mode.name));
   } else if (request.dividing_paths == Hull::monotone_chain) {
     refuse(command, "--hull-variant",
            fmt::format("monotone-chain needs --mode recursive, not {}", mode.name));
   }
   if (!mode.cuts_regions) {
-    for (const char* option : {"--cut", "--hull-variant"}) {
-      refuse(command, option, fmt::format("mode {} has no such choice; take --mode flattened", mode.name));
-    }
+    refuse_all(command, {"--cut", "--hull-variant"},
+               fmt::format("mode {} has no such choice; take --mode flattened", mode.name));
   }
   if (!mode.counts) {
     refuse(command, "--count", fmt::format("mode {} does not count; take --mode flattened", mode.name));
@@ -73,20 +66,9 @@ void check_combination(const CLI::App& command, const TriangulateRequest& reques
     refuse(command, "--finish", "--count needs --finish levels");
   }
   if (request.mode != Mode::partition) {
-    for (const char* option : {"--partition-levels", "--threads"}) {
-      refuse(command, option, fmt::format("needs --mode partition, not {}", mode.name));
-    }
+    refuse_all(command, {"--partition-levels", "--threads"},
+               fmt::format("needs --mode partition, not {}", mode.name));
   }
-}
-
-// With what the other members of the request say.
-ChunkRequest chunk_request(const TriangulateRequest& request) {
-  ChunkRequest chunks = request.chunks;
-  chunks.input = request.input;
-  chunks.results = request.results;
-  chunks.devices = devices_of(request.device);
-  chunks.quiet = request.quiet;
-  return chunks;
 }
 
 // Opens the device before the points are read if there are so many that they may not fit. Returns whether
@@ -110,7 +92,7 @@ int triangulate_too_many(const TriangulateRequest& request, std::uint64_t points
                     request.profile ? "--profile" : "--output (but with --triangles and --neighbors)"));
   }
   triangulator.reset();
-  return triangulate_in_chunks(chunk_request(request), fmt::format("note: {}\n", reason));
+  return triangulate_in_chunks(request, request.chunks, fmt::format("note: {}\n", reason));
 }
 
 RunFacts facts_of(const TriangulateRequest& request) {
@@ -143,12 +125,8 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
 int triangulate(const TriangulateRequest& request) {
   // The request is checked before any work begins, and the input before a device is opened.
   io::format_of(request.input, io::Use::read_points);
-  if (request.in_chunks) return triangulate_in_chunks(chunk_request(request), "");
-  if (request.has_constraints) {
-    return triangulate_with_constraints({request.input, request.results, request.device, request.chunks.index,
-                                         request.profile, request.quiet},
-                                        request.constraints);
-  }
+  if (request.in_chunks) return triangulate_in_chunks(request, request.chunks, "");
+  if (request.has_constraints) return triangulate_with_constraints(request, request.constraints);
   OutputFiles outputs({request.input});
   announce(outputs, request.results);
   const std::uint64_t about = io::estimate_points(request.input);
@@ -167,7 +145,7 @@ int triangulate(const TriangulateRequest& request) {
   progress.update("reading");
   const io::Points points = io::read_points(request.input);
   facts.reading_seconds = stopwatch.restart();
-  const io::IndexType index = index_type(request.chunks.index, points.size(), request.results);
+  const io::IndexType index = index_type(request.index, points.size(), request.results);
 
   const research::Options options = options_of(request, progress);
   research::Triangulation mesh;
@@ -237,6 +215,7 @@ void add_triangulate(CLI::App& app, Action& action) {
           "between them, or all: triangulates in chunks, on each of them");
   add_constraint_options(command, request->constraints);
   add_chunk_options(command, request->chunks);
+  add_index(command, request->index);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
   command->add_flag("--count", request->count, "Count operations, for a table and for the statistics (slow)");
   add_quiet(command, request->quiet);

@@ -165,15 +165,12 @@ int verify(const VerifyRequest& request) {
 /// Whether segments are given. Throws Error(usage) for options that do not go together.
 bool has_constraints(const CLI::App& command, VerifyRequest& request) {
   if (!io::is_map(request.points) && request.constraints.segments.empty()) {
-    for (const char* option : {"--outside", "--fill", "--hole", "--constraint-edges"}) {
-      refuse(command, option, "needs segments: --constraints, or a .poly or .geojson file with the points");
-    }
+    refuse_all(command, {"--outside", "--fill", "--hole", "--constraint-edges"},
+               "needs segments: --constraints, or a .poly or .geojson file with the points");
     return false;
   }
   check_domain_options(command, request.points, request.constraints);
-  for (const char* option : {"--memory", "--scratch"}) {
-    refuse(command, option, "constraints are checked in memory, not in chunks");
-  }
+  refuse_all(command, {"--memory", "--scratch"}, "constraints are checked in memory, not in chunks");
   if (!request.constraint_edges.empty() && io::ending_of(request.constraint_edges) != ".npy") {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: --constraint-edges needs an .npy file", request.constraint_edges));

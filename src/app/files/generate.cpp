@@ -43,16 +43,9 @@ GeneratedPoint direction(double turns) {
     sine = 1 - sine * square / (k * (k + 1));
   }
   sine *= angle;
-  switch (quarter % 4) {
-    case 0:
-      return {cosine, sine};
-    case 1:
-      return {-sine, cosine};
-    case 2:
-      return {-cosine, -sine};
-    default:
-      return {sine, -cosine};
-  }
+  GeneratedPoint at = {cosine, sine};
+  for (int k = 0; k < quarter % 4; ++k) at = {-at.y, at.x};
+  return at;
 }
 
 }  // namespace
@@ -156,23 +149,21 @@ struct IntegerPoint {
   }
 };
 
-/// A prime 1 mod 4 as a^2 + b^2, and its power in the squared radius.
-struct GaussianPrime {
-  std::int64_t a, b;
-  int power;
-};
+/// 5, 13, 17, ...: primes that are 1 mod 4, as x^2 + y^2.
+constexpr IntegerPoint kPrimes[] = {{2, 1}, {3, 2}, {4, 1}, {5, 2}, {6, 1},
+                                    {5, 4}, {7, 2}, {6, 5}, {8, 3}, {8, 5}};
 
-/// All points of the integer circle whose squared radius is the product of the primes' powers: the Gaussian
-/// integers of that norm. z^k conj(z)^(power - k) for each prime, times the four units, gives each once.
-std::vector<IntegerPoint> integer_circle_points(const std::vector<GaussianPrime>& primes) {
+/// All points of the integer circle whose squared radius is the product of the first primes to these powers:
+/// the Gaussian integers of that norm. z^k conj(z)^(power - k) for each prime, times the four units, gives
+/// each once.
+std::vector<IntegerPoint> integer_circle_points(const std::vector<int>& powers) {
   std::vector<IntegerPoint> points = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-  for (const GaussianPrime& prime : primes) {
+  for (std::size_t j = 0; j < powers.size(); ++j) {
+    const IntegerPoint z = kPrimes[j], conjugate = {z.x, -z.y};
     std::vector<IntegerPoint> products;
-    for (int k = 0; k <= prime.power; ++k) {
+    for (int k = 0; k <= powers[j]; ++k) {
       IntegerPoint factor = {1, 0};
-      for (int i = 0; i < prime.power; ++i) {
-        factor = factor.times(i < k ? IntegerPoint{prime.a, prime.b} : IntegerPoint{prime.a, -prime.b});
-      }
+      for (int i = 0; i < powers[j]; ++i) factor = factor.times(i < k ? z : conjugate);
       for (const IntegerPoint& p : points) products.push_back(p.times(factor));
     }
     points = std::move(products);
@@ -181,27 +172,12 @@ std::vector<IntegerPoint> integer_circle_points(const std::vector<GaussianPrime>
 }
 
 MakePoint integer_circle(std::size_t n, Random& random) {
-  // 5 = 2^2 + 1^2, 13 = 3^2 + 2^2, ...; each circle has more points than the one before, 4 to 36,864.
-  const std::vector<std::vector<GaussianPrime>> circles = {
-      {},
-      {{2, 1, 1}, {3, 2, 1}},
-      {{2, 1, 2}, {3, 2, 1}, {4, 1, 1}},
-      {{2, 1, 2}, {3, 2, 2}, {4, 1, 1}, {5, 2, 1}, {6, 1, 1}},
-      {{2, 1, 2}, {3, 2, 2}, {4, 1, 2}, {5, 2, 1}, {6, 1, 1}, {5, 4, 1}, {7, 2, 1}},
-      {{2, 1, 3},
-       {3, 2, 3},
-       {4, 1, 2},
-       {5, 2, 2},
-       {6, 1, 1},
-       {5, 4, 1},
-       {7, 2, 1},
-       {6, 5, 1},
-       {8, 3, 1},
-       {8, 5, 1}},
-  };
+  // Each circle has more points than the one before, 4 to 36,864.
+  const std::vector<std::vector<int>> circles = {
+      {}, {1, 1}, {2, 1, 1}, {2, 2, 1, 1, 1}, {2, 2, 2, 1, 1, 1, 1}, {3, 3, 2, 2, 1, 1, 1, 1, 1, 1}};
   std::vector<IntegerPoint> points;
-  for (const auto& primes : circles) {
-    points = integer_circle_points(primes);
+  for (const std::vector<int>& powers : circles) {
+    points = integer_circle_points(powers);
     if (points.size() >= n) break;
   }
   // Scaled by 1, 2, 3, ..., the largest circle gives more circles of as many exactly cocircular points.

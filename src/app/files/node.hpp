@@ -1,4 +1,4 @@
-// Triangle's .node files. Their vertices, a header and then a line per vertex, are in .poly files, too.
+// Triangle's .node and .poly files, which both have vertices: a header, and then a line per vertex.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/files/map.hpp"
 #include "app/files/points.hpp"
 #include "app/files/text.hpp"
 #include "files/output.hpp"
@@ -55,6 +56,10 @@ struct NodeFile {
   std::vector<std::int32_t> indices;  // the first attribute of each vertex, if asked for
 };
 NodeFile read_node(const std::string& path, bool with_indices);
+
+/// Reads a .poly file. nodes: the vertices that one without its own refers to, which the map then does not
+/// have; null to read them from the .node file beside it. Throws Error(input) that names the line.
+Map read_poly(const std::string& path, const NodeFile* nodes);
 
 /// Writes a .node file, numbered from 0, without attributes, and with markers if there are some.
 void write_node(OutputFile& file, const Points& points);

@@ -1,9 +1,9 @@
-#include "app/files/poly.hpp"
-
+// Triangle's .poly files: vertices, segments, holes and regions.
 #include <string_view>
 #include <utility>
 
 #include "app/files/formats.hpp"
+#include "app/files/node.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/files/poly.hpp"
+#include "app/files/node.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {

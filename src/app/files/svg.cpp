@@ -43,35 +43,26 @@ std::string ramp_color(std::span<const int> ramp, int shade) {
 class Picture {
  public:
   Picture(OutputFile& file, const MeshContents& contents)
-      : points_(contents.points.size()),
-        mesh_(contents.mesh),
-        constraints_(contents.constrained),
-        fill_rule_(contents.fill_rule),
-        drawing_(file, contents.points) {}
+      : contents_(contents), mesh_(contents.mesh), drawing_(file, contents.points) {}
 
   void write() {
     choose_units();
-    const char* kind = constraints_ == nullptr ? "Delaunay" : "Constrained Delaunay";
-    drawing_.begin(fmt::format("{} triangulation of {}", kind, counted(points_, "point")));
+    const char* kind = is_constrained() ? "Constrained Delaunay" : "Delaunay";
+    drawing_.begin(fmt::format("{} triangulation of {}", kind, counted(point_count(), "point")));
     write_triangles();
     if (!mesh_.triangles.empty()) write_edges();
-    if (constraints_ == nullptr) {
-      write_hull();
-    } else {
-      write_constraints();
-    }
-    if (points_ <= kDotsUpTo) write_dots();
+    is_constrained() ? write_constraints() : write_hull();
+    if (point_count() <= kDotsUpTo) write_dots();
     drawing_.end(caption());
   }
 
  private:
-  std::size_t triangle_count() const { return mesh_.triangles.size() / 3; }
-  std::size_t added_count() const {
-    return constraints_ == nullptr ? 0 : constraints_->added_points.size() / 2;
-  }
+  std::size_t point_count() const { return contents_.points.size(); }
+  std::size_t added_count() const { return contents_.constraints().added_points.size() / 2; }
+  bool is_constrained() const { return contents_.constrained != nullptr; }
   bool inside(std::int32_t v) const { return drawing_.contains(drawing_.position(v)); }
   std::array<Position, 3> corners(std::size_t t) const {
-    const std::int32_t* const v = &mesh_.triangles[3 * t];
+    const std::int32_t* const v = contents_.corners(t);
     return {drawing_.position(v[0]), drawing_.position(v[1]), drawing_.position(v[2])};
   }
   /// The corner after one, in its triangle.
@@ -98,7 +89,7 @@ class Picture {
     const double tile = std::max(8 * typical_edge_, 4.0);
     // Shade, then tile by tile, so that relative coordinates are short; and the triangle.
     std::vector<std::pair<std::uint64_t, std::size_t>> shaded;
-    for (std::size_t t = 0; t < triangle_count(); ++t) {
+    for (std::size_t t = 0; t < contents_.triangle_count(); ++t) {
       if (!visible(t)) continue;
       Position center{0, 0};
       for (const Position& p : corners(t)) {
@@ -127,13 +118,13 @@ class Picture {
 
   /// Whether a triangle is inside, as far as that is known.
   bool is_inside(std::size_t t) const {
-    if (constraints_ == nullptr || constraints_->depths.empty()) return true;
-    const std::int32_t depth = constraints_->depths[t];
-    return fill_rule_ == FillRule::nesting ? depth % 2 == 1 : depth != 0;
+    if (contents_.constraints().depths.empty()) return true;
+    const std::int32_t depth = contents_.constraints().depths[t];
+    return contents_.fill_rule == FillRule::nesting ? depth % 2 == 1 : depth != 0;
   }
   std::string color(int shade) const {
     if (shade == kOutsideShade) return "#eeece6";
-    return constraints_ == nullptr ? ramp_color(kRamp, shade) : ramp_color(kInsideRamp, shade);
+    return is_constrained() ? ramp_color(kInsideRamp, shade) : ramp_color(kRamp, shade);
   }
 
   /// Whether the bounding box meets the view.
@@ -149,7 +140,7 @@ class Picture {
   }
   void measure_areas() {
     std::vector<double> logs;
-    for (std::size_t t = 0; t < triangle_count(); t += triangle_count() / kSample + 1) {
+    for (std::size_t t = 0; t < contents_.triangle_count(); t += contents_.triangle_count() / kSample + 1) {
       if (visible(t)) logs.push_back(log_area(t));
     }
     if (logs.empty()) return;
@@ -172,15 +163,15 @@ class Picture {
     drawing_.begin_path("id=\"{}\" stroke=\"{}\" stroke-width=\"{:.3g}\"", name, color, width * units_);
   }
   void begin_edges(const std::string& name) {
-    begin_stroke(name, constraints_ == nullptr ? "#4a5d73" : "#6d8299", line_width_);
+    begin_stroke(name, is_constrained() ? "#6d8299" : "#4a5d73", line_width_);
   }
 
   /// Whether the edge from corner i to the next one is to be drawn here: of the two triangles at an inner
   /// edge, one has it from its smaller index to its larger. Others are at the border, which has a path of its
   /// own without constraints: the hull.
   bool is_drawn(std::size_t i) const {
-    const bool is_border = constraints_ != nullptr && !mesh_.neighbors.empty() &&
-                           mesh_.neighbors[i % 3 == 0 ? i + 2 : i - 1] < 0;
+    const bool is_border =
+        is_constrained() && !mesh_.neighbors.empty() && mesh_.neighbors[i % 3 == 0 ? i + 2 : i - 1] < 0;
     return is_border || mesh_.triangles[i] < mesh_.triangles[next(i)];
   }
 
@@ -199,7 +190,7 @@ class Picture {
       }
     }
     // Each point's edges that may not be drawn yet, the first one last.
-    std::vector<std::vector<std::size_t>> around(points_);
+    std::vector<std::vector<std::size_t>> around(point_count());
     for (std::size_t e = edges.size(); e-- > 0;) {
       for (const std::int32_t v : edges[e]) around[static_cast<std::size_t>(v)].push_back(e);
     }
@@ -209,7 +200,7 @@ class Picture {
       return !around[v].empty();
     };
     std::size_t trails = 0;
-    for (std::size_t v = 0; v < points_; ++v) {
+    for (std::size_t v = 0; v < point_count(); ++v) {
       while (has_edge(v)) {
         if (++trails % kTrailsPerPath == 0) {
           drawing_.end_path();
@@ -243,28 +234,29 @@ class Picture {
 
   void write_constraints() {
     begin_stroke("constraints", "#c84c09", std::clamp(2.8 * line_width_, 1.2, 3.0));
-    const std::vector<std::int32_t>& edges = constraints_->constraint_edges;
+    const std::vector<std::int32_t>& edges = contents_.constraints().constraint_edges;
     for (std::size_t e = 0; e < edges.size(); e += 2) drawing_.edge(edges[e], edges[e + 1]);
     drawing_.end_path();
   }
 
   void write_dots() {
     const double size = std::clamp(0.14 * typical_edge_, 2.0, 7.0);
-    write_dots("points", "#24405f", size, 0);
-    if (added_count() > 0) write_dots("added", "#ffffff", 0.6 * size, points_ - added_count());
-  }
-  void write_dots(const char* name, const char* color, double size, std::size_t begin) {
-    begin_stroke(name, color, size);
-    for (std::size_t i = begin; i < points_; ++i) drawing_.dot(drawing_.positions()[i]);
-    drawing_.end_path();
+    const auto write = [&](const char* name, const char* color, double width, std::size_t begin) {
+      begin_stroke(name, color, width);
+      for (std::size_t i = begin; i < point_count(); ++i) drawing_.dot(drawing_.positions()[i]);
+      drawing_.end_path();
+    };
+    write("points", "#24405f", size, 0);
+    if (added_count() > 0) write("added", "#ffffff", 0.6 * size, point_count() - added_count());
   }
 
   std::string caption() const {
-    std::string text = counted(points_, "point") + " · " + counted(triangle_count(), "triangle");
-    if (constraints_ == nullptr) {
+    std::string text =
+        counted(point_count(), "point") + " · " + counted(contents_.triangle_count(), "triangle");
+    if (!is_constrained()) {
       text += " · " + with_thousands(mesh_.hull.size()) + " on the hull";
     } else {
-      text += " · " + counted(constraints_->constraint_edges.size() / 2, "constraint edge");
+      text += " · " + counted(contents_.constraints().constraint_edges.size() / 2, "constraint edge");
       if (added_count() > 0) text += " · " + counted(added_count(), "point") + " added where segments cross";
     }
     std::size_t duplicates = 0;
@@ -274,10 +266,8 @@ class Picture {
     return duplicates > 0 ? text + " · " + counted(duplicates, "duplicate") : text;
   }
 
-  const std::size_t points_;
+  const MeshContents& contents_;
   const Triangulation& mesh_;
-  const ConstrainedTriangulation* constraints_;
-  const FillRule fill_rule_;
   Drawing drawing_;
   double typical_edge_ = 0, line_width_ = 1;      // pixels
   double units_ = 1;                              // whole-number coordinates per pixel

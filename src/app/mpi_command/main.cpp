@@ -23,7 +23,6 @@
 #include "app/command/results.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/point_stream.hpp"
-#include "files/disk_space.hpp"
 #include "files/mesh_stream.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/mpi.hpp"
@@ -144,16 +143,6 @@ std::array<Share, io::kMeshArrays> shares_of(const Triangulation& mesh) {
            {mesh.representatives, static_cast<std::uint64_t>(mesh.first_point), mesh.statistics.points}}};
 }
 
-// Before any work: the outputs have room, as far as that is known.
-io::IndexType check_outputs(const Request& request, std::uint64_t points) {
-  const io::IndexType type = cli::index_type(request.index, points, request.results);
-  const std::uint64_t bytes = (type == io::IndexType::int32 ? 4 : 8) * points;
-  const auto paths = cli::mesh_paths(request.results);
-  // There are at most twice as many triangles as points; the hull is long for few inputs.
-  io::check_disk_space({{paths[0], 6 * bytes}, {paths[1], 6 * bytes}, {paths[3], bytes}});
-  return type;
-}
-
 // Points of a binary file, which all ranks read.
 std::unique_ptr<PointSource> open_points(Ranks& ranks, const std::string& path) {
   std::unique_ptr<PointSource> points;
@@ -214,13 +203,12 @@ int triangulate(Ranks& ranks, const Request& request) {
   cli::Stopwatch stopwatch;
   progress.update("reading");
   const std::unique_ptr<PointSource> file = open_points(ranks, request.input);
+  const Paths paths = cli::mesh_paths(request.results);
   io::IndexType type = io::IndexType::int64;
-  std::vector<int> types(1);
   ranks.together([&] {
-    if (ranks.rank() == 0) types.front() = static_cast<int>(check_outputs(request, file->size()));
+    type = cli::index_type(request.index, file->size(), request.results);
+    if (ranks.rank() == 0) io::check_room(paths, file->size(), type, std::nullopt);
   });
-  ranks.broadcast(types);
-  type = static_cast<io::IndexType>(types.front());
   std::vector<double> points = read_share(ranks, *file);
   const double reading = stopwatch.restart();
 
@@ -238,7 +226,7 @@ int triangulate(Ranks& ranks, const Request& request) {
   stopwatch.restart();
   const auto shares = shares_of(mesh);
   io::Outputs outputs;
-  io::MeshFiles files = open_files(ranks, outputs, cli::mesh_paths(request.results), type);
+  io::MeshFiles files = open_files(ranks, outputs, paths, type);
   ranks.together([&] {
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const auto array = static_cast<MeshArray>(k);
