@@ -163,11 +163,6 @@ class InputFile {
     }
   }
 
-  /// read_at as a function.
-  auto reader() const {
-    return [this](std::uint64_t begin, std::size_t count, void* to) { read_at(begin, count, to); };
-  }
-
   /// All bytes. Nothing can be read afterwards.
   std::string all() {
     load();

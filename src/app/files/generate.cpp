@@ -1,5 +1,6 @@
 #include "app/files/generate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -368,13 +369,15 @@ void generate(const std::string& distribution, std::size_t n, std::uint64_t seed
     Random random(seed);
     const MakePoint make = known.maker(n, random);
     constexpr std::size_t kPiece = std::size_t{1} << 16;
-    std::vector<double> piece;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Point p = make(i);
-      piece.insert(piece.end(), {p.x, p.y});
-      if (piece.size() < 2 * kPiece && i + 1 < n) continue;
-      consume(piece.data(), piece.size() / 2);
-      piece.clear();
+    std::vector<double> piece(2 * std::min(n, kPiece));
+    for (std::size_t first = 0; first < n; first += kPiece) {
+      const std::size_t count = std::min(n - first, kPiece);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Point p = make(first + i);
+        piece[2 * i] = p.x;
+        piece[2 * i + 1] = p.y;
+      }
+      consume(piece.data(), count);
     }
     return;
   }

@@ -34,7 +34,7 @@ class RecordFile : public PointSource {
     if (first > size() || count > size() - first) {
       throw Error(ErrorKind::internal, "read beyond the last point");
     }
-    records_.read(file_.reader(), first, count, coordinates);
+    records_.read(file_, first, count, coordinates);
   }
 
  private:

@@ -39,7 +39,7 @@ Points read_records(const std::string& path, const Format& format) {
   points.coordinates.reserve(2 * records.size);
   host::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
   points.coordinates.resize(2 * records.size);
-  records.read(file.reader(), 0, records.size, points.coordinates.data());
+  records.read(file, 0, records.size, points.coordinates.data());
   check_finite(path, points);
   return points;
 }
@@ -78,14 +78,14 @@ void write_pairs(OutputFile& file, const double* coordinates, const std::int32_t
   file.write(coordinates, 2 * count * sizeof(double));
 }
 
-void PointRecords::read(const ReadAt& read_at, std::uint64_t first, std::size_t count,
+void PointRecords::read(const InputFile& file, std::uint64_t first, std::size_t count,
                         double* coordinates) const {
-  if (decode == nullptr) return read_at(begin + first * bytes, count * bytes, coordinates);
+  if (decode == nullptr) return file.read_at(begin + first * bytes, count * bytes, coordinates);
   constexpr std::size_t kPiece = std::size_t{1} << 15;
   std::vector<char> records(std::min(count, kPiece) * bytes);
   for (std::size_t done = 0; done < count; done += kPiece) {
     const std::size_t piece = std::min(count - done, kPiece);
-    read_at(begin + (first + done) * bytes, piece * bytes, records.data());
+    file.read_at(begin + (first + done) * bytes, piece * bytes, records.data());
     decode(records.data(), piece, coordinates + 2 * done);
   }
 }

@@ -28,10 +28,8 @@ struct PointRecords {
   /// Converts records; empty if they are x and y as doubles.
   std::function<void(const char* records, std::size_t count, double* coordinates)> decode = nullptr;
 
-  /// Reads bytes [begin, begin + count) of the file.
-  using ReadAt = std::function<void(std::uint64_t begin, std::size_t count, void* to)>;
-  /// Reads points [first, first + count).
-  void read(const ReadAt& read_at, std::uint64_t first, std::size_t count, double* coordinates) const;
+  /// Reads points [first, first + count) of the file.
+  void read(const InputFile& file, std::uint64_t first, std::size_t count, double* coordinates) const;
 };
 
 /// Reads the points of a text that comes in pieces of whole lines. Throws Error(input) that names the line

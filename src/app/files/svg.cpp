@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -179,6 +180,7 @@ class Picture {
   /// single segments.
   void write_edges() {
     std::vector<std::array<std::int32_t, 2>> edges;
+    std::vector<std::size_t> begin(point_count() + 1, 0);  // of each point's edges in `around`
     begin_edges("edges");
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
       const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[next(i)];
@@ -187,17 +189,21 @@ class Picture {
         drawing_.edge(v, w);
       } else if (!drawing_.is_same(drawing_.position(v), drawing_.position(w))) {
         edges.push_back({v, w});
+        ++begin[static_cast<std::size_t>(v) + 1];
+        ++begin[static_cast<std::size_t>(w) + 1];
       }
     }
-    // Each point's edges that may not be drawn yet, the first one last.
-    std::vector<std::vector<std::size_t>> around(point_count());
-    for (std::size_t e = edges.size(); e-- > 0;) {
-      for (const std::int32_t v : edges[e]) around[static_cast<std::size_t>(v)].push_back(e);
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<std::size_t> at(begin.begin(), begin.end() - 1), around(2 * edges.size());
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      for (const std::int32_t v : edges[e]) around[at[static_cast<std::size_t>(v)]++] = e;
     }
+    at.assign(begin.begin(), begin.end() - 1);
     std::vector<bool> drawn(edges.size(), false);
+    // The next edge at v that is not drawn yet; none at the end of v's list.
     const auto has_edge = [&](std::size_t v) {
-      while (!around[v].empty() && drawn[around[v].back()]) around[v].pop_back();
-      return !around[v].empty();
+      while (at[v] != begin[v + 1] && drawn[around[at[v]]]) ++at[v];
+      return at[v] != begin[v + 1];
     };
     std::size_t trails = 0;
     for (std::size_t v = 0; v < point_count(); ++v) {
@@ -208,7 +214,7 @@ class Picture {
         }
         drawing_.move_to(drawing_.positions()[v]);
         for (std::size_t from = v; has_edge(from);) {
-          const std::size_t e = around[from].back();
+          const std::size_t e = around[at[from]];
           drawn[e] = true;
           from = static_cast<std::size_t>(edges[e][0]) + static_cast<std::size_t>(edges[e][1]) - from;
           drawing_.line_to(drawing_.positions()[from]);
