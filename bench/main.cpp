@@ -17,9 +17,11 @@ int fail(int code, const std::string& message) { return cli::report_error("flaun
 int run(int argc, char** argv) {
   CLI::App app("Measures flaunay, its parts, and others that do the same.", "flaunay-bench");
   app.footer(
-      "Each subcommand prints tables and, with --json, writes a record; bench/plot.py RECORD.json -o "
-      "FILE.svg "
-      "draws it.\nFLAUNAY_DEVICE chooses the device where --device does not.");
+      R"(Each subcommand prints tables and, with --json, writes a record; bench/plot.py RECORD.json -o FILE.svg draws
+it. FLAUNAY_DEVICE chooses the device where --device does not. Whatever is timed takes turns, and the first run of
+each is not counted; what is over in less than 0.05 s is repeated within a run. Processor times are those of all
+threads of the process and of its children; on a GPU, only of the host's. The exit code is 1 if implementations'
+numbers of triangles or answers differ; a missed target does not change it.)");
   // Zero here, so that an unknown subcommand is reported by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;

@@ -7,7 +7,6 @@ DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
 OURS, PUBLISHED, ALTERNATE = ("prune", "interquartile"), ("balanced", "alternate"), ("prune", "alternate")
 DWYER = ("dwyer", "alternate")
 COMPONENTS = ["sorting", "cuts", "hull", "merge", "split", "endgame"]
-AGREEING_RATIO = 0.03  # prune's buckets begin at other points where all regions of a level are in one list
 
 INTRODUCTION = """# The paper's experiments, made again
 
@@ -38,10 +37,6 @@ DIFFERENCES = """
 """
 
 
-def method_name(method):
-    return "Dwyer's algorithm" if method == DWYER else f"{method[0]}, {method[1]} cuts"
-
-
 def percent(share, digits=0):
     return f"{100 * share:.{digits}f} %"
 
@@ -67,15 +62,18 @@ class Record:
     def medians(self, method, quantity, n=None):
         return {one: self.spread(method, one, quantity, n)[0] for one in DISTRIBUTIONS}
 
+    def row(self, table, method, distribution):
+        return next(row for row in self.record[table]
+                    if (row["algorithm"], row["cut"], row["distribution"]) == (*method, distribution))
+
     def levels(self, method, distribution, quantity):
         """Medians, level by level."""
-        return next(list(enumerate(row[quantity])) for row in self.record["levels"]
-                    if (row["algorithm"], row["cut"], row["distribution"]) == (*method, distribution))
+        return list(enumerate(self.row("levels", method, distribution)[quantity]))
 
     def endgame(self, method, distribution):
         """How many regions there are by their number of corners, when the end game begins."""
-        return next(list(zip(row["corners"], row["regions"])) for row in self.record["endgame"]
-                    if (row["algorithm"], row["cut"], row["distribution"]) == (*method, distribution))
+        row = self.row("endgame", method, distribution)
+        return list(zip(row["corners"], row["regions"]))
 
     def excess(self, method, quantity):
         """By how much more than on uniform points, by distribution."""
@@ -84,15 +82,10 @@ class Record:
 
 
 def endgame_sizes(histogram):
-    """Mean, median, largest number of corners, and the share of regions that have more than 50."""
+    """Mean and largest number of corners, and the share of regions that have more than 50."""
     regions = sum(count for _, count in histogram)
     mean = sum(corners * count for corners, count in histogram) / regions
-    below = 0
-    for corners, count in histogram:
-        below += count
-        if below >= regions / 2:
-            break
-    return mean, corners, histogram[-1][0], sum(count for size, count in histogram if size > 50) / regions
+    return mean, histogram[-1][0], sum(count for size, count in histogram if size > 50) / regions
 
 
 # ---- Claims
@@ -140,7 +133,7 @@ def claims(record):
     small, texts = [], []
     for method in (OURS, ALTERNATE):
         sizes = [endgame_sizes(record.endgame(method, one)) for one in DISTRIBUTIONS]
-        mean, _, largest, share = (max(column) for column in zip(*sizes))
+        mean, largest, share = (max(column) for column in zip(*sizes))
         small.append(mean < 10 and share < 0.01)
         texts.append(f"{method[1]} cuts: mean at most {mean:.1f}, over 50 at most {percent(share, 2)}, "
                      f"largest {largest}")
@@ -178,51 +171,9 @@ def claims(record):
 # ---- Markdown
 
 
-def table(header, rows, numbers=True):
-    lines = [header, ["---"] + ["--:" if numbers else "---"] * (len(header) - 1), *rows]
+def table(header, rows):
+    lines = [header, ["---"] * len(header), *rows]
     return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines) + "\n"
-
-
-def spreads(record, method, quantity, digits, n=None):
-    return [f"{a:.{digits}f} ({b:.{digits}f} to {c:.{digits}f})" for a, b, c in
-            (record.spread(method, one, quantity, n) for one in DISTRIBUTIONS)]
-
-
-def by_size_table(record, quantity, digits):
-    return table(["points", *DISTRIBUTIONS],
-                 [[n, *spreads(record, OURS, quantity, digits, n)] for n in record.sizes])
-
-
-def by_level_table(record, method, quantity, scale, digits):
-    columns = [dict(record.levels(method, one, quantity)) for one in DISTRIBUTIONS]
-    deepest = max(max(column) for column in columns)
-    return table(["level", *DISTRIBUTIONS],
-                 [[level, *(f"{scale * column[level]:.{digits}f}" if level in column else "" for column in columns)]
-                  for level in range(deepest + 1)])
-
-
-def components_table(record):
-    return table(["method", "distribution", *COMPONENTS, "all"],
-                 [[method_name(method), one, *(f"{record.spread(method, one, component)[0]:.1f}" for component in
-                                               COMPONENTS + ["operations_per_point"])]
-                  for method in record.methods for one in DISTRIBUTIONS])
-
-
-def endgame_table(record):
-    rows = []
-    for method in (OURS, ALTERNATE):
-        for one in DISTRIBUTIONS:
-            mean, median, largest, share = endgame_sizes(record.endgame(method, one))
-            rows.append([method[1], one, f"{mean:.2f}", median, largest, percent(share, 3)])
-    return table(["cuts", "distribution", "mean", "median", "largest", "over 50"], rows)
-
-
-def cuts_table(record):
-    return table(["cuts", *DISTRIBUTIONS],
-                 [[f"{method[1]}: {what}", *spreads(record, method, quantity, digits)] for method in (OURS, ALTERNATE)
-                  for what, quantity, digits in (("operations per point", "operations_per_point", 0),
-                                                 ("corners of the largest region", "largest_endgame", 0),
-                                                 ("most corners of a level / n", "most_corners_per_point", 2))])
 
 
 # ---- Figures
@@ -277,91 +228,51 @@ def endgame(record, panel, method):
 TITLES = {OURS: "flaunay", PUBLISHED: "the paper's variant", DWYER: "Dwyer's algorithm"}
 LARGEST, SIZES = "internal points of the largest region", "(internal points + corners) / n"
 COARSE = {"xlabel": "levels done", "yscale": "log"}
-# By file: the title, the size of a panel, and what draws each panel.
-FIGURES = {
-    "figure-7-work": ("Work against Dwyer's algorithm", (4.2, 3.2), [
-        (by_size, OURS, "operations_per_point", "operations per point"),
-        (by_size, DWYER, "operations_per_point", "operations per point"), (over_dwyer, OURS), (over_dwyer, PUBLISHED)]),
-    "figure-8-components": ("Work by component", (11, 3.65),
-                            [(components, "interquartile"), (components, "alternate")]),
-    "figure-9-depth": ("Depth, and work / depth", (4.2, 3.2), [
-        (on_log, method, quantity, label) for quantity, label in (("depth", "depth (operations)"),
-                                                                 ("parallelism", "work / depth"))
-        for method in (OURS, PUBLISHED)]),
-    "figures-10-and-11-levels": ("Subproblems of each level", (4.2, 3.2), [
-        (lambda *all: by_level(*all, yscale="log"), OURS, "largest_region", LARGEST),
-        (lambda *all: by_level(*all, yscale="log"), ALTERNATE, "largest_region", LARGEST),
-        (by_level, OURS, "region_sizes_per_point", SIZES), (by_level, ALTERNATE, "region_sizes_per_point", SIZES)]),
-    "figure-12-coarse-partition": ("What a coarse partition would cost", (4.2, 3.2), [
-        (lambda *all, title=TITLES[method]: by_level(*all, title=title, **COARSE), method, "work_before_over_dwyer",
-         "operations so far / Dwyer's total") for method in (OURS, PUBLISHED)]),
-    "figure-13-end-game": ("Regions when the end game begins", (4.2, 3.2), [(endgame, OURS), (endgame, ALTERNATE)]),
+# By file, numbered as in the paper, where those from 13 on are not: what it shows, the figure's title, the size of a
+# panel, and what draws each panel.
+SECTIONS = {
+    "figure-7-work": (
+        "Floating-point operations per point, and as multiples of Dwyer's. The paper has 1.1 to 2.5 times.",
+        "Work against Dwyer's algorithm", (4.2, 3.2), [
+            (by_size, OURS, "operations_per_point", "operations per point"),
+            (by_size, DWYER, "operations_per_point", "operations per point"), (over_dwyer, OURS),
+            (over_dwyer, PUBLISHED)]),
+    "figure-8-components": (
+        "Operations per point by component, medians, for each way to compute the dividing paths, beside Dwyer's.",
+        "Work by component", (11, 3.65), [(components, "interquartile"), (components, "alternate")]),
+    "figure-9-depth": (
+        "The critical path, summed over levels, and what it leaves for processors to do side by side.",
+        "Depth, and work / depth", (4.2, 3.2), [
+            (on_log, method, quantity, label) for quantity, label in (("depth", "depth (operations)"),
+                                                                     ("parallelism", "work / depth"))
+            for method in (OURS, PUBLISHED)]),
+    "figures-10-and-11-levels": (
+        "Internal points of the largest region of each level; internal points and border corners of all regions that "
+        "are cut at a level, relative to n. Cuts go through the median, so no region has more than half of its "
+        "parent's. Borders add to the sum, regions that are finished take from it.",
+        "Subproblems of each level", (4.2, 3.2), [
+            (lambda *all: by_level(*all, yscale="log"), OURS, "largest_region", LARGEST),
+            (lambda *all: by_level(*all, yscale="log"), ALTERNATE, "largest_region", LARGEST),
+            (by_level, OURS, "region_sizes_per_point", SIZES), (by_level, ALTERNATE, "region_sizes_per_point", SIZES)]),
+    "figure-12-coarse-partition": (
+        "Work up to each level, sorting included, relative to all of Dwyer's: what a coarse partitioner would have "
+        "done when it hands over to a sequential algorithm.",
+        "What a coarse partition would cost", (4.2, 3.2), [
+            (lambda *all, title=TITLES[method]: by_level(*all, title=title, **COARSE), method, "work_before_over_dwyer",
+             "operations so far / Dwyer's total") for method in (OURS, PUBLISHED)]),
+    "figure-13-end-game": (
+        "Corners of the regions that have no internal points left, all instances together.",
+        "Regions when the end game begins", (4.2, 3.2), [(endgame, OURS), (endgame, ALTERNATE)]),
 }
 
 
-def draw(record, file, path):
-    """Whether there is such a figure."""
-    if file not in FIGURES:
-        return False
-    title, size, panels = FIGURES[file]
-    header = dict(record.record, device="")
+def draw(record, title, size, panels, path):
+    header = dict(record.record, device="", driver="")
     figure, axes = drawing.new_figure(f"{title}; {record.largest} points at most", header, len(panels),
                                       1 if size[0] > 10 else 2, size)
     for axis, (function, *arguments) in zip(axes, panels):
         function(record, axis, *arguments)
     drawing.save(figure, path, axes)
-    return True
-
-
-def sections(record):
-    """(file, caption, tables) of each, numbered as in the paper; those from 13 on are not in it."""
-    operations = table(["method", *DISTRIBUTIONS], [[method_name(method), *spreads(record, method,
-                                                                                  "operations_per_point", 0)]
-                                                    for method in record.methods])
-    yield ("figure-7-work",
-           "Floating-point operations per point, and as multiples of Dwyer's. The paper has 1.1 to 2.5 times.",
-           f"{operations}\nflaunay's operations / Dwyer's:\n\n{by_size_table(record, 'over_dwyer', 3)}")
-    yield ("figure-8-components",
-           "Operations per point by component, medians, for each way to compute the dividing paths, "
-           "beside Dwyer's algorithm.", components_table(record))
-    yield ("figure-9-depth",
-           "The critical path, summed over levels, and what it leaves for processors to do side by side.",
-           f"Depth of flaunay:\n\n{by_size_table(record, 'depth', 0)}\nWork / depth of flaunay:\n\n"
-           f"{by_size_table(record, 'parallelism', 0)}")
-    yield ("figures-10-and-11-levels",
-           "Internal points of the largest region of each level; internal points and border corners of "
-           "all regions that are cut at a level, relative to n. Cuts go through the median, so no region has more than "
-           "half of its parent's. Borders add to the sum, regions that are finished take from it.",
-           f"The largest region, interquartile cuts:\n\n{by_level_table(record, OURS, 'largest_region', 1, 0)}\n"
-           "All regions / n, interquartile cuts:\n\n"
-           f"{by_level_table(record, OURS, 'region_sizes_per_point', 1, 3)}\nAll regions / n, alternate cuts:\n\n"
-           f"{by_level_table(record, ALTERNATE, 'region_sizes_per_point', 1, 3)}")
-    coarse = table(["until there are 16 regions", *DISTRIBUTIONS],
-                   [[what, *spreads(record, OURS, quantity, digits)] for what, quantity, digits in
-                    (("levels", "coarse_levels", 0), ("work with sorting / Dwyer's", "coarse_over_dwyer", 3),
-                     ("work after sorting / Dwyer's", "coarse_unsorted_over_dwyer", 3))])
-    yield ("figure-12-coarse-partition",
-           "Work up to each level, sorting included, relative to all of Dwyer's: what a coarse "
-           "partitioner would have done when it hands over to a sequential algorithm.",
-           "flaunay, percent of Dwyer's total before each level:\n\n"
-           f"{by_level_table(record, OURS, 'work_before_over_dwyer', 100, 1)}\n{coarse}")
-    yield ("figure-13-end-game", "Corners of the regions that have no internal points left, all instances together.",
-           endgame_table(record))
-    yield ("table-14-cuts",
-           "The axis of each cut: across the longer interquartile range, or x and y in turn as in the paper.",
-           cuts_table(record))
-
-
-def cross_check(rows):
-    if not rows:
-        return "Not made: there was no device.\n"
-    agree = all(abs(row["all"] - 1) <= AGREEING_RATIO for row in rows)
-    conclusion = ("They agree, so the figures hold for the kernels too." if agree else
-                  "They differ, so the figures hold for the twin only.")
-    keys = ["n", "all", "cut", "hull", "merge", "split", "endgame"]
-    return ("The flattened kernels' operations relative to those of the recursive twin, on one instance of each "
-            f"distribution; sorting is left out, as devices sort by radix. {conclusion}\n\n" +
-            table(["distribution", *keys], [[row["distribution"], *(row[key] for key in keys)] for row in rows]))
 
 
 def write(data, data_name, path):
@@ -369,22 +280,18 @@ def write(data, data_name, path):
     record = Record(data)
     name = os.path.splitext(path)[0]
     text = [INTRODUCTION, table(["record", ""], [
-        ["command", f"`{data['command']}`"], ["commit", data["commit"]], ["date", data["date"]],
-        ["host", f"{data['host']}; all counts but those of the cross-check are made on it"],
-        ["device", f"{data['device'] or 'none'}, for the cross-check"],
+        ["command", f"`{data['command']}`"], ["commit", f"{data['commit']}, {data['date']}"],
         ["inputs", f"{min(record.sizes)} to {record.largest} points, {data['runs']} instances of each distribution"],
-        ["numbers", f"medians of the instances, in brackets minimum to maximum ([data]({data_name}))"]], numbers=False),
+        ["numbers", f"medians of the instances, in brackets minimum to maximum ([data]({data_name}))"]]),
         f"\n## The paper's claims\n\nAt {record.largest} points unless it says otherwise.\n"]
     rows = []
     for claim, measured, agrees, in_part, rule, reason in claims(record):
         verdict = "agree" if agrees else "partly" if in_part else "disagree"
         rows.append([claim, measured, f"**{verdict}**", rule + (f". Why: {reason}" if reason and not agrees else "")])
-    text += [table(["claim", "measured", "verdict", "agree if"], rows, numbers=False), DIFFERENCES, "\n## Figures\n"]
-    for file, caption, tables in sections(record):
-        text.append(f"### {file.capitalize().replace('-', ' ')}\n\n{caption}\n")
-        if draw(record, file, f"{name}-{file}.svg"):
-            text.append(f"![{file}]({os.path.basename(name)}-{file}.svg)\n")
-        text.append(tables)
-    text += ["## The kernels beside the twin\n", cross_check(data["cross_check"])]
+    text += [table(["claim", "measured", "verdict", "agree if"], rows), DIFFERENCES, "\n## Figures\n"]
+    for file, (caption, title, size, panels) in SECTIONS.items():
+        draw(record, title, size, panels, f"{name}-{file}.svg")
+        text.append(f"### {file.capitalize().replace('-', ' ')}\n\n{caption}\n\n"
+                    f"![{file}]({os.path.basename(name)}-{file}.svg)\n")
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(text).rstrip("\n") + "\n")

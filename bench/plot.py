@@ -38,7 +38,7 @@ def time_by_size(record, title):
         set_sizes(panel, {row["n"] for row in rows})
         set_log(panel.yaxis, "s")
         for crossover in record.get("crossovers", []):
-            if crossover["of_fastest"] and crossover["distribution"] == distribution:
+            if crossover.get("of_fastest", True) and crossover["distribution"] == distribution:
                 guide(panel, crossover["n"], horizontal=False)
                 panel.annotate(f"{crossover['faster_below']} | {crossover['faster_above']}", (crossover["n"], 1),
                                xycoords=("data", "axes fraction"), fontsize=7, rotation=90, va="top", ha="right")
@@ -79,12 +79,14 @@ def draw_ranks(record):
     figure, panels = new_figure("Time by number of ranks", record, 4, 2)
     kinds = [(scaling, of, key, name) for scaling, of in (("strong", "the same points"),
                                                           ("weak", "as many points for each rank"))
-             for key, name in (("seconds_median", "wall"), ("cpu_seconds", "CPU"))]
+             for key, name in (("seconds_median", "wall"), ("processor_seconds_median", "CPU"))]
     for panel, (scaling, of, key, name) in zip(panels, kinds):
         series = {name: [] for name in names(record["results"], "distribution")}
         for row in record["results"]:
             if row["scaling"] == scaling:
-                series[row["distribution"]].append((row["ranks"], row[key] / row["n"]))
+                # Older records call processor times so.
+                seconds = row.get(key, row.get("cpu_seconds"))
+                series[row["distribution"]].append((row["ranks"], seconds / row["n"]))
         lines(panel, series)
         panel.set_ylim(bottom=0)
         set_log(panel.yaxis, "s", log=False)

@@ -293,11 +293,11 @@ class Session:
     def time_with(self, tuning):
         """Seconds of a call with these tuning values, and of its solver; None if it failed."""
         record = self.bench(f"Tuning {tuning}", "launches", "--sizes", self.plan["tuned_size"], "--distributions",
-                            "uniform", "--most-lines", 1, "--tuning", tuning, key=f"tuning {tuning}")
+                            "uniform", "--tuning", tuning, key=f"tuning {tuning}")
         del self.record[f"tuning {tuning}"]
         if "error" in record:
             return None
-        solver = sum(row["seconds"] for row in record["kernels"] if row["kernel"] == "solve_blocks")
+        solver = sum(row["seconds"] for row in record["launches"] if row["kernel"] == "solve_blocks")
         return {"tuning": tuning, "seconds": record["results"][0]["seconds_median"], "solve_seconds": solver}
 
     def tune(self):
@@ -324,7 +324,7 @@ class Session:
 
     def predict(self):
         """Predictions of the device's launches beside their times."""
-        record = self.bench("Launches", "launches", "--sizes", self.plan["launch_sizes"], "--most-lines", 1)
+        record = self.bench("Launches", "launches", "--sizes", self.plan["launch_sizes"])
         if "error" in record or "error" in self.record["probed"]:
             return
         name = predict.machine_of(record)
@@ -345,8 +345,7 @@ class Session:
         chosen = ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
         size = self.plan["peer_size"]
         self.bench(f"Times beside others, {size} points", "peers", "--sizes", size, "--peers", "cgal", *chosen)
-        self.bench("Times by number of points", "modes", "--sizes", self.plan["mode_sizes"], "--count-up-to", 0,
-                   *chosen)
+        self.bench("Times by number of points", "modes", "--sizes", self.plan["mode_sizes"], *chosen)
         self.bench("From device memory to device memory, and queries", "embedding", *self.plan["flags"])
         self.bench("Thousands of sets in one call", "batches", *self.plan["flags"])
 

@@ -18,7 +18,7 @@ packages=(
   # libFuzzer, for the readers of files
   clang-14 libclang-rt-14-dev
   # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
-  libqhull-dev libgts-dev python3-matplotlib
+  libqhull-dev python3-matplotlib
   # the Python module and its tests
   python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
   # the documentation

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "app/command/errors.hpp"
-#include "bench/measuring/timing.hpp"
+#include "bench/measuring/jobs.hpp"
 #include "files/output.hpp"
 
 namespace flaunay::bench {

@@ -13,7 +13,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "bench/measuring/calls.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::bench {
@@ -28,16 +27,13 @@ struct Request {
   std::string device, json_path, program;
   std::vector<std::size_t> sizes;
   std::vector<std::string> distributions, modes;
-  double limit = 0;
+  double limit = 60;
   bool quick = false;
 };
 
 /// What a subcommand has measured.
 struct Result {
-  explicit Result(DeviceInfo of_device = {}, std::initializer_list<const char*> names = {"results"})
-      : device(std::move(of_device)) {
-    for (const char* name : names) tables[name] = Json::array();
-  }
+  explicit Result(DeviceInfo of_device = {}) : device(std::move(of_device)) {}
   DeviceInfo device;
   /// Tables: each key has a list of rows, and each row is an object. Numbers are rounded when it is written.
   Json tables = Json::object();
@@ -45,6 +41,9 @@ struct Result {
   Json facts = Json::object();             ///< more about all of the record
   bool agree = true;                       ///< whether all implementations agree; if not, the exit code is 1
 };
+
+/// The names that --modes takes: every mode, the default first.
+std::vector<std::string> mode_names();
 
 /// Adds options to a subcommand. All show their default values.
 class Options {
@@ -84,9 +83,6 @@ class Options {
   }
   Options& modes(const Texts& names = {"blocks"}) {
     return add("--modes", request_.modes = names, "flaunay's modes", CLI::IsMember(mode_names()));
-  }
-  Options& limit(double seconds, const std::string& description) {
-    return add("--limit", request_.limit = seconds, description);
   }
   Options& quick(const std::string& points = "3,000 points") {
     return flag("--quick", request_.quick, points + ": shows that it works, and no more");

@@ -22,15 +22,15 @@ struct ConstrainedInput {
   bool has_polygons() const { return !polygon_offsets.empty(); }
 };
 
-/// n uniform points, and n / 5 segments between random points that are up to 3 times as far from each other
-/// as neighbours; those that would cross another one are left out and others taken.
+/// n uniform points, and n / 5 segments that do not cross, up to a few times as long as the distance of
+/// neighbours: edges of the triangulation of the points stretched along x.
 ConstrainedInput short_segments(std::size_t n);
 
 /// About n points, all of them on the borders of a map: a square of cells, each a polygon of some 400 points,
 /// whose borders are rough curves that neighbours share. on_integers: rounded to a grid of 2^26 steps.
 ConstrainedInput map_of_cells(std::size_t n, bool on_integers);
 
-/// About n points: islands of 800 points on a rough coast, each with a lake of 200.
+/// About n points: islands of 700 points on a rough coast, each with a lake of 300.
 ConstrainedInput islands(std::size_t n);
 
 /// Polygons, each a set of its own: a rough ring with a hole, which has 3 of 10 points.

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,14 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <system_error>
-
-#include "app/files/points.hpp"
-#include "bench/measuring/timing.hpp"
-#include "files/output.hpp"
-#include "flaunay/flaunay.hpp"
-
-extern char** environ;
 
 namespace flaunay::bench {
 namespace {
@@ -55,26 +48,16 @@ bool read_all(int pipe, double limit, std::string& text) {
   }
 }
 
-std::string failure_of(int status) {
-  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", WTERMSIG(status));
-  return WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS ? "" : "failed";
-}
-
-double seconds_in(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
 }  // namespace
 
 Answer ask_child(const std::function<std::string()>& work, double limit) {
+  constexpr std::size_t kKibibyte = 1024;
   int ends[2];
-  if (pipe(ends) != 0) return {"", "cannot make a pipe"};
+  // Closed by the program that takes the child's place, if one does.
+  if (pipe2(ends, O_CLOEXEC) != 0) return {"", "cannot make a pipe"};
   std::fflush(nullptr);  // what is buffered would be written twice
   const pid_t child = fork();
-  if (child == 0) {
-    close(ends[0]);
-    answer(work, ends[1]);
-  }
+  if (child == 0) answer(work, ends[1]);
   close(ends[1]);
   Answer result;
   const bool in_time = child < 0 || read_all(ends[0], limit, result.text);
@@ -82,8 +65,16 @@ Answer ask_child(const std::function<std::string()>& work, double limit) {
   if (child < 0) return {"", "cannot make a process"};
   if (!in_time) kill(child, SIGKILL);
   int status = 0;
-  waitpid(child, &status, 0);
-  result.failure = in_time ? failure_of(status) : fmt::format("took more than {:g} s", limit);
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
+  result.resident_peak = kKibibyte * static_cast<std::size_t>(usage.ru_maxrss);
+  if (!in_time) {
+    result.failure = fmt::format("took more than {:g} s", limit);
+  } else if (WIFSIGNALED(status)) {
+    result.failure = fmt::format("was ended by signal {}", WTERMSIG(status));
+  } else if (WEXITSTATUS(status) != EXIT_SUCCESS) {
+    result.failure = "failed";
+  }
   return result;
 }
 
@@ -92,17 +83,13 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-WithVariable::WithVariable(const char* name, const std::string& value)
-    : name_(name), was_set_(std::getenv(name) != nullptr), before_(variable(name)) {
+Triangulator triangulator_with(const char* name, const std::string& value, const std::string& device) {
+  const bool was_set = std::getenv(name) != nullptr;
+  const std::string before = variable(name);
   setenv(name, value.c_str(), 1);
-}
-
-WithVariable::~WithVariable() {
-  if (was_set_) {
-    setenv(name_, before_.c_str(), 1);
-  } else {
-    unsetenv(name_);
-  }
+  Triangulator triangulator(device);
+  was_set ? setenv(name, before.c_str(), 1) : unsetenv(name);
+  return triangulator;
 }
 
 Folder::Folder(const std::string& parent) {
@@ -119,34 +106,29 @@ Folder::~Folder() {
   fs::remove_all(path_, ignored);
 }
 
-std::string Folder::write(const std::string& name, const std::string& distribution, std::size_t n) const {
-  if (!fs::exists(file(name))) {
-    io::Outputs outputs;
-    io::write_points(outputs, file(name), {make_input(distribution, n).coordinates});
-    outputs.commit();
+std::string Folder::write(const std::string& distribution, std::size_t n) const {
+  const std::string path = file(fmt::format("{}-{}.npy", distribution, n));
+  if (!fs::exists(path)) {
+    run_program({program_or("", "flaunay"), "generate", distribution, std::to_string(n), "-o", path});
   }
-  return file(name);
+  return path;
 }
 
-ProcessUse run_program(std::vector<std::string> words) {
+Outcome run_program(std::vector<std::string> words) {
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   const Stopwatch watch;
-  pid_t child = 0;
-  const int code = posix_spawnp(&child, pointers.front(), &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  rusage usage{};
-  if (code != 0 || wait4(child, &status, 0, &usage) != child || !failure_of(status).empty()) {
-    throw Error(ErrorKind::device, fmt::format("{} could not be run, or failed", fmt::join(words, " ")));
+  const Answer answer = ask_child([&]() -> std::string {
+    dup2(open("/dev/null", O_WRONLY), STDOUT_FILENO);
+    execvp(pointers.front(), pointers.data());
+    throw Error(ErrorKind::device, fmt::format("{} cannot be run", words.front()));
+  });
+  const double seconds = watch.seconds();
+  if (!answer.failure.empty()) {
+    throw Error(ErrorKind::device, fmt::format("{} {}", fmt::join(words, " "), answer.failure));
   }
-  constexpr std::size_t kKibibyte = 1024;
-  return {watch.seconds(), seconds_in(usage.ru_utime) + seconds_in(usage.ru_stime),
-          kKibibyte * static_cast<std::size_t>(usage.ru_maxrss)};
+  return {seconds, {{"resident_peak_mib", static_cast<double>(answer.resident_peak) / (1 << 20)}}};
 }
 
 std::string program_or(const std::string& given, const std::string& name) {

@@ -48,7 +48,11 @@ Outcome run_qhull(const Input& points) {
   return {seconds, triangles};
 }
 
-const BuiltPeer kBuilt("qhull", run_qhull);
+const BuiltPeer kBuilt(
+    {"qhull",
+     "libqhull_r with 'd Qt Qbb Qc Qz Q12', not exact (it merges facets that it cannot tell apart), one "
+     "thread: lifting the points, their convex hull in three dimensions, splitting merged facets",
+     run_qhull});
 
 }  // namespace
 }  // namespace flaunay::bench

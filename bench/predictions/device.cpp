@@ -8,8 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "bench/measuring/calls.hpp"
-#include "bench/measuring/timing.hpp"
+#include "bench/measuring/triangulators.hpp"
 #include "host/runtime.hpp"
 #include "launchers/call/probe.cl.hpp"
 #include "tuning/tuning.hpp"
@@ -48,30 +47,22 @@ Result measure_device(const DeviceRequest& request) {
   Result result(Triangulator(name).device());
   result.facts = {{"compute_units", result.device.compute_units}, {"clock_mhz", result.device.clock_mhz}};
 
-  const auto time = [&](const auto& work) {
-    runtime.finish();
-    return seconds_of([&] {
-      work();
-      runtime.finish();
-    });
-  };
-  // Measures work of so many operations: seconds for each, or operations per second.
-  const auto add = [&](const std::string& what, const char* unit, std::size_t operations, const auto& work) {
-    const auto count = static_cast<double>(operations);
-    const auto measure = [&] { return *unit == 's' ? time(work) / count : count / time(work); };
-    measure();
-    std::vector<double> values;
-    for (int run = 0; run < request.runs; ++run) values.push_back(measure());
-    const Summary of_all = summary(values);
-    result.tables["results"].push_back({{"what", what},
-                                        {"unit", unit},
-                                        {"median", of_all.median},
-                                        {"least", of_all.low},
-                                        {"most", of_all.high}});
+  Jobs jobs;
+  // Work of so many operations: seconds for each, or operations per second.
+  const auto add = [&](const std::string& what, const char* unit, std::size_t operations,
+                       const std::function<void()>& work) {
+    const Json row{{"what", what}, {"unit", unit}, {"operations", operations}};
+    jobs.push_back({row, [&runtime, work] {
+                      runtime.finish();
+                      return seconds_of([&] {
+                        work();
+                        runtime.finish();
+                      });
+                    }});
   };
 
   const auto ends = runtime.arena().allocate<cl_int>(1);
-  const auto launch = [&](bool waits) {
+  const auto launch = [&, ends](bool waits) {
     for (std::size_t k = 0; k < request.launches; ++k) {
       runtime.launch(1, 1, 1, kernels::do_nothing{.ends = ends});
       if (waits) runtime.read_one(ends, 0);
@@ -105,17 +96,26 @@ Result measure_device(const DeviceRequest& request) {
   add("bytes read and written by a copy", "1/s", 2 * bytes, [&] { runtime.copy(from, 0, to, 0, bytes); });
   add("bytes to the device", "1/s", bytes, [&] { runtime.write(to, 0, bytes, on_host.data()); });
   add("bytes to the host", "1/s", bytes, [&] { runtime.read(from, 0, bytes, on_host.data()); });
+  measure(jobs, request.runs);
+  for (Job& job : jobs) {
+    const auto operations = job.row["operations"].get<double>();
+    const bool is_rate = job.row["unit"] == "1/s";
+    for (double& seconds : job.seconds) seconds = is_rate ? operations / seconds : seconds / operations;
+    const Summary values = summary(job.seconds);
+    result.tables["results"].push_back({{"what", job.row["what"]},
+                                        {"unit", job.row["unit"]},
+                                        {"median", values.median},
+                                        {"least", values.low},
+                                        {"most", values.high}});
+  }
   return result;
 }
 
 const Subcommand kSubcommand(
     "device", "what launches, waits, loads and arithmetic take on a device",
-    "One work-item follows a chain of loads, each of which needs the one before, through working sets of "
-    "several "
-    "sizes; another computes with the result just computed. bench/predictions/predict.py takes the record in "
-    "place of "
-    "what "
-    "its machine files assume.",
+    R"(One work-item follows a chain of loads, each of which needs the one before, through working sets of several
+sizes; another computes with the result just computed. bench/predictions/predict.py takes the record in place of what
+its machine files assume.)",
     measure_device, [](Options& options, DeviceRequest& request) {
       options.add("--working-sets", request.working_sets, "bytes that chains of loads go through")
           .add("--launches", request.launches, "launches of a run")

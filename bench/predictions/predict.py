@@ -70,13 +70,11 @@ def machine_of(record):
 def with_device_record(machine, record):
     """The machine with what `flaunay-bench device` has measured in place of what its file says."""
     measured = {row["what"]: row["median"] for row in record["results"]}
-
-    def load_of(kib):
-        return measured.get(f"load that waits for a load, of {kib} KiB")
-
+    load_of = "load that waits for a load, of {} KiB".format
     found = {"launch_seconds": measured["launch"],
              "wait_seconds": max(0, measured["launch and wait"] - measured["launch"]),
-             "near_seconds": load_of(machine["near_kib"]), "far_seconds": load_of(machine["far_kib"]),
+             "near_seconds": measured.get(load_of(machine["near_kib"])),
+             "far_seconds": measured.get(load_of(machine["far_kib"])),
              "bytes_per_second": measured["bytes read and written by a copy"],
              "cores": record.get("compute_units")}
     if machine["kind"] == "gpu":
@@ -238,7 +236,7 @@ def print_call(machine, summary, rows, totals, measured):
           "instructions.")
 
 
-def arguments_of(command_line):
+def main(command_line):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("launches", metavar="LAUNCHES.json", help="a record of flaunay-bench launches")
     parser.add_argument("--machine", metavar="NAME", action="append", default=[],
@@ -250,11 +248,11 @@ def arguments_of(command_line):
                         help="the static table, for the kernels' registers")
     parser.add_argument("--measured", action="store_true", help="the record's times beside the predictions")
     parser.add_argument("--json", metavar="FILE", help="write the predictions here")
-    return parser.parse_args(command_line)
-
-
-def predictions(record, arguments):
-    names = arguments.machine + [machine_of(record)] * arguments.for_device
+    arguments = parser.parse_args(command_line)
+    record = load(arguments.launches)
+    if record.get("subcommand") != "launches":
+        fail(f"{arguments.launches} is no record of flaunay-bench launches")
+    names, results = arguments.machine + [machine_of(record)] * arguments.for_device, []
     if not names:
         fail("--machine names a machine, or --for-device takes the record's")
     for name in names:
@@ -268,16 +266,8 @@ def predictions(record, arguments):
         for summary in record["results"]:
             rows, totals = predict_call(model, summary, launches_of(record, summary))
             print_call(machine, summary, rows, totals, arguments.measured)
-            yield {"machine": name, "cores": machine["cores"], "mode": summary["mode"],
-                   "distribution": summary["distribution"], "n": summary["n"], **totals, "kernels": rows}
-
-
-def main(command_line):
-    arguments = arguments_of(command_line)
-    record = load(arguments.launches)
-    if record.get("subcommand") != "launches":
-        fail(f"{arguments.launches} is no record of flaunay-bench launches")
-    results = list(predictions(record, arguments))
+            results.append({"machine": name, "cores": machine["cores"], "mode": summary["mode"],
+                            "distribution": summary["distribution"], "n": summary["n"], **totals, "kernels": rows})
     if arguments.json:
         text = {"predicted": True, "launches": pathlib.Path(arguments.launches).name, "results": results}
         pathlib.Path(arguments.json).write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")

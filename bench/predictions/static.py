@@ -34,7 +34,6 @@ COMMON = ["-x", "cl", "-O3", "-Xclang", "-finclude-default-header", f"-I{KERNELS
 # The folders of kernels that have a text in fixed point.
 FIXED_POINT_FOLDERS = ("blocks", "constrained", "locate", "points")
 ONE_TEXT = {"call/self_test_fixed.cl": True, "locate/fixed_point.cl": True, "constrained/seeds.cl": False}
-FIXED_POINT_OPTIONS = ["-DFIXED_POINT"]
 NEWEST, OLDEST = 25, 14
 COLUMNS = ["registers", "stack", "spills", "local_memory"]
 
@@ -47,45 +46,35 @@ def note(message):
     print(f"static.py: {message}", file=sys.stderr)
 
 
-def builtins_for(clang, name):
-    """libclc's functions, of clang's own version."""
-    text = subprocess.run([clang, "--version"], capture_output=True, text=True, check=True).stdout
-    version = re.search(r"version (\d+)", text)[1]
-    folders = [f"/usr/lib/llvm-{version}/share/clc", "/usr/local/share/clc"]
-    paths = [os.path.join(folder, f"{name}.bc") for folder in folders]
-    if shutil.which("dpkg"):
-        listed = subprocess.run(["dpkg", "-L", f"libclc-{version}"], capture_output=True, text=True, check=False).stdout
-        paths = [path for path in listed.splitlines() if path.endswith(f"/{name}.bc")] + paths
-    return next(filter(os.path.exists, paths), None)
-
-
-def clang_with(name, target, architecture):
-    """The newest clang that knows the architecture and has libclc, and the functions for this target."""
-    names = [*(f"clang-{version}" for version in range(NEWEST, OLDEST, -1)), "clang"]
-    for clang in filter(None, map(shutil.which, names)):
-        builtins = builtins_for(clang, name)
-        check = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
-                 "-S", "-o", os.devnull, os.devnull]
-        if builtins and subprocess.run(check, capture_output=True, check=False).returncode == 0:
-            return clang, builtins
-    raise Missing(f"no clang that knows it and has libclc with {name}.bc; apt-get install clang-19 libclc-19")
-
-
-def find_ptxas():
-    candidates = [os.environ.get("PTXAS"), shutil.which("ptxas"), "/usr/local/cuda/bin/ptxas"]
-    for folder in {sysconfig.get_paths()["purelib"], *filter(os.path.isdir, sys.path)}:
-        candidates += glob.glob(os.path.join(folder, "nvidia", "*", "bin", "ptxas"))
-    for path in candidates:
-        if path and os.access(path, os.X_OK):
-            return path
-    raise Missing("no ptxas; a CUDA toolkit has one, or pip install nvidia-cuda-nvcc (PTXAS=... names another)")
-
-
 def run(command, what):
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise RuntimeError(f"{what} failed: {(result.stderr or result.stdout).strip().splitlines()[:3]}")
     return result.stdout + result.stderr
+
+
+def clang_with(name, target, architecture):
+    """The newest clang that knows the architecture and has libclc's functions of its own version, and these."""
+    names = [*(f"clang-{version}" for version in range(NEWEST, OLDEST, -1)), "clang"]
+    for clang in filter(None, map(shutil.which, names)):
+        version = re.search(r"version (\d+)", run([clang, "--version"], clang))[1]
+        builtins = [path for folder in (f"/usr/lib/llvm-{version}", "/usr/lib/clc", "/usr/local/share/clc")
+                    for path in glob.glob(f"{folder}/**/{name}.bc", recursive=True)]
+        check = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
+                 "-S", "-o", os.devnull, os.devnull]
+        if builtins and subprocess.run(check, capture_output=True, check=False).returncode == 0:
+            return clang, builtins[0]
+    raise Missing(f"no clang that knows it and has libclc with {name}.bc; apt-get install clang-19 libclc-19")
+
+
+def find_ptxas():
+    paths = [os.environ.get("PTXAS"), shutil.which("ptxas"), "/usr/local/cuda/bin/ptxas"]
+    for folder in {sysconfig.get_paths()["purelib"], *filter(os.path.isdir, sys.path)}:
+        paths += glob.glob(os.path.join(folder, "nvidia", "*", "bin", "ptxas"))
+    for path in paths:
+        if path and os.access(path, os.X_OK):
+            return path
+    raise Missing("no ptxas; a CUDA toolkit has one, or pip install nvidia-cuda-nvcc (PTXAS=... names another)")
 
 
 def rows_of_ptxas(log):
@@ -140,19 +129,7 @@ class Compiler:
 
 def texts_of(file):
     """Whether each text of the file is in fixed point."""
-    if file in ONE_TEXT:
-        return [ONE_TEXT[file]]
-    return [False, True] if file.split(os.sep)[0] in FIXED_POINT_FOLDERS else [False]
-
-
-def rows_of_file(compiler, file, fixed_point):
-    begin = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
-        options = OPTIONS + FIXED_POINT_OPTIONS * fixed_point
-        compiled = compiler.compile(os.path.join(KERNELS, file), folder, options)
-    seconds = round(time.monotonic() - begin, 2)
-    return [{"architecture": compiler.architecture, "file": file, "fixed_point": fixed_point, **row,
-             "file_seconds": seconds} for row in sorted(compiled, key=lambda row: row["kernel"])]
+    return [ONE_TEXT[file]] if file in ONE_TEXT else [False, True][:1 + (file.split(os.sep)[0] in FIXED_POINT_FOLDERS)]
 
 
 def table_of(files, architectures):
@@ -164,11 +141,18 @@ def table_of(files, architectures):
             note(f"{architecture} is skipped: {missing}")
             continue
         for file, fixed_point in [(file, text) for file in files for text in texts_of(file)]:
+            begin = time.monotonic()
             try:
-                rows += rows_of_file(compiler, file, fixed_point)
+                with tempfile.TemporaryDirectory() as folder:
+                    options = OPTIONS + ["-DFIXED_POINT"] * fixed_point
+                    compiled = compiler.compile(os.path.join(KERNELS, file), folder, options)
             except RuntimeError as error:
                 note(f"{file} for {architecture}: {error}")
                 failures += 1
+                continue
+            seconds = round(time.monotonic() - begin, 2)
+            rows += [{"architecture": architecture, "file": file, "fixed_point": fixed_point, **row,
+                      "file_seconds": seconds} for row in sorted(compiled, key=lambda row: row["kernel"])]
     return rows, failures
 
 

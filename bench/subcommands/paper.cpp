@@ -6,11 +6,11 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <map>
 #include <mutex>
 #include <thread>
 
-#include "bench/measuring/calls.hpp"
-#include "bench/measuring/timing.hpp"
+#include "bench/measuring/triangulators.hpp"
 
 namespace flaunay::bench::paper {
 namespace {
@@ -47,8 +47,8 @@ bool is_measured(const Method& method, std::size_t n, const PaperRequest& reques
 
 research::Options options_of(const Method& method) {
   const bool dwyer = method.algorithm == "dwyer";
-  research::Options options = bench::options_of(dwyer ? "dwyer" : "recursive");
-  if (!dwyer) options.hull = hull_named(method.algorithm);
+  research::Options options =
+      dwyer ? bench::options_of("dwyer") : bench::options_of("recursive", method.algorithm);
   options.count = true;
   options.neighbors = false;
   options.cut = method.cut;
@@ -64,16 +64,37 @@ struct Run {
 /// The runs of all methods on one set of points.
 using Runs = std::vector<Run>;
 
+research::Triangulation call_on_host(const Input& input, const research::Options& options) {
+  return research::triangulate_on_host(input.coordinates.data(), input.offsets, options);
+}
+
 // ---- Quantities of a run
+
+/// Over what precedes the first cut and all levels, by component.
+research::Work::Components totals(const research::Work& work) {
+  research::Work::Components sums = work.start;
+  for (const research::Work::Components& level : work.levels) {
+    for (std::size_t c = 0; c < research::kComponents; ++c) sums[c] += level[c];
+  }
+  return sums;
+}
+
+research::OperationCounts total(const research::Work::Components& components) {
+  research::OperationCounts sum;
+  for (const research::OperationCounts& counts : components) sum += counts;
+  return sum;
+}
 
 double operations(const research::Work::Components& components) {
   return static_cast<double>(total(components).operations());
 }
 
-/// Comparisons before the first cut, which bring the points in order.
-double sorting(const Run& run) {
-  return static_cast<double>(run.work.start[static_cast<std::size_t>(Component::cut)].operations());
+double operations_of(const research::Work::Components& components, Component component) {
+  return static_cast<double>(components[static_cast<std::size_t>(component)].operations());
 }
+
+/// Comparisons before the first cut, which bring the points in order.
+double sorting(const Run& run) { return operations_of(run.work.start, Component::cut); }
 
 /// Operations of what precedes the first cut and of so many levels.
 double operations_until(const Run& run, std::size_t levels) {
@@ -84,69 +105,52 @@ double operations_until(const Run& run, std::size_t levels) {
   return sum;
 }
 
-/// Levels until there are as many regions as a coarse partition would have; all if there never are.
-std::size_t coarse_levels(const Run& run) {
-  constexpr std::size_t kCoarseRegions = 16;
-  std::size_t level = 0;
-  while (level < run.levels.size() && run.levels[level].regions < kCoarseRegions) ++level;
-  return level;
+/// Zeros where a run has no such level.
+research::LevelStatistics level_of(const Run& run, std::size_t level) {
+  return level < run.levels.size() ? run.levels[level] : research::LevelStatistics{};
 }
 
-/// Zero where a run has no such level.
 double largest_region(const Run& run, std::size_t level) {
-  return level < run.levels.size() ? static_cast<double>(run.levels[level].largest_region) : 0;
+  return static_cast<double>(level_of(run, level).largest_region);
 }
 
-double region_sizes(const Run& run, std::size_t level) {
-  if (level >= run.levels.size()) return 0;
-  return static_cast<double>(run.levels[level].internal_points + run.levels[level].corners);
-}
-
-using Quantities = std::vector<std::pair<const char*, double>>;
-
-/// What a run of n points took by level.
-Quantities quantities_by_level(const Run& run, double of_dwyer, double n) {
-  double most_corners = 0, worst_decline = 0;
-  for (std::size_t l = 0; l < run.levels.size(); ++l) {
-    most_corners = std::max(most_corners, static_cast<double>(run.levels[l].corners));
-    if (l > 0) worst_decline = std::max(worst_decline, largest_region(run, l) / largest_region(run, l - 1));
+/// What a run took by level.
+Json quantities_by_level(const Run& run, double of_dwyer) {
+  // Levels until there are as many regions as a coarse partition would have; all if there never are.
+  constexpr std::size_t kCoarseRegions = 16;
+  std::size_t coarse = 0;
+  while (coarse < run.levels.size() && run.levels[coarse].regions < kCoarseRegions) ++coarse;
+  double worst_decline = 0;
+  for (std::size_t l = 1; l < run.levels.size(); ++l) {
+    worst_decline = std::max(worst_decline, largest_region(run, l) / largest_region(run, l - 1));
   }
-  const std::size_t last = std::max<std::size_t>(run.levels.size(), 1) - 1, coarse = coarse_levels(run);
+  const std::size_t last = std::max<std::size_t>(run.levels.size(), 1) - 1;
   const double decline = last == 0 ? 1 : largest_region(run, last) / largest_region(run, 0);
-  const double until_coarse = operations_until(run, coarse);
-  return {
-      {"sorting_over_dwyer", sorting(run) / of_dwyer},
-      {"coarse_levels", static_cast<double>(coarse)},
-      {"coarse_over_dwyer", until_coarse / of_dwyer},
-      {"coarse_unsorted_over_dwyer", (until_coarse - sorting(run)) / of_dwyer},
-      {"most_corners_per_point", most_corners / n},
-      {"largest_endgame", static_cast<double>(std::max<std::size_t>(run.work.endgame_sizes.size(), 1) - 1)},
-      // By what the largest region shrinks from level to level, at worst and as a geometric mean.
-      {"worst_decline", worst_decline},
-      {"mean_decline", std::pow(decline, 1 / static_cast<double>(std::max<std::size_t>(last, 1)))}};
+  return {{"sorting_over_dwyer", sorting(run) / of_dwyer},
+          {"coarse_levels", static_cast<double>(coarse)},
+          {"coarse_unsorted_over_dwyer", (operations_until(run, coarse) - sorting(run)) / of_dwyer},
+          // By what the largest region shrinks from level to level, at worst and as a geometric mean.
+          {"worst_decline", worst_decline},
+          {"mean_decline", std::pow(decline, 1 / static_cast<double>(std::max<std::size_t>(last, 1)))}};
 }
 
 /// All that is said of a run of n points, beside Dwyer's algorithm on the same ones.
-Quantities quantities_of(const Run& run, const Run& dwyer, double n, bool is_largest, bool by_level) {
+Json quantities_of(const Run& run, const Run& dwyer, double n, bool is_largest, bool by_level) {
   const research::Work::Components components = totals(run.work);
   const double all = operations(components), of_dwyer = operations(totals(dwyer.work));
   const auto depth = static_cast<double>(total(components).critical_path);
-  Quantities quantities = {{"operations_per_point", all / n},
-                           {"over_dwyer", all / of_dwyer},
-                           {"depth", depth},
-                           {"parallelism", all / depth}};
+  Json quantities{{"operations_per_point", all / n},
+                  {"over_dwyer", all / of_dwyer},
+                  {"depth", depth},
+                  {"parallelism", all / depth}};
   if (!is_largest) return quantities;
-  const auto per_point = [&](Component component, double without = 0) {
-    return (static_cast<double>(components[static_cast<std::size_t>(component)].operations()) - without) / n;
-  };
-  append(quantities, {{"sorting", sorting(run) / n},
-                      {"cuts", per_point(Component::cut, sorting(run))},
-                      {"hull", per_point(Component::hull)},
-                      {"merge", per_point(Component::merge)},
-                      {"split", per_point(Component::split)},
-                      {"endgame", per_point(Component::endgame)}});
-  if (by_level) append(quantities, quantities_by_level(run, of_dwyer, n));
-  return quantities;
+  quantities.update({{"sorting", sorting(run) / n},
+                     {"cuts", (operations_of(components, Component::cut) - sorting(run)) / n},
+                     {"hull", operations_of(components, Component::hull) / n},
+                     {"merge", operations_of(components, Component::merge) / n},
+                     {"split", operations_of(components, Component::split) / n},
+                     {"endgame", operations_of(components, Component::endgame) / n}});
+  return by_level ? changed(quantities, quantities_by_level(run, of_dwyer)) : quantities;
 }
 
 // ---- Rows
@@ -164,19 +168,24 @@ struct Inputs {
             {"algorithm", kMethods[method].algorithm},
             {"cut", alternate ? "alternate" : "interquartile"}};
   }
+  /// Of quantity(run, Dwyer's), over the instances.
+  template <typename Quantity>
+  Summary summary_of(std::size_t method, const Quantity& quantity) const {
+    std::vector<double> values;
+    for (const Runs& runs : instances) values.push_back(quantity(runs[method], runs[0]));
+    return summary(values);
+  }
   /// Of each quantity the median of the instances, the minimum and the maximum.
   Json row(std::size_t method, bool is_largest) const {
-    std::vector<Quantities> all;
-    for (const Runs& runs : instances) {
-      const bool by_level = kMethods[method].by_level;
-      all.push_back(quantities_of(runs[method], runs[0], static_cast<double>(n), is_largest, by_level));
-    }
+    const auto all_of = [&](const Run& run, const Run& dwyer) {
+      return quantities_of(run, dwyer, static_cast<double>(n), is_largest, kMethods[method].by_level);
+    };
     Json result = identity(method);
-    for (std::size_t q = 0; q < all[0].size(); ++q) {
-      std::vector<double> values;
-      for (const Quantities& of_instance : all) values.push_back(of_instance[q].second);
-      const Summary of_all = summary(values);
-      result[all[0][q].first] = {of_all.median, of_all.low, of_all.high};
+    const Json first = all_of(instances[0][method], instances[0][0]);
+    for (const auto& [key, value] : first.items()) {
+      const Summary of_all = summary_of(
+          method, [&, &name = key](const Run& run, const Run& dwyer) { return all_of(run, dwyer)[name]; });
+      result[key] = {of_all.median, of_all.low, of_all.high};
     }
     return result;
   }
@@ -189,9 +198,7 @@ Json levels_row(const Inputs& inputs, std::size_t method) {
   Json row = inputs.identity(method);
   for (std::size_t level = 0; level <= most; ++level) {
     const auto add = [&](const char* name, const auto& quantity) {
-      std::vector<double> values;
-      for (const Runs& runs : inputs.instances) values.push_back(quantity(runs[method], runs[0]));
-      row[name].push_back(summary(values).median);
+      row[name].push_back(inputs.summary_of(method, quantity).median);
     };
     add("work_before_over_dwyer", [level](const Run& run, const Run& dwyer) {
       return operations_until(run, level) / operations(totals(dwyer.work));
@@ -199,7 +206,8 @@ Json levels_row(const Inputs& inputs, std::size_t method) {
     if (level == most) break;
     add("largest_region", [level](const Run& run, const Run&) { return largest_region(run, level); });
     add("region_sizes_per_point", [level, n = static_cast<double>(inputs.n)](const Run& run, const Run&) {
-      return region_sizes(run, level) / n;
+      const research::LevelStatistics of_level = level_of(run, level);
+      return static_cast<double>(of_level.internal_points + of_level.corners) / n;
     });
   }
   return row;
@@ -207,46 +215,17 @@ Json levels_row(const Inputs& inputs, std::size_t method) {
 
 /// How many regions have how many corners when the end game begins, all instances together.
 Json endgame_row(const Inputs& inputs, std::size_t method) {
-  std::vector<std::uint64_t> histogram;
+  std::map<std::size_t, std::uint64_t> regions;  // by corners
   for (const Runs& runs : inputs.instances) {
     const std::vector<std::uint64_t>& sizes = runs[method].work.endgame_sizes;
-    histogram.resize(std::max(histogram.size(), sizes.size()));
-    for (std::size_t k = 0; k < sizes.size(); ++k) histogram[k] += sizes[k];
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      if (sizes[k] > 0) regions[k] += sizes[k];
+    }
   }
   Json row = inputs.identity(method);
-  row["corners"] = Json::array();
-  row["regions"] = Json::array();
-  for (std::size_t k = 0; k < histogram.size(); ++k) {
-    if (histogram[k] == 0) continue;
-    row["corners"].push_back(k);
-    row["regions"].push_back(histogram[k]);
-  }
-  return row;
-}
-
-// ---- The kernels beside the twin
-
-/// The kernels' operations on one input relative to those of the recursive twin. Sorting is left out, because
-/// devices sort by radix.
-Json cross_check_row(Triangulator& triangulator, const std::string& distribution, std::size_t n) {
-  const auto unsorted = [](research::Work work) {
-    work.start[static_cast<std::size_t>(Component::cut)] = {};
-    return totals(work);
-  };
-  const auto ratio_of = [](const research::OperationCounts& a, const research::OperationCounts& b) {
-    return b.operations() == 0 ? 1
-                               : static_cast<double>(a.operations()) / static_cast<double>(b.operations());
-  };
-  const Input input = make_input(distribution, n);
-  const research::Options of_twin = options_of(kMethods[kDefaultMethod]);
-  research::Options of_kernels = of_twin;
-  of_kernels.mode = research::Mode::flattened;
-  of_kernels.finish = research::Finish::levels;
-  const auto kernels = unsorted(call(triangulator, input, of_kernels).work);
-  const auto twin = unsorted(call_on_host(input, of_twin).work);
-  Json row{{"distribution", distribution}, {"n", n}, {"all", ratio_of(total(kernels), total(twin))}};
-  for (std::size_t c = 0; c < research::kComponents; ++c) {
-    row[component_name(c)] = ratio_of(kernels[c], twin[c]);
+  for (const auto& [corners, count] : regions) {
+    row["corners"].push_back(corners);
+    row["regions"].push_back(count);
   }
   return row;
 }
@@ -291,13 +270,13 @@ std::vector<Inputs> triangulate_all(const PaperRequest& request) {
 }
 
 Result measure_paper(const PaperRequest& request) {
-  constexpr int kCheckedExponent = 14;
   if (request.smallest > request.largest) {
     throw Error(ErrorKind::usage, "--smallest is greater than --largest");
   }
   const std::vector<Inputs> all = triangulate_all(request);
-  Result result({}, {"results", "levels", "endgame", "cross_check"});
+  Result result;
   Json& tables = result.tables;
+  for (const char* table : {"results", "levels", "endgame"}) tables[table] = Json::array();
   for (const Inputs& inputs : all) {
     const bool largest = inputs.n == std::size_t{1} << request.largest;
     for (std::size_t m = 0; m < kMethods.size(); ++m) {
@@ -311,29 +290,15 @@ Result measure_paper(const PaperRequest& request) {
       }
     }
   }
-  try {
-    Triangulator triangulator(request.device);
-    result.device = triangulator.device();
-    const int exponent = std::max(request.smallest, std::min(request.largest, kCheckedExponent));
-    for (const std::string& distribution : kPaperDistributions) {
-      tables["cross_check"].push_back(
-          cross_check_row(triangulator, distribution, std::size_t{1} << exponent));
-    }
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::device || !request.device.empty()) throw;
-    fmt::print(stderr, "the kernels are not checked against the twin: {}\n", error.what());
-  }
   return result;
 }
 
 const Subcommand kSubcommand(
     "paper", "the experiments of Blelloch, Miller and Talmor (1996), made again",
-    "Counts operations in the recursive twin and in Dwyer's algorithm, both on the host, on the paper's four "
-    "distributions at every power of two from the smallest to the largest (variants that the paper has not, "
-    "at "
-    "the largest only). bench/plot.py RECORD.json -o FILE.md sets the paper's claims beside what was "
-    "measured, "
-    "and draws the figures. The kernels are checked against the twin once, if there is a device.",
+    R"(Counts operations in the recursive twin and in Dwyer's algorithm, both on the host, on the paper's four
+distributions at every power of two from the smallest to the largest (variants that the paper has not, at the largest
+only). bench/plot.py RECORD.json -o FILE.md sets the paper's claims beside what was measured, and draws the figures.
+tests/statistics/work_test.cpp holds the kernels' counts to the twin's.)",
     measure_paper, [](Options& options, PaperRequest& request) {
       const CLI::Range exponents(6, 24);
       options.add("--instances", request.runs, "point sets of each distribution and size")

@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 
-#include "bench/measuring/contest.hpp"
 #include "bench/measuring/processes.hpp"
+#include "bench/measuring/triangulators.hpp"
 
 namespace flaunay::bench::threads {
 namespace {
@@ -18,94 +18,62 @@ struct ThreadsRequest : Request {
   std::vector<int> counts{1, 2};
 };
 
-/// All entries on so many threads.
-struct Team {
-  int threads;
-  Entries entries;
-};
-
-/// What the child process does: measures once, and tells the times in the order of the entries.
-std::string measure_here(const ThreadsRequest& request, const std::vector<Input>& inputs, int threads) {
-  for (const char* const variable : kVariables) setenv(variable, std::to_string(threads).c_str(), 1);
-  Triangulator triangulator(request.device);
-  Entries entries = make_entries(mode_implementations(triangulator, request.modes, threads), inputs);
-  measure(entries, 1);
-  Json told{{"compute_units", triangulator.device().compute_units}};
-  for (const Entry& entry : entries) {
-    told["entries"].push_back({{"seconds", entry.seconds},
-                               {"triangles", entry.outcome.triangles},
-                               {"details", entry.outcome.details},
-                               {"skipped", entry.skipped}});
-  }
-  return told.dump();
-}
-
-/// Adds the times of one child process to the team's.
-void measure_in_child(const ThreadsRequest& request, const std::vector<Input>& inputs, Team& team) {
-  const Answer answer = ask_child([&] { return measure_here(request, inputs, team.threads); });
+/// One call in a process of its own, after one that is not counted.
+Outcome run_on_threads(const ThreadsRequest& request, const std::string& mode, const Input& input,
+                       int threads) {
+  const Answer answer = ask_child([&] {
+    for (const char* const name : kVariables) setenv(name, std::to_string(threads).c_str(), 1);
+    Triangulator triangulator(request.device);
+    const Implementation own = mode_implementations(triangulator, {mode}, threads).front();
+    own.run(input);
+    const Outcome outcome = own.run(input);
+    return Json{outcome.seconds, outcome.details, triangulator.device().compute_units}.dump();
+  });
   if (!answer.failure.empty()) {
-    throw Error(ErrorKind::device,
-                fmt::format("the process with {} threads {}", team.threads, answer.failure));
+    throw Error(ErrorKind::device, fmt::format("the process with {} threads {}", threads, answer.failure));
   }
   const Json told = Json::parse(answer.text);
-  if (told.at("compute_units") != team.threads) {
-    fmt::print(stderr, "WARNING: with {}={} the device has {} compute units\n", kVariables[1], team.threads,
-               told.at("compute_units").get<int>());
+  if (told[2] != threads) {
+    fmt::print(stderr, "WARNING: with {}={} the device has {} compute units\n", kVariables[1], threads,
+               told[2].dump());
   }
-  for (std::size_t e = 0; e < team.entries.size(); ++e) {
-    const Json& from = told.at("entries").at(e);
-    Entry& entry = team.entries[e];
-    entry.outcome = {0, from.at("triangles"), from.at("details")};
-    entry.skipped = from.at("skipped");
-    append(entry.seconds, from.at("seconds").get<std::vector<double>>());
-  }
-}
-
-/// Each entry on the first number of threads and on the others.
-Json speedups_of(const std::vector<Team>& teams) {
-  Json speedups = Json::array();
-  const Team& first = teams.front();
-  for (std::size_t e = 0; e < first.entries.size(); ++e) {
-    for (std::size_t t = 1; t < teams.size(); ++t) {
-      const Entry &slow = first.entries[e], &fast = teams[t].entries[e];
-      if (!slow.valid() || !fast.valid()) continue;
-      speedups.push_back(slow.row);
-      speedups.back()["from_threads"] = first.threads;
-      speedups.back()["to_threads"] = teams[t].threads;
-      speedups.back()["speedup"] = slow.median() / fast.median();
-      speedups.back()["goal"] = kGoalEfficiency * teams[t].threads / first.threads;
-    }
-  }
-  return speedups;
+  return {told[0].get<double>(), told[1]};
 }
 
 Result measure_threads(const ThreadsRequest& request) {
   const std::vector<Input> inputs = make_inputs(request.distributions, request.sizes);
-  Implementations named;
-  for (const std::string& mode : request.modes) {
-    named.push_back(implementation(implementation_name(mode), {}));
+  Jobs jobs;
+  for (const int threads : request.counts) {
+    for (const std::string& mode : request.modes) {
+      const auto run = [&request, mode, threads](const Input& input) {
+        return run_on_threads(request, mode, input, threads);
+      };
+      for (Job& job : make_jobs({{implementation_name(mode), run}}, inputs)) {
+        job.row["threads"] = threads;
+        jobs.push_back(std::move(job));
+      }
+    }
   }
-  std::vector<Team> teams;
-  for (const int threads : request.counts) teams.push_back({threads, make_entries(named, inputs)});
-  for (int round = 0; round < request.runs; ++round) {
-    for (Team& team : teams) measure_in_child(request, inputs, team);
-  }
+  measure(jobs, request.runs, 0);
   // Only now, since child processes are to be made without a device.
   Result result(Triangulator(request.device).device());
-  for (Team& team : teams) add_entries(result, team.entries, {{"threads", team.threads}});
-  result.tables["speedups"] = speedups_of(teams);
+  for (Job& job : jobs) {
+    const int threads = job.row["threads"], first = request.counts.front();
+    const auto slow = median_of(jobs, changed(job.row, {{"threads", first}}));
+    if (!slow || !job.valid() || threads == first) continue;
+    job.details["speedup"] = *slow / job.median();
+    job.details["goal"] = kGoalEfficiency * threads / first;
+  }
+  add_rows(result, jobs);
   return result;
 }
 
-const Subcommand kSubcommand(
+const Subcommand kThreads(
     "threads", "what more threads of the host or of the driver are worth",
-    fmt::format(
-        "{} are read when work begins, so each number of threads has processes of its own: in each round "
-        "one for every number, which runs everything once without counting and once that counts. Mode "
-        "partition has as many host threads, too. The goal is a speedup of {:g} for each thread. Drivers "
-        "other than PoCL do not know these variables; a warning says so where the number of compute "
-        "units does not follow it.",
-        fmt::join(kVariables, " and "), kGoalEfficiency),
+    R"(FLAUNAY_THREADS and POCL_MAX_PTHREAD_COUNT are read when work begins, so each run has a process of its own,
+which runs once without counting and once that counts. Mode partition has as many host threads, too. The goal is a
+speedup of 0.9 for each thread. Drivers other than PoCL do not know these variables; a warning says so where the
+number of compute units does not follow it.)",
     measure_threads, [](Options& options, ThreadsRequest& request) {
       options.add("--counts", request.counts, "numbers of threads; speedups are over the first")
           .sizes({1000000})
