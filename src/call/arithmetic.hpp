@@ -26,7 +26,7 @@ using RunSteps = std::function<double(Precision, std::size_t steps)>;
 /// How many times as long double precision takes as single precision.
 double slowness_of_fp64(const RunSteps& run_steps);
 
-/// The same of a device, which must have fp64. It takes some milliseconds.
+/// How many times as long it takes on a device, which must have fp64. Measuring takes some milliseconds.
 double measured_slowness_of_fp64(host::Runtime& runtime);
 
 /// What is remembered under a key, or else what `measure` returns, which is remembered from then on.

@@ -19,7 +19,7 @@ DeviceInfo describe(const host::Runtime& runtime);
 /// memory it is at most what the system leaves to this process. held: bytes that the caller has allocated
 /// already.
 host::MemoryLeft usable_memory(const boost::compute::device& device, std::size_t held = 0);
-/// The same for calls of a runtime, which may be on the host.
+/// The memory for calls of a runtime, which may be on the host.
 host::MemoryLeft usable_memory(const host::Runtime& runtime, std::size_t held);
 
 }  // namespace flaunay::call

@@ -61,7 +61,7 @@ cl_uint failed_checks(host::Runtime& runtime) {
   return runtime.read_one(failed, 0);
 }
 
-// The same in fixed point.
+// The bits of the checks of fixed point that fail.
 cl_uint failed_checks_in_fixed_point(host::Runtime& runtime) {
   // Operands as in kernels/call/self_test_fixed.cl, and their results, which were computed with rational
   // arithmetic.

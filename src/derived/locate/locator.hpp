@@ -45,7 +45,7 @@ struct Locator {
 geometry::Fitted<Locator> make_locator(host::Runtime& runtime, host::Arena& own,
                                        const points::DeviceMesh& mesh, Triangulate triangulate);
 
-/// The same without trees, of points that are scaled already. Not for queries of callers.
+/// Makes a locator without trees, of points that are scaled already. Not for queries of callers.
 Locator make_walk_locator(host::Runtime& runtime, host::Arena& own, const points::DeviceMesh& mesh);
 
 /// Computes the clearances, which the search for nearest points needs. Does not wait.
