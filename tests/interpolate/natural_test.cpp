@@ -221,11 +221,7 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   runtime.copy(results, 0, exact, 0, columns * m);
   runtime.map_in_small_groups(
       m, kernels::interpolate_natural_exactly{
-             .placed_queries = {.sets = located.sets,
-                                .query_offsets = located.query_offsets,
-                                .frames = located.frames,
-                                .order = located.order,
-                                .placed = located.placed},
+             .placed_queries = located,
              .columns = columns,
              .is_by_vertex = 0,
              .method = static_cast<cl_int>(method),

@@ -6,14 +6,6 @@
 
 namespace flaunay::interpolate {
 
-inline kernels::placed_queries placed_queries(const locate::LocatedQueries& located) {
-  return {.sets = located.sets,
-          .query_offsets = located.query_offsets,
-          .frames = located.frames,
-          .order = located.order,
-          .placed = located.placed};
-}
-
 inline kernels::faces faces_of(const locate::Locator& locator) {
   return {.points = locator.points, .source = locator.source, .faces = locator.faces};
 }

@@ -12,7 +12,7 @@ void clough_tocher(host::Runtime& runtime, const Locator& locator, const Table& 
   const locate::LocatedQueries located = locate_by_place(runtime, locator, queries, m, query_offsets);
   if (m == 0) return;
   const auto at_vertices = at_vertices_of(runtime, locator, table, gradients);
-  runtime.map_in_small_groups(m, kernels::interpolate_clough_tocher{.placed_queries = placed_queries(located),
+  runtime.map_in_small_groups(m, kernels::interpolate_clough_tocher{.placed_queries = located,
                                                                     .columns = table.columns,
                                                                     .outside = table.outside,
                                                                     .bound = located.orient_bound,

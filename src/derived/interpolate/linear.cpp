@@ -9,7 +9,7 @@ void linear(host::Runtime& runtime, const Locator& locator, const Table& table,
             const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located = locate_by_place(runtime, locator, queries, m, query_offsets);
-  runtime.map_in_small_groups(m, kernels::interpolate_linear{.placed_queries = placed_queries(located),
+  runtime.map_in_small_groups(m, kernels::interpolate_linear{.placed_queries = located,
                                                              .columns = table.columns,
                                                              .outside = table.outside,
                                                              .bound = located.orient_bound,

@@ -25,7 +25,7 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                          .values = table.values,
                                          .placed = values});
   }
-  runtime.map_in_small_groups(m, kernels::interpolate_natural{.placed_queries = placed_queries(located),
+  runtime.map_in_small_groups(m, kernels::interpolate_natural{.placed_queries = located,
                                                               .columns = table.columns,
                                                               .is_by_vertex = is_by_vertex,
                                                               .method = static_cast<cl_int>(method),
@@ -35,18 +35,17 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
                                                               .values = values,
                                                               .results = results,
                                                               .left = left});
-  runtime.map_in_small_groups(m,
-                              kernels::interpolate_natural_exactly{.placed_queries = placed_queries(located),
-                                                                   .columns = table.columns,
-                                                                   .is_by_vertex = is_by_vertex,
-                                                                   .method = static_cast<cl_int>(method),
-                                                                   .outside = table.outside,
-                                                                   .records = locator.records,
-                                                                   .faces = faces_of(locator),
-                                                                   .found = located.found,
-                                                                   .values = values,
-                                                                   .left = left,
-                                                                   .results = results});
+  runtime.map_in_small_groups(m, kernels::interpolate_natural_exactly{.placed_queries = located,
+                                                                      .columns = table.columns,
+                                                                      .is_by_vertex = is_by_vertex,
+                                                                      .method = static_cast<cl_int>(method),
+                                                                      .outside = table.outside,
+                                                                      .records = locator.records,
+                                                                      .faces = faces_of(locator),
+                                                                      .found = located.found,
+                                                                      .values = values,
+                                                                      .left = left,
+                                                                      .results = results});
 }
 
 }  // namespace flaunay::interpolate

@@ -9,7 +9,6 @@
 #include "flaunay/flaunay.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
-#include "launchers/locate/locate.cl.hpp"
 #include "points/inspect.hpp"
 #include "tuning/tuning.hpp"
 
@@ -161,27 +160,14 @@ void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoin
                                                             .bad = faults});
 }
 
-// The arguments that all kernels on one call's queries share.
-struct Pass {
-  float orient_bound, nearness_bound;
-  cl_int sets;
-  Buffer<kernel::query_frame> frames;
-  Buffer<cl_int> query_offsets;  // not read if there is one set
-  bool is_off_grid;              // whether some queries are not on the grid: see QueryScaling
-  Magnitudes both;               // of points and of queries, if some are off the grid
-  bool are_placed;               // whether `placed` is filled; otherwise the first kernel does it
-  Buffer<cl_ulong> keys;         // the leaves of placed queries
-  Buffer<cl_int> order;          // per place, the number of its query
-  Buffer<cl_double2> placed;     // the scaled queries
+// What all kernels on one call's queries share. Without trees, the first kernel places the queries.
+struct Pass : LocatedQueries {
+  float nearness_bound;
+  bool is_off_grid;       // whether some queries are not on the grid: see QueryScaling
+  Magnitudes both;        // of points and of queries, if some are off the grid
+  bool are_placed;        // whether `placed` is filled
+  Buffer<cl_ulong> keys;  // the leaves of placed queries
 };
-
-kernels::placed_queries placed_queries(const Pass& pass) {
-  return {.sets = pass.sets,
-          .query_offsets = pass.query_offsets,
-          .frames = pass.frames,
-          .order = pass.order,
-          .placed = pass.placed};
-}
 
 kernels::searched_mesh searched_mesh(const Locator& locator, const Stars& stars) {
   return {.records = locator.records,
@@ -279,9 +265,7 @@ void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& 
           .order = pass.order,
           .placed = pass.placed,
           .bound = pass.orient_bound,
-          .walked_mesh = {.points = locator.points,
-                          .faces = locator.faces,
-                          .first_triangle = locator.first_triangle},
+          .walked_mesh = locator,
           .found = found});
 }
 
@@ -289,12 +273,10 @@ void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& 
 void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
                      const Buffer<cl_int>& answers) {
-  runtime.map(m, kernels::locate_off_grid{.placed_queries = placed_queries(pass),
+  runtime.map(m, kernels::locate_off_grid{.placed_queries = pass,
                                           .records = locator.records,
                                           .queries = queries,
-                                          .walked_mesh = {.points = locator.points,
-                                                          .faces = locator.faces,
-                                                          .first_triangle = locator.first_triangle},
+                                          .walked_mesh = locator,
                                           .found = found,
                                           .answers = answers});
 }
@@ -305,7 +287,7 @@ Fitted<Done> nearest_off_grid(host::Runtime& runtime, const Locator& locator, co
                               const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& points) {
   const auto unanswered = runtime.arena().allocate<cl_int>(1);
   runtime.fill(unanswered, 1, cl_int{0});
-  runtime.map(m, kernels::nearest_off_grid{.placed_queries = placed_queries(pass),
+  runtime.map(m, kernels::nearest_off_grid{.placed_queries = pass,
                                            .most = tuning_of(runtime).off_grid_most,
                                            .records = locator.records,
                                            .queries = queries,
@@ -375,7 +357,7 @@ void nearest_points(host::Runtime& runtime, const Locator& locator, const Pass& 
   const Levels& levels = locator.levels;
   const Locator none;
   const Locator& samples = locator.samples ? *locator.samples : none;
-  runtime.map(m, kernels::nearest_points{.placed_queries = placed_queries(pass),
+  runtime.map(m, kernels::nearest_points{.placed_queries = pass,
                                          .long_from = limits.long_from,
                                          .most_neighbors = limits.most,
                                          .are_vertices = pass.is_off_grid,
@@ -467,10 +449,10 @@ Fitted<Done> nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_d
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
-  const Pass pass = *prepare(runtime, locator, queries, m, query_offsets, limits);
-  const auto found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, found);
-  return {pass.orient_bound, pass.sets, pass.frames, pass.query_offsets, pass.order, pass.placed, found};
+  Pass pass = *prepare(runtime, locator, queries, m, query_offsets, limits);
+  pass.found = runtime.arena().allocate<cl_int>(m);
+  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, pass.found);
+  return pass;
 }
 
 }  // namespace flaunay::locate

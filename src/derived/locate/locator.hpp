@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "derived/locate/levels.hpp"
+#include "launchers/locate/locate.cl.hpp"
 #include "locate/records.h"
 #include "mesh/records.h"
 #include "points/cut_tree.hpp"
@@ -37,6 +38,10 @@ struct Locator {
   Levels levels{};
   Triangulate triangulate = nullptr;         ///< makes the levels of samples
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
+
+  operator kernels::walked_mesh() const {
+    return {.points = points, .faces = faces, .first_triangle = first_triangle};
+  }
 };
 
 /// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
@@ -84,6 +89,10 @@ struct LocatedQueries {
   host::Buffer<cl_int> order{};                ///< per place, the number of its query
   host::Buffer<cl_double2> placed{};           ///< per place, the scaled query
   host::Buffer<cl_int> found{};                ///< per place, the triangle; less than 0 outside of the hull
+
+  operator kernels::placed_queries() const {
+    return {.sets = sets, .query_offsets = query_offsets, .frames = frames, .order = order, .placed = placed};
+  }
 };
 
 /// Finds the triangle of each query with doubles, for kernels that continue from there. The result is
