@@ -97,18 +97,21 @@ static inline uint2 size_of_walk(int rows) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Segments
 
-// How many pieces a walk counts at a time.
+// How many pieces a walk goes through before it counts them.
 #define COUNTED_PIECES 64u
 // From how many rows on it counts those; most walks are shorter.
 #define COUNTED_ROWS 16u
 
-// The next piece of what is left of a segment between two corners, which it moves. Returns at which end it was, see
+// The next piece of what is left of a segment between two corners, which it moves. last: at which end the piece before
+// was, where it looks first: the other end may have very many triangles. Returns at which end it was, see
 // find_departure. walk: of the piece; rows is 0 if it is an edge already.
-static inline int next_piece(const walked_mesh* mesh, int* first, int* second, uint rank, global volatile uint* claims,
-                             constraint_walk* walk) {
+static inline int next_piece(const walked_mesh* mesh, int* first, int* second, int last, uint rank,
+                             global volatile uint* claims, constraint_walk* walk) {
   departure found;
-  const int end = find_departure(mesh, *first, *second, &found);
+  const int is_turned = last == LEAVES_SECOND;
+  int end = find_departure(mesh, is_turned ? *second : *first, is_turned ? *first : *second, &found);
   if (end == LEAVES_NONE) return end;
+  if (is_turned) end = end == LEAVES_FIRST ? LEAVES_SECOND : LEAVES_FIRST;
   int* const here = end == LEAVES_FIRST ? first : second;
   const int goal = mesh->triangles[end == LEAVES_FIRST ? *second : *first];
   if (found.vertex >= 0) {
@@ -192,10 +195,12 @@ kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound 
       count = second_place - first_place;
       ends[2 * s] = hull[from];
       ends[2 * s + 1] = hull[from + 1];
-      for (uint k = 1; k < count && read_shared(&status[INSERTION_PIECES]) <= most_pieces; k += COUNTED_PIECES)
-        atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
+      for (uint k = 0; count > 1 && k < count && read_shared(&status[INSERTION_PIECES]) <= most_pieces;
+           k += COUNTED_PIECES) {
+        atomic_add(&status[INSERTION_PIECES], (uint)min((int)COUNTED_PIECES, (int)(count - k)));
+      }
     } else {
-      int first = (int)first_place, second = (int)second_place;
+      int first = (int)first_place, second = (int)second_place, at = LEAVES_FIRST;
       uint rows = 0;
       constraint_walk walk;
       while (triangles[first] != triangles[second]) {
@@ -203,22 +208,21 @@ kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound 
           atomic_or(&status[INSERTION_STOPPED], 1u);
           break;
         }
-        if (next_piece(&mesh, &first, &second, rank_of(s), claims, &walk) == LEAVES_NONE) {
+        at = next_piece(&mesh, &first, &second, at, rank_of(s), claims, &walk);
+        if (at == LEAVES_NONE) {
           atomic_or(&status[INSERTION_BROKEN], 1u);
           break;
         }
         if (walk.rows == 0) flag_edge(walk.corner, &mesh, flags);
-        if (count % COUNTED_PIECES == 1) {
-          if (read_shared(&status[INSERTION_PIECES]) > most_pieces) break;
-          atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
-        }
-        ++count;
+        if (count % COUNTED_PIECES == 1 && read_shared(&status[INSERTION_PIECES]) > most_pieces) break;
+        if (++count % COUNTED_PIECES == 0) atomic_add(&status[INSERTION_PIECES], COUNTED_PIECES);
         rows += (uint)walk.rows;
         if (rows >= COUNTED_ROWS) {
           atomic_add(&status[INSERTION_ROWS], rows);
           rows = 0;
         }
       }
+      if (count > 1) atomic_add(&status[INSERTION_PIECES], count % COUNTED_PIECES);
       if (count == 1) {
         walks[s] = walk;
         const int in_order = comes_before(vload2(walk.origin, points), vload2(walk.goal, points));
@@ -250,11 +254,11 @@ kernel void write_pieces(int n, filter_bound bound, global const coordinate* res
         ends[2 * i + 1] = hull[from + i - begin + 1];
       }
     } else {
-      int first = (int)first_place, second = (int)second_place, from_first = 0, from_second = 0;
+      int first = (int)first_place, second = (int)second_place, from_first = 0, from_second = 0, at = LEAVES_FIRST;
       const int in_order = comes_before(vload2(triangles[first], points), vload2(triangles[second], points));
       constraint_walk walk = {-1, -1, -1, 0, 0};
       while (from_first + from_second < end - begin) {
-        const int at = next_piece(&mesh, &first, &second, rank_of(s), claims, &walk);
+        at = next_piece(&mesh, &first, &second, at, rank_of(s), claims, &walk);
         const int place = at == LEAVES_FIRST ? from_first++ : end - begin - 1 - from_second++;
         const int i = in_order ? begin + place : end - 1 - place;
         ends[2 * i] = walk.origin;

@@ -276,7 +276,7 @@ constexpr Row kTable[] = {
      "at most."},
     {"walked_most",
      &Tuning::walked_most,
-     {8},
+     {2},
      {64},
      {0},
      "Stages make walks short, but each takes a pass over all triangles, and on a GPU about fifty launches."},

@@ -8,6 +8,7 @@
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/segment_set.hpp"
 #include "geometry/magnitudes.hpp"
+#include "geometry/sort.hpp"
 
 namespace flaunay::constrained {
 using namespace geometry;
@@ -52,22 +53,24 @@ JoinedSegments::JoinedSegments(const std::vector<double>& coordinates,
 }
 
 Ids JoinedSegments::segment_edges(const Ids& edges, const Ids& ranges) const {
-  Ids result(ends_.size(), 0);
+  std::vector<Keyed> by_line;
   for (std::size_t s = 0; s < joined_of_.size(); ++s) {
     if (joined_of_[s] < 0) continue;
-    for (std::size_t k = 0; k < 2; ++k) {
-      // The edge that begins at this end, or after the last one.
-      std::int32_t low = ranges[2 * joined_of_[s]], high = ranges[2 * joined_of_[s] + 1];
-      while (low < high) {
-        const std::int32_t middle = low + (high - low) / 2;
-        if (comes_before(edges[2 * middle], ends_[2 * s + k])) {
-          low = middle + 1;
-        } else {
-          high = middle;
-        }
+    by_line.push_back({static_cast<std::uint64_t>(joined_of_[s]), static_cast<std::int32_t>(s)});
+  }
+  sort_by_key(by_line);
+  // Of the vertices on a line: the edge that begins there, or after the last one.
+  Ids edge_from(coordinates_.size() / 2), result(ends_.size(), 0);
+  for (std::size_t i = 0; i < by_line.size(); ++i) {
+    const std::uint64_t line = by_line[i].key;
+    if (i == 0 || line != by_line[i - 1].key) {
+      for (std::int32_t e = ranges[2 * line]; e < ranges[2 * line + 1]; ++e) {
+        edge_from[edges[2 * e]] = e;
+        edge_from[edges[2 * e + 1]] = e + 1;
       }
-      result[2 * s + k] = low;
     }
+    const auto s = static_cast<std::size_t>(by_line[i].index);
+    for (std::size_t k = 0; k < 2; ++k) result[2 * s + k] = edge_from[ends_[2 * s + k]];
   }
   return result;
 }
