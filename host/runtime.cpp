@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/clock.hpp"
+#include "host/memory/counting.hpp"
 #include "host/memory/huge_pages.hpp"
 #include "host/native/backend.hpp"
 #include "host/opencl/backend.hpp"
@@ -24,6 +25,14 @@ Runtime::Runtime(const boost::compute::context& context, const boost::compute::d
 Runtime::Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads)
     : Runtime(Settings{std::move(sizes)},
               [threads](Accounts& accounts) { return std::make_unique<NativeBackend>(accounts, threads); }) {}
+
+Runtime::Runtime(const Runtime& counted, std::shared_ptr<const Sizes> sizes)
+    : Runtime({std::move(sizes), counted.capabilities()}, [&](Accounts& accounts) {
+        return std::make_unique<CountingBackend>(accounts, counted.memory().alignment);
+      }) {
+  counts_only_ = true;
+  arena_.count_only();
+}
 
 Runtime::Runtime(Settings settings, const MakeBackend& make)
     : sizes_(std::move(settings.sizes)),

@@ -36,7 +36,17 @@ class Runtime {
   /// Runs kernels natively, on threads of the host: OpenCL is not used. Launches and copies are complete when
   /// the call returns; there are no queues and events. threads: see Threads.
   explicit Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads = 0);
+  /// Runs nothing, but counts the memory that work would take on this other runtime
+  /// (host/memory/counting.hpp). Its arena has no memory.
+  Runtime(const Runtime& counted, std::shared_ptr<const Sizes> sizes);
   ~Runtime();
+
+  /// What depends on data: the value, or the most that it can be if the runtime counts memory only. Whatever
+  /// decides about the size of an array is to be read through this.
+  template <typename T>
+  T at_most(T value, T most) const {
+    return counts_only_ ? most : value;
+  }
 
   /// Whether kernels run on threads of the host; each command is complete when its call returns.
   bool is_native() const { return threads() > 0; }
@@ -148,7 +158,7 @@ class Runtime {
   }
   template <typename T>
   T read_one(const Buffer<T>& from, std::size_t index) {
-    T value;
+    T value{};
     read(from, index, 1, &value);
     return value;
   }
@@ -322,7 +332,7 @@ class Runtime {
   template <typename Launcher, typename... Leading>
   void launch_with(std::size_t work_items, std::size_t group, const Launcher& launcher,
                    const Leading&... leading) {
-    if (work_items == 0) return;
+    if (work_items == 0 || counts_only_) return;
     Kernel& kernel = find_kernel(Launcher::kernel_name);
     cl_uint index = 0;
     (set_argument(kernel, index++, leading), ...);
@@ -386,6 +396,7 @@ class Runtime {
   std::map<const KernelName*, std::unique_ptr<Kernel>> kernels_[2];
   Buffer<cl_uint> counters_{};
   bool counting_ = false;
+  bool counts_only_ = false;
 };
 
 }  // namespace flaunay::host

@@ -68,6 +68,9 @@ class Arena {
   /// while anything is allocated.
   void lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std::size_t bytes);
 
+  /// Makes the arena count bytes only: it has no memory, and its arrays must not be accessed.
+  void count_only() { lend({std::shared_ptr<void>(), handle_of(this)}, 0, std::size_t{1} << 60); }
+
   /// Makes every later allocation a separate OpenCL buffer of exactly its size, so that a simulator such as
   /// oclgrind detects every access out of bounds. Slow.
   void separate_buffers() { separate_ = true; }

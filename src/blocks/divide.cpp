@@ -19,19 +19,19 @@ namespace {
 constexpr std::size_t kMostLaunches = 32;
 constexpr std::size_t kLeastBlocksPerWorker = 64;
 
-// Triangulates the blocks that have more than `larger` and at most `capacity` points. milestones: null for
-// none.
+// Triangulates the blocks that have more than `larger` and at most `capacity` points. places: of all workers'
+// scratch memory. milestones: null for none.
 void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std::size_t capacity,
-                 std::ptrdiff_t larger, const Rings& rings, const Buffer<cl_int>& representatives,
-                 Milestones* milestones) {
+                 std::size_t places, std::ptrdiff_t larger, const Rings& rings,
+                 const Buffer<cl_int>& representatives, Milestones* milestones) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   Arena::Scope scope(scratch);
   const auto next = scratch.allocate<cl_int>(1);
-  const auto points = scratch.allocate<cl_double2>(workers * capacity);
-  const auto source = scratch.allocate<cl_int>(workers * capacity);
-  const auto ranks = scratch.allocate<cl_int2>(3 * workers * capacity);
-  const auto axes = scratch.allocate<cl_uchar>(workers * capacity);
+  const auto points = scratch.allocate<cl_double2>(places);
+  const auto source = scratch.allocate<cl_int>(places);
+  const auto ranks = scratch.allocate<cl_int2>(3 * places);
+  const auto axes = scratch.allocate<cl_uchar>(places);
   const bool is_watched = milestones != nullptr && milestones->are_wanted();
   const std::size_t per_launch =
       is_watched ? std::max(kLeastBlocksPerWorker * workers, blocks.count / kMostLaunches + 1) : blocks.count;
@@ -69,14 +69,18 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
 void solve_one_by_one(Workspace& work, const Blocks& blocks, std::size_t largest,
                       const Buffer<cl_int>& representatives, const Rings& rings, Milestones* milestones) {
   const Tuning& tuning = tuning_of(work.runtime);
-  const std::size_t capacity = std::min(largest, tuning.large_blocks * tuning.block_points);
-  const std::size_t affordable =
-      std::max<std::size_t>(1, tuning.scratch_per_point * blocks.points / capacity);
-  solve_sizes(work, blocks, std::min({blocks.count, tuning.block_workers, affordable}), capacity, -1, rings,
-              representatives, milestones);
+  const std::size_t most = tuning.large_blocks * tuning.block_points, capacity = std::min(largest, most);
+  const std::size_t in_all = tuning.scratch_per_point * blocks.points;
+  const std::size_t affordable = std::max<std::size_t>(1, in_all / capacity);
+  const std::size_t workers = std::min({blocks.count, tuning.block_workers, affordable});
+  // Of smaller blocks, more workers can be affordable, and take more together.
+  const std::size_t places = work.runtime.at_most(
+      workers * capacity,
+      std::min(in_all, std::min(blocks.count, tuning.block_workers) * std::min(blocks.points, most)));
+  solve_sizes(work, blocks, workers, capacity, places, -1, rings, representatives, milestones);
   if (largest > capacity) {
-    solve_sizes(work, blocks, 1, largest, static_cast<std::ptrdiff_t>(capacity), rings, representatives,
-                nullptr);
+    solve_sizes(work, blocks, 1, largest, largest, static_cast<std::ptrdiff_t>(capacity), rings,
+                representatives, nullptr);
   }
 }
 
@@ -104,14 +108,6 @@ std::size_t largest_of(const Blocks& blocks) {
 }
 
 }  // namespace
-
-std::size_t solve_bytes(const Tuning& tuning, std::size_t n) {
-  if (tuning.blocks_in_parallel != 0) return kParallelBytesPerPoint * n;
-  constexpr std::size_t kBytes = sizeof(cl_double2) + sizeof(cl_int) + 3 * sizeof(cl_int2) + sizeof(cl_uchar);
-  // The larger of two cases: many work-items solve blocks at once, or one block has all points.
-  return kBytes * std::max(n, std::min(tuning.scratch_per_point * n,
-                                       tuning.block_workers * tuning.large_blocks * tuning.block_points));
-}
 
 Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
             Milestones* milestones) {
@@ -169,7 +165,7 @@ void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {
   rings.distinct.resize(blocks.count);
   const host::Runtime::Settled settled(work.runtime);
   work.runtime.read_later(rings.device_distinct, 0, blocks.count, rings.distinct.data());
-  cl_uint account[kernel::RINGS_NUMBERS];
+  cl_uint account[kernel::RINGS_NUMBERS] = {};
   work.runtime.read(rings.device_account, 0, kernel::RINGS_NUMBERS, account);
   check_account(account);
   rings.undecided = account[kernel::RINGS_UNDECIDED];

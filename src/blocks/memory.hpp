@@ -1,4 +1,4 @@
-// The device memory that the stages need.
+// The device memory that mode blocks needs: that of a run which counts what it allocates, and runs nothing.
 #pragma once
 
 #include <cstddef>

@@ -43,8 +43,6 @@ points::Rings solve(points::Workspace& work, const points::Blocks& blocks,
 /// The second part of divide: merges the triangulations of blocks.
 void merge(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
            Milestones* milestones = nullptr);
-/// An upper bound of the scratch memory of divide for n points, without the arrays of blocks.
-std::size_t solve_bytes(const Tuning& tuning, std::size_t n);
 /// Waits once. Throws as check_account does.
 void await_rings(points::Workspace& work, const points::Blocks& blocks, points::Rings& rings);
 /// Throws Error(internal) if the account of rings says that a merge has failed.
@@ -65,12 +63,10 @@ struct PointBlocks {
 /// Triangulates blocks of any points, as divide does before it merges them, on devices with many lanes: the
 /// halves of all blocks at once. rings: with all its arrays, of the sizes that divide gives them; the account
 /// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
-/// wait. Scratch memory: kParallelBytesPerPoint. Makes 4 launches and 2 or 3 per halving of the largest
-/// block, and some more if blocks may have more than large_blocks times block_points points, or if most are
-/// tiny.
+/// wait. Makes 4 launches and 2 or 3 per halving of the largest block, and some more if blocks may have more
+/// than large_blocks times block_points points, or if most are tiny.
 void solve_in_parallel(points::Workspace& work, const PointBlocks& blocks,
                        const host::Buffer<cl_int>& representatives, const points::Rings& rings);
-constexpr std::size_t kParallelBytesPerPoint = 82;
 
 /// What the stage `halve` leaves for `merge`, from the scratch arena.
 struct HalvedBlocks {

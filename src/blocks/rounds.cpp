@@ -20,6 +20,10 @@ using namespace points;
 
 namespace {
 
+// A planar graph has less than 3 edges per vertex, each of which is open at both ends, and a vertex of the
+// hull has the ray to infinity.
+constexpr std::size_t kMostOpenEdges = 7;
+
 // What all rounds emit to.
 struct Emitted {
   Buffer<cl_double2> points{};  // the vertices, as the first round numbers them
@@ -212,9 +216,12 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, const Num
   runtime.read(device_sizes, 0, sizes.size(), sizes.data());
   numbers.check();
   next.offsets.clear();
-  for (const cl_uint2& size : sizes) next.offsets.push_back(size.s[0]);
+  for (std::size_t s = 0; s < sizes.size(); ++s) {
+    next.offsets.push_back(runtime.at_most<std::size_t>(sizes[s].s[0], round.open.offsets[s]));
+  }
   if (next.count() == 0) return;
-  next.reserve(persistent, std::max(1u, sizes.back().s[1]));
+  next.reserve(persistent, std::max<std::size_t>(1, runtime.at_most(std::size_t{sizes.back().s[1]},
+                                                                    kMostOpenEdges * next.count())));
   runtime.map(blocks.points, kernels::write_open{.open_vertices = open_vertices(round),
                                                  .points = blocks.vertices,
                                                  .edges = round.rings.edges,
@@ -290,7 +297,7 @@ class Results {
   void write_hulls(const MeshSizes& sizes, const Buffer<cl_int>& hull) {
     host::Runtime& runtime = work_.runtime;
     Arena::Scope scope(work_.scratch());
-    const std::size_t count = sizes.hull_vertices();
+    const std::size_t count = runtime.at_most(sizes.hull_vertices(), n_);
     const auto vertices = work_.scratch().allocate<cl_int>(count);
     auto ahead = work_.scratch().allocate<cl_int2>(count);
     auto farther = work_.scratch().allocate<cl_int2>(count);
@@ -391,7 +398,7 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
     Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives)};
     if (is_merged) merge(rounds_work, blocks, round.rings);
     // Coarse coordinates have no ties: merges break them.
-    if (work.bounds.circle != 0.0) make_fans(rounds_work, blocks, round.rings);
+    if (runtime.at_most(work.bounds.circle != 0.0, true)) make_fans(rounds_work, blocks, round.rings);
     if (r == 0) {
       exchange.while_device_computes();
       boxes = boxes_of_sets(work, blocks, round.rings);

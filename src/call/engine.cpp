@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "blocks/memory.hpp"
 #include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
 #include "call/self_test.hpp"
@@ -138,7 +137,12 @@ void Engine::use_own_memory() {
 }
 
 void Engine::provide_memory(std::size_t n, std::size_t sets) {
-  const blocks::WorkspaceBytes needed = blocks::workspace_bytes(runtime, n, sets);
+  if (n != counted_points_ || sets != counted_sets_) {
+    needed_ = blocks::workspace_bytes(runtime, n, sets);
+    counted_points_ = n;
+    counted_sets_ = sets;
+  }
+  const blocks::WorkspaceBytes& needed = needed_;
   if (workspace == nullptr) {
     // Enough for any n points, so that the next call on as many points allocates nothing.
     persistent.reserve(needed.persistent);

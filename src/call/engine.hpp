@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "blocks/memory.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 #include "tuning/tuning.hpp"
@@ -67,6 +68,9 @@ struct Engine {
   std::size_t allocations() const;
 
   std::size_t allocations_before_ = 0;
+  // What provide_memory has counted last, and for what.
+  std::size_t counted_points_ = 0, counted_sets_ = 0;
+  blocks::WorkspaceBytes needed_{};
 };
 
 }  // namespace flaunay::call

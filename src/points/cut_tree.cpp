@@ -46,16 +46,6 @@ CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, st
   first_samples_ = runtime.upload(runtime.arena(), std::move(first_samples));
 }
 
-std::size_t CutTrees::bytes(std::size_t trees, std::size_t leaves, std::size_t samples_per_leaf) {
-  // A sample, its index, its places in the orders of both axes, and the memory for sorting these, which is
-  // more than the later steps need.
-  constexpr std::size_t kBySample = sizeof(cl_double2) + 3 * sizeof(cl_int) + 4 * sizeof(cl_uint2);
-  // The counts of chunks, each of which has at least one leaf, and the sums of their scan.
-  constexpr std::size_t kByLeaf = 2 * sizeof(cl_uint);
-  return trees * (sizeof(kernel::sampled_tree) + 2 * sizeof(cl_int)) +
-         leaves * (samples_per_leaf * kBySample + kByLeaf);
-}
-
 // Launches a kernel with this many work-items per chunk.
 template <typename Kernel>
 void CutTrees::launch(std::size_t items_per_chunk, const Kernel& kernel) const {

@@ -49,9 +49,6 @@ class CutTrees {
   void cut_at_gaps(const host::Buffer<cl_double2>& samples,
                    const host::Buffer<kernel::cut_node>& nodes) const;
 
-  /// An upper bound of the memory for this many trees with this many leaves in total, without alignment.
-  static std::size_t bytes(std::size_t trees, std::size_t leaves, std::size_t samples_per_leaf);
-
  private:
   template <typename Kernel>
   void launch(std::size_t items_per_chunk, const Kernel& kernel) const;

@@ -51,7 +51,7 @@ Fitted<UniformPoints> in_fixed_point(host::Runtime& runtime, const host::Buffer<
   UniformPoints uniform;
   int bits = 0;
   const std::size_t sets = offsets.size() - 1;
-  const bool is_by_set = sets > 1 && !fits_fixed_point(all);
+  const bool is_by_set = sets > 1 && runtime.at_most(!fits_fixed_point(all), true);
   const std::vector<Magnitudes> parts = is_by_set ? inspect_sets(runtime, points, offsets) : std::vector{all};
   for (const Magnitudes& part : parts) {
     if (!fits_fixed_point(part)) return TooWide{part};
@@ -110,7 +110,7 @@ Fitted<UniformPoints> make_uniform(host::Runtime& runtime, const host::Buffer<cl
   const Magnitudes magnitudes = inspect(runtime, points, n);
   const bool differ = differ_too_much(magnitudes);
   const bool is_fixed = runtime.capabilities().fixed_point;
-  if (differ && sets > 1 && !is_fixed) return scale_sets(runtime, points, offsets);
+  if (sets > 1 && !is_fixed && runtime.at_most(differ, true)) return scale_sets(runtime, points, offsets);
   if (is_fixed && magnitudes.bad == kernel::NO_BAD && (!differ || sets > 1)) {
     return in_fixed_point(runtime, points, offsets, magnitudes);
   }

@@ -138,7 +138,8 @@ void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::siz
     sort_into_blocks(work, plan, offsets, input, representatives, blocks);
     if (sizes == BlockSizes::guessed) return;
     blocks.offsets.resize(blocks.count + 1);
-    work.runtime.read(blocks.device_offsets, 0, blocks.count + 1, blocks.offsets.data());
+    work.runtime.read(blocks.device_offsets, 0, blocks.count, blocks.offsets.data());
+    blocks.offsets[blocks.count] = static_cast<cl_int>(blocks.points);
     return;
   }
   work.runtime.map(blocks.points, kernels::copy_points{.input = input,

@@ -369,23 +369,6 @@ TEST(Merge, LaunchesAreFew) {
   });
 }
 
-TEST(Merge, ScratchMemory) {
-  for (const std::size_t capacity : {20000, 100}) {  // the block is large or not
-    with_groups(capacity, [](Runtime& runtime) {
-      BlockPoints points;
-      points.add(make_fixture("uniform", 20000, 45));
-      Arena& arena = runtime.arena();
-      arena.reset_peak();
-      Call call(runtime);
-      const DeviceBlocks on_device(call, points);
-      const std::size_t before = arena.peak_bytes();
-      solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
-      const std::size_t arrays = 20;  // each is rounded up
-      EXPECT_LE(arena.peak_bytes() - before, kParallelBytesPerPoint * 20000 + arrays * arena.alignment());
-    });
-  }
-}
-
 }  // namespace
 
 }  // namespace flaunay::blocks
