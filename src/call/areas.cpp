@@ -1,30 +1,33 @@
 #include "call/areas.hpp"
 
 #include "call/triangulate.hpp"
-#include "host/native/threads.hpp"
+#include "launchers/call/areas.cl.hpp"
 #include "predicates/rounded_area.h"
 
 namespace flaunay::call {
 
-void write_areas(const HostPoints& points, const Options& options, Triangulation& result) {
-  if (!options.areas) return;
+void write_areas(Engine& engine, const HostPoints& points, Triangulation& result) {
+  const std::size_t triangles = result.triangles.size() / 3;
+  // Fewer take less time than a call of the engine.
+  constexpr std::size_t kFewest = 1 << 14;
+  if (triangles < kFewest) return write_areas(points, result);
+  Frame call(engine);
+  const auto areas = call.out<cl_double>(result.areas, triangles);
+  engine.runtime.map(triangles, kernels::triangle_areas{.input = call.points(points).as<cl_ulong>(),
+                                                        .triangles = call.in(result.triangles),
+                                                        .areas = areas.as<cl_ulong>()});
+  call.end();
+}
+
+void write_areas(const HostPoints& points, Triangulation& result) {
   const std::vector<double> doubles = widened(points);
   const auto* const input =
       reinterpret_cast<const kernel::double_bits*>(points.wide != nullptr ? points.wide : doubles.data());
-  const std::int32_t* const corners = result.triangles.data();
+  const std::int32_t* corners = result.triangles.data();
   result.areas.resize(result.triangles.size() / 3);
-  const auto compute = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      result.areas[t] = kernel::as_double(
-          kernel::rounded_area(input, corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]));
-    }
-  };
-  // A thread is not worth its start for fewer.
-  constexpr std::size_t kOfThread = 1 << 14;
-  if (result.areas.size() < kOfThread) {
-    compute(0, result.areas.size());
-  } else {
-    host::Threads().share(result.areas.size(), kOfThread, compute);
+  for (double& area : result.areas) {
+    area = kernel::as_double(kernel::rounded_area(input, corners[0], corners[1], corners[2]));
+    corners += 3;
   }
 }
 

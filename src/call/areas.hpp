@@ -5,7 +5,10 @@
 
 namespace flaunay::call {
 
-/// Writes Triangulation::areas, on threads of the host, if the options ask for them. The points are finite.
-void write_areas(const HostPoints& points, const Options& options, Triangulation& result);
+/// Writes Triangulation::areas, which the engine computes unless they are few. The points are finite. Resets
+/// the engine's accounts.
+void write_areas(Engine& engine, const HostPoints& points, Triangulation& result);
+/// Computes them on the calling thread.
+void write_areas(const HostPoints& points, Triangulation& result);
 
 }  // namespace flaunay::call

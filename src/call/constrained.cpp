@@ -137,12 +137,13 @@ void carry_markers(const Constraints& constraints, std::size_t n, ConstrainedTri
 
 // Makes half-edges and areas, or leaves out neighbours, as the options say, and counts the triangles.
 // coordinates: of all points, those that splitting added too.
-void finish(const double* coordinates, const Options& options, ConstrainedTriangulation& result) {
+void finish(call::Implementation& self, const double* coordinates, const Options& options,
+            ConstrainedTriangulation& result) {
   // Otherwise all triangles were kept.
   if (result.halfedges.size() != result.triangles.size()) geometry::write_halfedges(options, result);
   if (!options.neighbors) result.neighbors.clear();
   if (options.areas) {
-    call::write_areas({coordinates, nullptr, result.representatives.size()}, options, result);
+    call::write_areas(self.for_host_memory(), {coordinates, nullptr, result.representatives.size()}, result);
   }
   result.statistics.triangles = result.triangles.size() / 3;
 }
@@ -164,7 +165,7 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
   carry_markers(constraints, offsets.back(), result);
   const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
   apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints, request, result);
-  finish(all.empty() ? coordinates : all.data(), options, result);
+  finish(self, all.empty() ? coordinates : all.data(), options, result);
   end_phase("domains", begin, result.statistics);
   return result;
 }

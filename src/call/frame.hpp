@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -152,14 +153,24 @@ class Frame {
   static std::shared_ptr<std::vector<T>> in_place(std::vector<T>& values) {
     return {std::shared_ptr<void>(), &values};
   }
-  // Where a native engine has values of the caller's device memory.
+  // Where a native engine has values of the caller's device memory, which are read once.
   template <typename T>
   Buffer<T> read_back(const Buffer<T>& there, std::size_t first, std::size_t count) {
+    const std::array<std::size_t, 2> range = {first * sizeof(T), count * sizeof(T)};
+    for (const ReadBack& read : read_) {
+      if (read.from == there.memory() && read.range == range) return {read.values, count};
+    }
     const auto values =
         std::make_shared<std::vector<T>>(points::download(place_.device->runtime, there, first, count));
-    kept_.push_back(values);
-    return runtime.view(values->data(), count);
+    const Buffer<T> here = runtime.view(values->data(), count);
+    read_.push_back({there.memory(), range, {values, here.memory()}});
+    return here;
   }
+  struct ReadBack {
+    cl_mem from;
+    std::array<std::size_t, 2> range;  // the first byte, and how many
+    std::shared_ptr<_cl_mem> values;
+  };
 
   // What end() does with an array that kernels have written. A small struct, since some calls take a
   // microsecond.
@@ -189,7 +200,7 @@ class Frame {
 
   Place place_;
   Enqueue enqueue_;
-  std::vector<std::shared_ptr<void>> kept_;
+  std::vector<ReadBack> read_;
   std::vector<Transfer> transfers_;
   std::vector<cl_mem> memories_;  // of the caller's arrays
   std::optional<host::Arena::Scope> scope_;

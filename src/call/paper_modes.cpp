@@ -33,18 +33,19 @@ Triangulation checked_call(Triangulator& triangulator, const double* wide, const
     const call::HostPoints points = call::checked_points(wide, narrow, offsets);
     const call::ModeRow& row = call::row_of(options.mode);
     const call::Request request{points, offsets, options};
-    const auto run = [&] {
-      if (row.on_host != nullptr) {
-        const std::vector<double> doubles = call::widened(points);
-        return row.on_host(narrow != nullptr ? doubles.data() : wide, request);
-      }
-      check_options(options);
-      call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-      const call::Turn turn(self);
-      return row.with_engine(self, request);
-    };
-    Triangulation result = run();
-    if (options.mode != Mode::blocks) call::write_areas(points, options, result);
+    if (row.on_host != nullptr) {
+      const std::vector<double> doubles = call::widened(points);
+      Triangulation result = row.on_host(narrow != nullptr ? doubles.data() : wide, request);
+      if (options.areas) call::write_areas(points, result);
+      return result;
+    }
+    check_options(options);
+    call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+    const call::Turn turn(self);
+    Triangulation result = row.with_engine(self, request);
+    if (options.areas && options.mode != Mode::blocks) {
+      call::write_areas(self.for_host_memory(), points, result);
+    }
     return result;
   });
 }
@@ -82,7 +83,7 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
     throw Error(ErrorKind::usage, fmt::format("only the modes {} run without a device", names));
   }
   Triangulation result = row.on_host(coordinates, {{}, offsets, options});
-  call::write_areas({coordinates, nullptr, offsets.back()}, options, result);
+  if (options.areas) call::write_areas({coordinates, nullptr, offsets.back()}, result);
   return result;
 }
 

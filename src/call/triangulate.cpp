@@ -76,6 +76,7 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
   if (arrays.areas.is_wanted()) {
+    // Points that are a copy in the arena are copied again, because they would take memory all the time.
     const std::size_t triangles = outcome.sizes.triangles();
     engine.runtime.map(triangles,
                        kernels::triangle_areas{.input = call.points(points).template as<cl_ulong>(),
@@ -106,7 +107,7 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
   const double begin = host::now();
   const std::vector<double> doubles = widened(points);
   blocks::run_small(points.wide != nullptr ? points.wide : doubles.data(), offsets, options, result);
-  write_areas(points, options, result);
+  if (options.areas) write_areas(points, result);
   result.statistics.device = host::kHostName;
   result.statistics.seconds = host::now() - begin;
   result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
