@@ -1689,6 +1689,12 @@ static int32_t* make_indices(size_t count) {
   return made;
 }
 
+static double* make_doubles(size_t count) {
+  double* made = malloc(count * sizeof *made);
+  REQUIRE(made != NULL);
+  return made;
+}
+
 // Cheap and independent of the order of rows; equal triangles with equal sides to their neighbours have equal
 // sums.
 static uint64_t row_sum(const int32_t* triangles, const int32_t* neighbors, size_t count) {
@@ -1728,12 +1734,17 @@ static const flaunay_chunk_options kSmallChunks = {
     .devices = kHostAlone, .device_count = 1, .chunk_points = kChunkPoints};
 
 static void check_same_mesh(const int32_t* triangles, const int32_t* neighbors, const int32_t* hull,
-                            const int32_t* representatives, const flaunay_triangulation* expected) {
+                            const int32_t* representatives, const double* areas,
+                            const flaunay_triangulation* expected) {
   const size_t count = flaunay_triangulation_triangle_count(expected);
   CHECK(row_sum(triangles, neighbors, count) ==
         row_sum(flaunay_triangulation_triangles(expected), flaunay_triangulation_neighbors(expected), count));
   CHECK(same(hull, flaunay_triangulation_hull(expected), flaunay_triangulation_hull_count(expected)));
   CHECK(same(representatives, flaunay_triangulation_representatives(expected), kPoints));
+  double* own = make_doubles(count);
+  CHECK(flaunay_triangle_areas(points, kPoints, triangles, count, own) == FLAUNAY_SUCCESS);
+  CHECK(memcmp(areas, own, count * sizeof *own) == 0);
+  free(own);
 }
 
 static void test_chunks_in_arrays(void) {
@@ -1741,11 +1752,13 @@ static void test_chunks_in_arrays(void) {
   flaunay_mesh_arrays arrays = {.triangles = make_indices(6 * kPoints),
                                 .neighbors = make_indices(6 * kPoints),
                                 .hull = make_indices(kPoints),
-                                .representatives = make_indices(kPoints)};
+                                .representatives = make_indices(kPoints),
+                                .areas = make_doubles(2 * kPoints)};
   flaunay_chunk_report* report = NULL;
   REQUIRE(flaunay_triangulate_chunks(points, kPoints, &arrays, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
   check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
-  check_same_mesh(arrays.triangles, arrays.neighbors, arrays.hull, arrays.representatives, expected);
+  check_same_mesh(arrays.triangles, arrays.neighbors, arrays.hull, arrays.representatives, arrays.areas,
+                  expected);
   flaunay_chunk_report_destroy(report);
 
   // The hull alone in 64 bits, on a device that is in use by this program.
@@ -1767,6 +1780,7 @@ static void test_chunks_in_arrays(void) {
   free(arrays.neighbors);
   free(arrays.hull);
   free(arrays.representatives);
+  free(arrays.areas);
 }
 
 // A .npy file's entries; its header has 128 bytes.
@@ -1784,9 +1798,10 @@ static void* read_entries(const char* path, size_t bytes) {
 
 static void test_chunks_to_files(void) {
   const char* const folder = getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp";
-  char triangles_path[4096], neighbors_path[4096], missing_path[4096];
+  char triangles_path[4096], neighbors_path[4096], areas_path[4096], missing_path[4096];
   snprintf(triangles_path, sizeof triangles_path, "%s/flaunay-%d-triangles.npy", folder, (int)getpid());
   snprintf(neighbors_path, sizeof neighbors_path, "%s/flaunay-%d-neighbors.npy", folder, (int)getpid());
+  snprintf(areas_path, sizeof areas_path, "%s/flaunay-%d-areas.npy", folder, (int)getpid());
   snprintf(missing_path, sizeof missing_path, "%s/flaunay-%d-missing/t.npy", folder, (int)getpid());
   // Points as float, each after a number that is not its own, from the last one to the first.
   float* rows = malloc(3 * kPoints * sizeof *rows);
@@ -1801,7 +1816,8 @@ static void test_chunks_to_files(void) {
                                          .precision = FLAUNAY_FLOAT32,
                                          .point_stride = -3 * (ptrdiff_t)sizeof *rows,
                                          .coordinate_stride = -(ptrdiff_t)sizeof *rows};
-  const flaunay_mesh_files files = {.triangles = triangles_path, .neighbors = neighbors_path};
+  const flaunay_mesh_files files = {
+      .triangles = triangles_path, .neighbors = neighbors_path, .areas = areas_path};
   const flaunay_mesh_arrays arrays = {.hull = make_indices(kPoints),
                                       .representatives = make_indices(kPoints)};
   flaunay_chunk_report* report = NULL;
@@ -1811,7 +1827,8 @@ static void test_chunks_to_files(void) {
   check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
   const size_t bytes = 3 * flaunay_triangulation_triangle_count(expected) * sizeof(int32_t);
   int32_t *triangles = read_entries(triangles_path, bytes), *neighbors = read_entries(neighbors_path, bytes);
-  check_same_mesh(triangles, neighbors, arrays.hull, arrays.representatives, expected);
+  double* areas = read_entries(areas_path, flaunay_triangulation_triangle_count(expected) * sizeof(double));
+  check_same_mesh(triangles, neighbors, arrays.hull, arrays.representatives, areas, expected);
   flaunay_chunk_report_destroy(report);
 
   // Without arrays, and in 64 bits.
@@ -1868,9 +1885,9 @@ static void test_chunks_to_files(void) {
   free(read_entries(triangles_path, 0));
   int32_t* kept = read_entries(neighbors_path, bytes);
   CHECK(same(kept, neighbors, bytes / sizeof *kept));
-  CHECK(remove(triangles_path) == 0 && remove(neighbors_path) == 0);
+  CHECK(remove(triangles_path) == 0 && remove(neighbors_path) == 0 && remove(areas_path) == 0);
   flaunay_triangulation_destroy(expected);
-  free(kept), free(triangles), free(neighbors), free(wide_triangles), free(rows);
+  free(kept), free(triangles), free(neighbors), free(areas), free(wide_triangles), free(rows);
   free(arrays.hull), free(arrays.representatives);
 }
 
@@ -1890,6 +1907,7 @@ static int read_nothing(uint64_t first, size_t count, double* coordinates, void*
 typedef struct {
   FILE* triangles;
   int32_t *neighbors, *hull, *representatives;
+  double* areas;
   unsigned parts, fails_at;
 } stored_mesh;
 
@@ -1912,23 +1930,32 @@ static int write_part(unsigned part, uint64_t first, const int64_t* values, size
   return 0;
 }
 
+static int write_areas(unsigned part, uint64_t first, const double* values, size_t count, void* data) {
+  stored_mesh* mesh = data;
+  mesh->parts |= part;
+  if (part == mesh->fails_at) return -3;
+  memcpy(mesh->areas + first, values, count * sizeof *values);
+  return 0;
+}
+
 static void test_chunks_in_files(void) {
   FILE* file = tmpfile();
   stored_mesh mesh = {.triangles = tmpfile(),
                       .neighbors = make_indices(6 * kPoints),
                       .hull = make_indices(kPoints),
-                      .representatives = make_indices(kPoints)};
+                      .representatives = make_indices(kPoints),
+                      .areas = make_doubles(2 * kPoints)};
   REQUIRE(file != NULL && mesh.triangles != NULL);
   REQUIRE(fwrite(points, sizeof points, 1, file) == 1);
   const flaunay_point_source source = {.count = kPoints, .read = read_file, .data = file};
-  flaunay_mesh_sink sink = {.write = write_part, .data = &mesh};
+  flaunay_mesh_sink sink = {.write = write_part, .data = &mesh, .write_doubles = write_areas};
   flaunay_chunk_report* report = NULL;
   REQUIRE(flaunay_triangulate_streams(&source, &sink, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
   CHECK(mesh.parts == FLAUNAY_PART_TRIANGLES);  // the default
   flaunay_chunk_report_destroy(report);
 
-  sink.parts =
-      FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
+  sink.parts = FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HULL |
+               FLAUNAY_PART_REPRESENTATIVES | FLAUNAY_PART_AREAS;
   REQUIRE(flaunay_triangulate_streams(&source, &sink, &kSmallChunks, &report) == FLAUNAY_SUCCESS);
   CHECK(mesh.parts == sink.parts);
   flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, 0);
@@ -1937,18 +1964,18 @@ static void test_chunks_in_files(void) {
   int32_t* triangles = make_indices(entries);
   rewind(mesh.triangles);
   REQUIRE(fread(triangles, sizeof *triangles, entries, mesh.triangles) == entries);
-  check_same_mesh(triangles, mesh.neighbors, mesh.hull, mesh.representatives, expected);
+  check_same_mesh(triangles, mesh.neighbors, mesh.hull, mesh.representatives, mesh.areas, expected);
   flaunay_chunk_report_destroy(report);
   flaunay_triangulation_destroy(expected);
 
   // A function of the caller's ends the call.
   const flaunay_status stopped = FLAUNAY_ERROR_STOPPED;
   CHECK(strcmp(flaunay_status_string(stopped), "stopped by the caller") == 0);
-  for (unsigned part = FLAUNAY_PART_TRIANGLES; part <= FLAUNAY_PART_REPRESENTATIVES; part *= 2) {
+  for (unsigned part = FLAUNAY_PART_TRIANGLES; part <= FLAUNAY_PART_AREAS; part *= 2) {
     if (part == FLAUNAY_PART_HALFEDGES) continue;
     mesh.fails_at = part;
     CHECK(fails(flaunay_triangulate_streams(&source, &sink, &kSmallChunks, &report), stopped,
-                "write returned -3"));
+                part == FLAUNAY_PART_AREAS ? "write_doubles returned -3" : "write returned -3"));
     CHECK(report == NULL);
   }
   mesh.fails_at = 0;
@@ -1962,6 +1989,7 @@ static void test_chunks_in_files(void) {
   free(mesh.neighbors);
   free(mesh.hull);
   free(mesh.representatives);
+  free(mesh.areas);
 }
 
 typedef struct {
@@ -2080,10 +2108,12 @@ static void test_bad_streams(void) {
   CHECK(fails(flaunay_triangulate_streams(&unread, &sink, NULL, &report), usage, "reads points"));
   CHECK(fails(flaunay_triangulate_streams(&unknown, &sink, NULL, &report), usage, "flaunay_point_source"));
   const flaunay_mesh_sink unwritten = {0}, strange = {.write = write_part, .reserved = {1}},
-                          halfedges = {.write = write_part, .parts = FLAUNAY_PART_HALFEDGES};
+                          halfedges = {.write = write_part, .parts = FLAUNAY_PART_HALFEDGES},
+                          areas = {.write = write_part, .parts = FLAUNAY_PART_AREAS};
   CHECK(fails(flaunay_triangulate_streams(&source, &unwritten, NULL, &report), usage, "writes results"));
   CHECK(fails(flaunay_triangulate_streams(&source, &strange, NULL, &report), usage, "flaunay_mesh_sink"));
   CHECK(fails(flaunay_triangulate_streams(&source, &halfedges, NULL, &report), usage, "0x4"));
+  CHECK(fails(flaunay_triangulate_streams(&source, &areas, NULL, &report), usage, "in doubles"));
   const flaunay_point_source many = {.count = UINT64_MAX, .read = read_nothing, .data = &calls};
   CHECK(fails(flaunay_triangulate_streams(&many, &sink, NULL, &report), FLAUNAY_ERROR_INPUT, "too many"));
   CHECK(calls == 0 && report == NULL);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Attacks the command's chunks with files of all formats: random degenerate points, chunk sizes, numbers of devices and
 widths of indices. What is written is compared with a run in memory: hulls and duplicates byte by byte, triangles with
-their neighbours as sets, since the order of rows depends on chunks; and between formats byte by byte.
+their areas and neighbours as sets, since the order of rows depends on chunks; and between formats byte by byte.
 
     chunk_files.py FLAUNAY [--seconds N] [--seed S] [--mpi COMMAND]
 
@@ -64,7 +64,7 @@ def write_all(folder, integers):
     (folder / "p.node").write_text("\n".join(numbered) + "\n")
 
 
-OUTPUTS = ("triangles", "neighbors", "hull", "duplicates")
+OUTPUTS = ("triangles", "neighbors", "hull", "duplicates", "areas")
 
 
 def run(program, folder, name, arguments):
@@ -81,13 +81,14 @@ def run(program, folder, name, arguments):
 
 
 def rows(folder_bytes):
-    """Each triangle with the corners of its neighbours, sorted."""
+    """Each triangle with its area's bits and the corners of its neighbours, sorted."""
     t = np.load(io.BytesIO(folder_bytes["triangles"])).astype(np.int64)
     nb = np.load(io.BytesIO(folder_bytes["neighbors"])).astype(np.int64)
+    areas = np.load(io.BytesIO(folder_bytes["areas"])).view(np.int64)
     if len(t) == 0:
         return t
     with_none = np.vstack([t, [[-1, -1, -1]]])
-    full = np.hstack([t, with_none[nb].reshape(len(t), 9)])
+    full = np.hstack([t, areas[:, None], with_none[nb].reshape(len(t), 9)])
     return full[np.lexsort(full.T[::-1])]
 
 

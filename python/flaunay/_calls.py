@@ -785,9 +785,10 @@ class _ChunkCall:
                 setattr(self._files, name, path)
                 continue
             # Room for as many rows as there may be. What is never written is never in memory.
-            _, row, columns, _ = TRIANGULATION[name]
+            dtype, row, columns, _ = TRIANGULATION[name]
             shape = _shape(2 * n if row == "triangle" else n, columns)
-            self.arrays[name] = np.empty(shape, _INT64 if wide else _INT32)
+            element = _INT64 if wide and dtype == _INT32 else dtype
+            self.arrays[name] = np.empty(shape, element)
             setattr(self._places, name, self.arrays[name].ctypes.data if n else None)
         self._names = (ctypes.c_char_p * len(names))(*names)
         self._options = options

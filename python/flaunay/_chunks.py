@@ -35,7 +35,7 @@ class ChunkedTriangulation:
     """The triangulation that `triangulate_chunks` made.
 
     Arrays that were written to files are mapped into memory, and cannot be written to. The indices are
-    int32 or int64, of the same type in all arrays.
+    int32 or int64, of the same type in all arrays that have some.
 
     Attributes
     ----------
@@ -50,6 +50,8 @@ class ChunkedTriangulation:
     representatives : ndarray or memmap of int, shape (n,), or None
         For each point the smallest index of an equal point. Only those are in triangles. None if not
         asked for.
+    areas : ndarray or memmap of float64, shape (m,), or None
+        The area of each triangle, rounded to the nearest number. None if not asked for.
     statistics : dict
         The numbers of ``points``, ``duplicates``, ``triangles`` and ``hull_vertices``; the ``rounds``,
         each with its ``points``, ``chunks``, final ``triangles`` and points ``handed_on``; the
@@ -61,6 +63,7 @@ class ChunkedTriangulation:
     neighbors: Optional[Indices]
     hull: Optional[Indices]
     representatives: Optional[Indices]
+    areas: Optional[FloatArray]
     statistics: dict[str, Any]
 
     def __repr__(self) -> str:
@@ -148,6 +151,7 @@ def triangulate_chunks(
     neighbors: Result = None,
     hull: Result = None,
     representatives: Result = None,
+    areas: Result = None,
     memory: Union[None, int, str] = None,
     scratch: Union[None, str, os.PathLike[str]] = None,
     devices: Union[None, str, Sequence[str]] = None,
@@ -159,7 +163,7 @@ def triangulate_chunks(
 
     What is final in a chunk is written; points around which something is missing, some hundredths of a
     chunk's, go on to chunks that are cut otherwise, until one chunk has them all. The set of triangles
-    with their neighbours, the hull and the representatives are those of `triangulate`.
+    with their neighbours and areas, the hull and the representatives are those of `triangulate`.
 
     Parameters
     ----------
@@ -168,7 +172,7 @@ def triangulate_chunks(
         whatever their strides: give ``numpy.load(path, mmap_mode="r")`` or a ``numpy.memmap``. Other
         numbers become float64 in memory, and must be one exactly. They must not change during the
         call.
-    triangles, neighbors, hull, representatives : path, bool or None
+    triangles, neighbors, hull, representatives, areas : path, bool or None
         Where each array goes: to a file whose path ends in ``.npy``, or with True to an array in
         memory. None and False: it is not wanted. Either all files are written, or after an error none:
         what was there before stays. Without any, the call finds the numbers alone.
@@ -250,7 +254,7 @@ def triangulate_chunks(
         0 if chunk_points is None else min(int(chunk_points), _MOST_BYTES),
         progress,
     )
-    arrays: dict[str, Optional[Indices]] = dict.fromkeys(_declarations.MESH_ARRAYS)
+    arrays: dict[str, Any] = dict.fromkeys(_declarations.MESH_ARRAYS)
     arrays |= in_memory
     for name, path in wanted.items():
         if path is not None:

@@ -28,10 +28,14 @@ def rows_with_neighbors(triangles, neighbors):
 
 def check_same(mesh, points):
     """The result is that of one call."""
-    expected = flaunay.triangulate(points)
+    expected = flaunay.triangulate(points, areas=True)
     assert mesh.triangles.shape == expected.triangles.shape
     assert rows_with_neighbors(mesh.triangles, mesh.neighbors) == rows_with_neighbors(
         expected.triangles, expected.neighbors
+    )
+    assert mesh.areas.dtype == np.float64 and mesh.areas.shape == expected.areas.shape
+    assert dict(zip(map(tuple, mesh.triangles.tolist()), mesh.areas)) == dict(
+        zip(map(tuple, expected.triangles.tolist()), expected.areas)
     )
     assert np.array_equal(mesh.hull, expected.hull)
     assert np.array_equal(mesh.representatives, expected.representatives)
@@ -40,13 +44,11 @@ def check_same(mesh, points):
 
 
 def paths_in(folder):
-    return {
-        name: folder / f"{name}.npy"
-        for name in ("triangles", "neighbors", "hull", "representatives")
-    }
+    return {name: folder / f"{name}.npy" for name in NAMES}
 
 
-IN_MEMORY = dict.fromkeys(("triangles", "neighbors", "hull", "representatives"), True)
+NAMES = ("triangles", "neighbors", "hull", "representatives", "areas")
+IN_MEMORY = dict.fromkeys(NAMES, True)
 
 
 @pytest.fixture

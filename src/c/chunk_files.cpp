@@ -87,11 +87,10 @@ class Results : public MeshSink {
   bool wants(MeshArray array) const override { return files_.wants(array) || arrays_.wants(array); }
 
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
-    if (files_.wants(array)) {
-      files_.write(array, first, values, count);
-    } else {
-      arrays_.write(array, first, values, count);
-    }
+    sink_of(array).write(array, first, values, count);
+  }
+  void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
+    sink_of(array).write_doubles(array, first, values, count);
   }
 
   // Gives the files their names, all or none.
@@ -101,6 +100,11 @@ class Results : public MeshSink {
   }
 
  private:
+  MeshSink& sink_of(MeshArray array) {
+    if (files_.wants(array)) return files_;
+    return arrays_;
+  }
+
   static constexpr io::IndexType kType = sizeof(Index) == 4 ? io::IndexType::int32 : io::IndexType::int64;
 
   io::Outputs outputs_;

@@ -9,7 +9,7 @@ namespace flaunay::c {
 
 template <typename Index>
 MeshArrays<Index> to_arrays(const flaunay_mesh_arrays& given) {
-#define ARRAY(name) static_cast<Index*>(given.name),
+#define ARRAY(name) static_cast<decltype(MeshArrays<Index>::name)>(given.name),
   return {FLAUNAY_MESH_ARRAYS(ARRAY)};
 #undef ARRAY
 }

@@ -121,18 +121,24 @@ class CallersSink : public MeshSink {
  public:
   explicit CallersSink(const flaunay_mesh_sink& given) : given_(given) {
     c::check_reserved(given, "flaunay_mesh_sink");
-    constexpr unsigned kPossible =
-        FLAUNAY_PART_TRIANGLES | FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HULL | FLAUNAY_PART_REPRESENTATIVES;
-    if ((given.parts & ~kPossible) != 0) {
+    unsigned possible = 0;
+    for (const std::size_t k : kMeshArrayIndices) possible |= 1u << k;
+    if ((given.parts & ~possible) != 0) {
       throw Error(ErrorKind::usage,
-                  fmt::format("triangulations in chunks have no parts {:#x}", given.parts & ~kPossible));
+                  fmt::format("triangulations in chunks have no parts {:#x}", given.parts & ~possible));
     }
-    required(given.write, "the function that writes results");
     if (given.parts != 0) parts_ = given.parts;
+    const unsigned doubles = part_of(MeshArray::areas);
+    if ((parts_ & ~doubles) != 0) required(given.write, "the function that writes results");
+    if ((parts_ & doubles) != 0) required(given.write_doubles, "the function that writes results in doubles");
   }
   bool wants(MeshArray array) const override { return (parts_ & part_of(array)) != 0; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
     stop_unless_zero(given_.write(part_of(array), first, values, count, given_.data), "write");
+  }
+  void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
+    stop_unless_zero(given_.write_doubles(part_of(array), first, values, count, given_.data),
+                     "write_doubles");
   }
 
  private:

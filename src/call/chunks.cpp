@@ -26,6 +26,8 @@ constexpr std::uint64_t kLeastBytes = std::uint64_t{128} << 20;
 // Bytes on the host per point of a chunk: the points that are read ahead, the triangulation with its working
 // memory, the results, and the results of the chunk before, which are being written.
 constexpr std::uint64_t kBytesPerPoint = 480;
+// If areas are wanted, those of a chunk and of the one before.
+constexpr std::uint64_t kAreasBytesPerPoint = 2 * 2 * sizeof(double);
 // Chunks differ: those of more than one and a half times the points that they should have are cut again.
 constexpr double kMostUnequal = 1.6;
 constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
@@ -55,30 +57,33 @@ struct Devices {
   std::size_t chunk_points = std::numeric_limits<std::size_t>::max();  // that suit all of them
 };
 
-void add_device(Devices& devices, const std::shared_ptr<Triangulator>& triangulator) {
+void add_device(Devices& devices, const std::shared_ptr<Triangulator>& triangulator, bool with_areas) {
   devices.capacity = std::min(devices.capacity, triangulator->capacity());
   call::Engine& engine = TriangulatorAccess::implementation(*triangulator).for_host_memory();
   devices.chunk_points = std::min(devices.chunk_points, tuning_of(engine.runtime).chunk_points);
   devices.solvers.push_back(
-      {triangulator->device().name, [triangulator](const double* coordinates, std::size_t n) {
-         return triangulator->triangulate(coordinates, n);
+      {triangulator->device().name, [triangulator, with_areas](const double* coordinates, std::size_t n) {
+         Options options;
+         options.areas = with_areas;
+         return triangulator->triangulate(coordinates, n, options);
        }});
 }
 
-Devices open_devices(const ChunkOptions& options) {
+Devices open_devices(const ChunkOptions& options, bool with_areas) {
   Devices devices;
   for (Triangulator* const own : options.triangulators) {
     if (own == nullptr) throw Error(ErrorKind::usage, "a triangulator for chunks is null");
-    add_device(devices, std::shared_ptr<Triangulator>(own, [](Triangulator*) {}));
+    add_device(devices, std::shared_ptr<Triangulator>(own, [](Triangulator*) {}), with_areas);
   }
   if (!devices.solvers.empty()) return devices;
   for (const std::string& name : device_names(options.devices)) {
-    add_device(devices, std::make_shared<Triangulator>(name));
+    add_device(devices, std::make_shared<Triangulator>(name), with_areas);
   }
   return devices;
 }
 
-chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devices& devices) {
+chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devices& devices,
+                       bool with_areas) {
   const std::uint64_t memory =
       options.memory_bytes != 0 ? options.memory_bytes : host::memory_left().bytes / 2;
   if (memory < kLeastBytes) {
@@ -88,7 +93,7 @@ chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devic
   chunks::Plan plan;
   plan.buffer_bytes = memory / kBufferShare;
   const std::uint64_t for_chunks = memory - kFixedBytes - plan.buffer_bytes;
-  const std::size_t at_once = for_chunks / kBytesPerPoint;
+  const std::size_t at_once = for_chunks / (kBytesPerPoint + (with_areas ? kAreasBytesPerPoint : 0));
   plan.largest_chunk = std::min(at_once, devices.capacity);
   if (devices.capacity < at_once) plan.limit = "the smallest device";
   const std::size_t most = std::min(at_once / devices.solvers.size(), devices.capacity);
@@ -132,6 +137,7 @@ ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
 
 PointSource::~PointSource() = default;
 MeshSink::~MeshSink() = default;
+void MeshSink::write_doubles(MeshArray, std::uint64_t, const double*, std::size_t) {}
 
 void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinates) {
   std::memcpy(coordinates, coordinates_ + 2 * first, 2 * count * sizeof(double));
@@ -141,8 +147,10 @@ ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const Ch
   return with_errors([&] {
     if (points.size() == 0) return ChunkStatistics();
     check_count(points.size());
-    const Devices devices = open_devices(options);
-    return chunks::run(points, sink, make_plan(points.size(), options, devices), devices.solvers, options);
+    const bool with_areas = sink.wants(MeshArray::areas);
+    const Devices devices = open_devices(options, with_areas);
+    const chunks::Plan plan = make_plan(points.size(), options, devices, with_areas);
+    return chunks::run(points, sink, plan, devices.solvers, options);
   });
 }
 

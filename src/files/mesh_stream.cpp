@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "files/disk_space.hpp"
 #include "files/file.hpp"
@@ -13,12 +14,26 @@ namespace {
 
 std::size_t bytes_of(IndexType type) { return type == IndexType::int32 ? 4 : 8; }
 
+// How an array's elements are stored, if its indices have this type.
+struct Stored {
+  const char* descr;
+  std::size_t bytes;
+};
+Stored stored_as(std::size_t array, IndexType type) {
+  Stored stored{descr_of(type), bytes_of(type)};
+  visit_mesh_array(array, [&](const auto& row) {
+    using Element = typename std::decay_t<decltype(row)>::Element;
+    if (std::is_floating_point_v<Element>) stored = {"<f8", sizeof(double)};
+  });
+  return stored;
+}
+
 }  // namespace
 
 std::size_t columns_of(MeshArray array) {
   std::size_t columns = 0;
-  for_each_array([&](const auto& row, std::size_t k) {
-    if (k == kMeshArrayIndices[static_cast<std::size_t>(array)] && row.columns > 1) columns = row.columns;
+  visit_mesh_array(static_cast<std::size_t>(array), [&](const auto& row) {
+    if (row.columns > 1) columns = row.columns;
   });
   return columns;
 }
@@ -32,16 +47,22 @@ void check_stream_output(const std::string& path) {
   }
 }
 
-void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
+void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
                 const std::optional<std::string>& scratch) {
   std::vector<SizedOutput> files;
-  for (const MeshArray array : {MeshArray::triangles, MeshArray::neighbors, MeshArray::representatives}) {
-    const std::uint64_t entries = array == MeshArray::representatives ? n : 2 * n * columns_of(array);
-    files.push_back({paths[static_cast<std::size_t>(array)], entries * bytes_of(type)});
+  for (std::size_t k = 0; k < kMeshArrays; ++k) {
+    visit_mesh_array(k, [&](const auto& row) {
+      if (row.row == RowOf::hull_vertex) return;
+      files.push_back({paths[k], most_rows(row.row, n) * row.columns * stored_as(k, type).bytes});
+    });
   }
   // It may be on the same disk as an output.
   if (scratch) files.push_back({scratch_folder(*scratch), n * kScratchBytesPerPoint, true});
   check_disk_space(files);
+}
+
+SizedOutput scratch_output(std::uint64_t n, const std::string& scratch) {
+  return {scratch_folder(scratch), n * kScratchBytesPerPoint, true};
 }
 
 MeshFiles::MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials)
@@ -62,6 +83,11 @@ MeshFiles::Paths MeshFiles::partial_paths() const {
 }
 
 bool MeshFiles::wants(MeshArray array) const { return file_of(array).output != nullptr; }
+
+void MeshFiles::write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) {
+  extend(array, first + count);
+  file_of(array).output->write_at(kNpyHeaderBytes + first * sizeof *values, values, count * sizeof *values);
+}
 
 void MeshFiles::write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) {
   const File& file = file_of(array);
@@ -95,7 +121,7 @@ void MeshFiles::finish() {
     if (files_[k].output == nullptr) continue;
     const std::size_t columns = columns_of(static_cast<MeshArray>(k));
     const std::uint64_t rows = columns == 0 ? files_[k].entries : files_[k].entries / columns;
-    const std::string header = npy_header(descr_of(type_), rows, columns);
+    const std::string header = npy_header(stored_as(k, type_).descr, rows, columns);
     files_[k].output->write_at(0, header.data(), header.size());
   }
 }

@@ -28,6 +28,7 @@ class MeshFiles : public MeshSink {
 
   bool wants(MeshArray array) const override;
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override;
+  void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override;
 
   /// Says how many entries an array has, if other processes write some of them.
   void extend(MeshArray array, std::uint64_t entries);
@@ -50,7 +51,7 @@ class MeshFiles : public MeshSink {
 /// Throws Error(input) if the disks have no room for the arrays of n points, which have at most 2 n
 /// triangles, and for the points of chunks in the scratch folder, if there is one. The hull is not counted,
 /// since it is long for few inputs.
-void check_room(const std::array<std::string, kMeshArrays>& paths, std::uint64_t n, IndexType type,
+void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
                 const std::optional<std::string>& scratch);
 
 /// Entries per row of an array's file; 0: it has one dimension.

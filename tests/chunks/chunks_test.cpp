@@ -38,7 +38,9 @@ Triangulator& triangulator() {
 Solver solver() {
   return {"test", [](const double* coordinates, std::size_t n) {
             Triangulator own;
-            return own.triangulate(coordinates, n);
+            Options options;
+            options.areas = true;
+            return own.triangulate(coordinates, n, options);
           }};
 }
 
@@ -51,7 +53,13 @@ class VectorSink : public MeshSink {
     to.resize(std::max<std::size_t>(to.size(), first + count), kNotWritten);
     std::copy_n(values, count, to.begin() + static_cast<std::ptrdiff_t>(first));
   }
+  void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
+    EXPECT_EQ(array, MeshArray::areas);
+    areas.resize(std::max<std::size_t>(areas.size(), first + count), kNotWritten);
+    std::copy_n(values, count, areas.begin() + static_cast<std::ptrdiff_t>(first));
+  }
   std::map<MeshArray, std::vector<std::int64_t>> arrays;
+  std::vector<double> areas;
 };
 
 /// Each triangle with its neighbours as triangles, sorted: what does not depend on the order of rows.
@@ -67,6 +75,18 @@ std::vector<std::array<Row, 4>> sorted_rows(const std::vector<Index>& triangles,
       all[k + 1] = other < 0 ? Row{other, other, other} : row(other);
     }
     rows.push_back(all);
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+/// Each triangle with its area, sorted.
+template <typename Index>
+std::vector<std::pair<Row, double>> sorted_areas(const std::vector<Index>& triangles,
+                                                 const std::vector<double>& areas) {
+  std::vector<std::pair<Row, double>> rows;
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    rows.push_back({{triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]}, areas[t]});
   }
   std::sort(rows.begin(), rows.end());
   return rows;
@@ -89,15 +109,20 @@ Plan small_plan(std::size_t chunk_points, int most_handed_on_percent = 70) {
 ChunkStatistics compare(const Coordinates& points, const Plan& plan,
                         const std::vector<Solver>& solvers = {solver()}) {
   const std::size_t n = points.size() / 2;
-  const Triangulation expected = triangulator().triangulate(points.data(), n);
+  Options with_areas;
+  with_areas.areas = true;
+  const Triangulation expected = triangulator().triangulate(points.data(), n, with_areas);
   ArrayPoints source(points.data(), n);
   VectorSink sink;
   const ChunkStatistics statistics = run(source, sink, plan, solvers, {});
   EXPECT_EQ(sink.arrays[MeshArray::triangles].size(), expected.triangles.size());
   EXPECT_EQ(sink.arrays[MeshArray::neighbors].size(), expected.neighbors.size());
+  EXPECT_EQ(sink.areas.size(), expected.areas.size());
   if (::testing::Test::HasFailure()) return statistics;
   EXPECT_TRUE(sorted_rows(sink.arrays[MeshArray::triangles], sink.arrays[MeshArray::neighbors]) ==
               sorted_rows(wide(expected.triangles), wide(expected.neighbors)));
+  EXPECT_TRUE(sorted_areas(sink.arrays[MeshArray::triangles], sink.areas) ==
+              sorted_areas(expected.triangles, expected.areas));
   EXPECT_EQ(sink.arrays[MeshArray::hull], wide(expected.hull));
   EXPECT_EQ(sink.arrays[MeshArray::representatives], wide(expected.representatives));
   EXPECT_EQ(statistics.points, n);
@@ -186,8 +211,7 @@ TEST(Chunks, OfASampleWithoutOtherPoints) {
 Solver failing(std::size_t first, std::atomic<std::size_t>& calls) {
   return {"failing", [first, &calls](const double* coordinates, std::size_t n) {
             if (calls++ >= first) throw Error(ErrorKind::device, "the device is gone");
-            Triangulator own;
-            return own.triangulate(coordinates, n);
+            return solver().triangulate(coordinates, n);
           }};
 }
 
@@ -252,11 +276,17 @@ TEST(Chunks, AreTakenByADeviceAndTheHost) {
   options.chunk_points = 3000;
   options.devices = {"#0", "host"};
   std::vector<std::int64_t> triangles(6 * n), neighbors(6 * n);
+  std::vector<double> areas(2 * n);
   const ChunkStatistics statistics = triangulate_chunks(
-      points.data(), n, MeshArrays<std::int64_t>{triangles.data(), neighbors.data()}, options);
-  const Triangulation expected = triangulator().triangulate(points.data(), n);
+      points.data(), n,
+      MeshArrays<std::int64_t>{triangles.data(), neighbors.data(), nullptr, nullptr, areas.data()}, options);
+  Options with_areas;
+  with_areas.areas = true;
+  const Triangulation expected = triangulator().triangulate(points.data(), n, with_areas);
   triangles.resize(3 * statistics.triangles);
   neighbors.resize(3 * statistics.triangles);
+  areas.resize(statistics.triangles);
+  EXPECT_TRUE(sorted_areas(triangles, areas) == sorted_areas(expected.triangles, expected.areas));
   EXPECT_TRUE(sorted_rows(triangles, neighbors) ==
               sorted_rows(wide(expected.triangles), wide(expected.neighbors)));
   EXPECT_EQ(statistics.devices.size(), 2u);

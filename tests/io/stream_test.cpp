@@ -375,7 +375,7 @@ using Wide = std::vector<std::int64_t>;
 class MeshStreamTest : public FolderTest {
  protected:
   std::array<std::string, kMeshArrays> paths() const {
-    return {path("t.npy"), path("n.npy"), path("h.npy"), path("d.npy")};
+    return {path("t.npy"), path("n.npy"), path("h.npy"), path("d.npy"), path("a.npy")};
   }
   static void write_all(MeshFiles& files, MeshArray array, const Wide& values, std::size_t piece) {
     // From the end to the beginning.
@@ -391,6 +391,7 @@ TEST_F(MeshStreamTest, EntriesInAnyOrder) {
   Wide values(300'000);
   std::iota(values.begin(), values.end(), -1);
   const std::vector<std::int32_t> narrow(values.begin(), values.end());
+  const std::vector<double> areas(values.begin(), values.end());
   for (const IndexType type : {IndexType::int32, IndexType::int64}) {
     for (const std::size_t piece : {std::size_t{999}, values.size()}) {
       Outputs outputs;
@@ -404,6 +405,8 @@ TEST_F(MeshStreamTest, EntriesInAnyOrder) {
       files.write(MeshArray::neighbors, 17, &values[3], 1);
       files.write(MeshArray::neighbors, 17, &values[17], 1);
       files.write(MeshArray::hull, 4, &later, 1);
+      files.write_doubles(MeshArray::areas, 5, &areas[5], areas.size() - 5);
+      files.write_doubles(MeshArray::areas, 0, areas.data(), 5);
       files.finish();
       EXPECT_EQ(names().count("t.npy"), 0u) << "it has its name too early";
       outputs.commit();
@@ -416,6 +419,10 @@ TEST_F(MeshStreamTest, EntriesInAnyOrder) {
         EXPECT_EQ(read(path(name)), read(path("expected.npy")));
         std::filesystem::remove(path(name));
       }
+      write_npy(outputs, path("expected.npy"), areas, 0, type);
+      outputs.commit();
+      EXPECT_EQ(read(path("a.npy")), read(path("expected.npy")));
+      std::filesystem::remove(path("a.npy"));
       std::filesystem::remove(path("expected.npy"));
     }
   }

@@ -16,7 +16,8 @@ def load(path):
     with open(path, "rb") as file:
         data = file.read()
     header = data[10:128].decode()
-    return header, array.array("i" if "<i4" in header else "q", data[128:])
+    code = "d" if "<f8" in header else "i" if "<i4" in header else "q"
+    return header, array.array(code, data[128:])
 
 
 def make_points():
@@ -41,4 +42,14 @@ def check_width():
         sys.exit("the files of 32 and of 64 bits differ")
 
 
-{"points": make_points, "nan": make_nan, "width": check_width}[sys.argv[1]]()
+def check_areas():
+    # With the least corner of their triangles: rows may be in another order.
+    (header, found), (expected_header, expected) = load("a.npy"), load("areas.npy")
+    corners, expected_corners = load("t.npy")[1][::3], load("expected.npy")[1][::3]
+    if header != expected_header or len(found) != len(corners):
+        sys.exit("the file of areas has another type or shape")
+    if sorted(zip(corners, found)) != sorted(zip(expected_corners, expected)):
+        sys.exit("the areas differ")
+
+
+{"points": make_points, "nan": make_nan, "width": check_width, "areas": check_areas}[sys.argv[1]]()

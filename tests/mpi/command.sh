@@ -52,10 +52,12 @@ case "$1" in
     "$FLAUNAY" generate integer-circle 300 -o circle.bin
     python3 "$here/arrays.py" points
     for points in kuzmin.npy uniform.bin circle.bin float32.npy none.npy two.npy; do
-      "$FLAUNAY" triangulate "$points" --triangles expected.npy --hull hull.npy --duplicates duplicates.npy >log
+      "$FLAUNAY" triangulate "$points" --triangles expected.npy --hull hull.npy --duplicates duplicates.npy \
+        --areas areas.npy >log
       for ranks in 1 4; do
-        on "$ranks" "$points" --triangles t.npy --neighbors n.npy --hull h.npy --duplicates d.npy --stats s.json \
-          --round-points 500
+        on "$ranks" "$points" --triangles t.npy --neighbors n.npy --hull h.npy --duplicates d.npy --areas a.npy \
+          --stats s.json --round-points 500
+        python3 "$here/arrays.py" areas || fail "$points on $ranks ranks: other areas"
         cmp hull.npy h.npy || fail "$points on $ranks ranks: another hull"
         cmp duplicates.npy d.npy || fail "$points on $ranks ranks: other duplicates"
         [[ $(stat -c %s expected.npy) == $(stat -c %s t.npy) ]] || fail "$points on $ranks ranks: triangles are missing"

@@ -12,6 +12,7 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -80,7 +81,9 @@ const std::vector<std::pair<std::string, Spread>>& spreads() {
   return all;
 }
 
-std::vector<std::int64_t> gathered(MPI_Comm communicator, const std::vector<std::int64_t>& values) {
+template <typename T>
+std::vector<T> gathered(MPI_Comm communicator, const std::vector<T>& values) {
+  const MPI_Datatype type = std::is_floating_point_v<T> ? MPI_DOUBLE : MPI_INT64_T;
   int size = 0, rank = 0;
   MPI_Comm_size(communicator, &size);
   MPI_Comm_rank(communicator, &rank);
@@ -88,10 +91,9 @@ std::vector<std::int64_t> gathered(MPI_Comm communicator, const std::vector<std:
   std::vector<int> counts(static_cast<std::size_t>(size)), begins(counts.size());
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, communicator);
   std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
-  std::vector<std::int64_t> all(
-      rank == 0 ? static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0)) : 0);
-  MPI_Gatherv(values.data(), count, MPI_INT64_T, all.data(), counts.data(), begins.data(), MPI_INT64_T, 0,
-              communicator);
+  std::vector<T> all(rank == 0 ? static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0))
+                               : 0);
+  MPI_Gatherv(values.data(), count, type, all.data(), counts.data(), begins.data(), type, 0, communicator);
   return all;
 }
 
@@ -100,6 +102,7 @@ Triangulation gathered(MPI_Comm communicator, const Triangulation& own) {
   Triangulation all;
   all.triangles = gathered(communicator, own.triangles);
   all.neighbors = gathered(communicator, own.neighbors);
+  all.areas = gathered(communicator, own.areas);
   all.hull = gathered(communicator, own.hull);
   all.representatives = gathered(communicator, own.representatives);
   all.statistics = own.statistics;
@@ -126,6 +129,18 @@ std::vector<std::array<Row, 4>> sorted_rows(const std::vector<Index>& triangles,
   return rows;
 }
 
+/// Each triangle with its area, sorted.
+template <typename Index>
+std::vector<std::pair<Row, double>> sorted_areas(const std::vector<Index>& triangles,
+                                                 const std::vector<double>& areas) {
+  std::vector<std::pair<Row, double>> rows;
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    rows.push_back({{triangles.at(3 * t), triangles.at(3 * t + 1), triangles.at(3 * t + 2)}, areas[t]});
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
 std::vector<std::int64_t> wide(const std::vector<std::int32_t>& values) {
   return {values.begin(), values.end()};
 }
@@ -138,7 +153,8 @@ Options with_rounds_of(std::size_t points) {
 
 /// On the ranks of the communicator. The statistics are those of this rank.
 Statistics compare_on(MPI_Comm communicator, const Coordinates& points, const Spread& spread,
-                      const Options& options) {
+                      Options options) {
+  options.areas = true;
   int size = 0, rank = 0;
   MPI_Comm_size(communicator, &size);
   MPI_Comm_rank(communicator, &rank);
@@ -157,8 +173,12 @@ Statistics compare_on(MPI_Comm communicator, const Coordinates& points, const Sp
   EXPECT_TRUE(rank == 0 || result.hull.empty());
   const Triangulation all = gathered(communicator, result);
   if (rank != 0) return result.statistics;
-  const flaunay::Triangulation expected = triangulator().triangulate(points.data(), n);
+  flaunay::Options with_areas;
+  with_areas.areas = true;
+  const flaunay::Triangulation expected = triangulator().triangulate(points.data(), n, with_areas);
   EXPECT_EQ(all.triangles.size(), expected.triangles.size());
+  EXPECT_EQ(all.areas.size(), expected.areas.size());
+  EXPECT_TRUE(sorted_areas(all.triangles, all.areas) == sorted_areas(expected.triangles, expected.areas));
   if (options.neighbors && all.triangles.size() == expected.triangles.size()) {
     EXPECT_TRUE(sorted_rows(all.triangles, all.neighbors) ==
                 sorted_rows(expected.triangles, expected.neighbors));

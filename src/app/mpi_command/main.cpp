@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "app/command/chunks.hpp"
@@ -128,19 +128,26 @@ std::string summary(const Statistics& statistics, int ranks) {
              static_cast<double>(statistics.points) / std::max(statistics.seconds, 1e-9));
 }
 
-// What is written of an array, and from which row on.
-struct Share {
-  const std::vector<std::int64_t>& values;
-  std::uint64_t first_row, rows;
-};
-
-// In the order of MeshArray.
-std::array<Share, io::kMeshArrays> shares_of(const Triangulation& mesh) {
-  const auto first_row = static_cast<std::uint64_t>(mesh.first_row);
-  return {{{mesh.triangles, first_row, mesh.statistics.triangles},
-           {mesh.neighbors, first_row, mesh.statistics.triangles},
-           {mesh.hull, 0, mesh.statistics.hull_vertices},
-           {mesh.representatives, static_cast<std::uint64_t>(mesh.first_point), mesh.statistics.points}}};
+// Writes this rank's share of the arrays that have a file.
+void write_share(const Triangulation& mesh, io::MeshFiles& files) {
+  // values: those from first_row on, of so many rows of all ranks.
+  const auto write = [&](MeshArray array, const auto& values, std::int64_t first_row, std::uint64_t rows) {
+    if (!files.wants(array)) return;
+    const std::size_t columns = std::max<std::size_t>(1, io::columns_of(array));
+    const std::uint64_t first = static_cast<std::uint64_t>(first_row) * columns;
+    if constexpr (std::is_same_v<decltype(values), const std::vector<double>&>) {
+      files.write_doubles(array, first, values.data(), values.size());
+    } else {
+      files.write(array, first, values.data(), values.size());
+    }
+    files.extend(array, rows * columns);
+  };
+  const std::uint64_t triangles = mesh.statistics.triangles;
+  write(MeshArray::triangles, mesh.triangles, mesh.first_row, triangles);
+  write(MeshArray::neighbors, mesh.neighbors, mesh.first_row, triangles);
+  write(MeshArray::hull, mesh.hull, 0, mesh.statistics.hull_vertices);
+  write(MeshArray::representatives, mesh.representatives, mesh.first_point, mesh.statistics.points);
+  write(MeshArray::areas, mesh.areas, mesh.first_row, triangles);
 }
 
 // Points of a binary file, which all ranks read.
@@ -216,6 +223,7 @@ int triangulate(Ranks& ranks, const Request& request) {
   const double cpu_before = cpu_seconds();
   Options options = request.options;
   options.neighbors = !request.results.arrays[array_index("neighbors")].empty();
+  options.areas = !request.results.arrays[array_index("areas")].empty();
   const Triangulation mesh =
       mpi::triangulate(ranks.communicator(), points.data(), points.size() / 2, options);
   points = {};
@@ -224,17 +232,10 @@ int triangulate(Ranks& ranks, const Request& request) {
 
   progress.update("writing");
   stopwatch.restart();
-  const auto shares = shares_of(mesh);
   io::Outputs outputs;
   io::MeshFiles files = open_files(ranks, outputs, paths, type);
   ranks.together([&] {
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      const auto array = static_cast<MeshArray>(k);
-      if (!files.wants(array)) continue;
-      const std::size_t columns = std::max<std::size_t>(1, io::columns_of(array));
-      files.write(array, shares[k].first_row * columns, shares[k].values.data(), shares[k].values.size());
-      files.extend(array, shares[k].rows * columns);
-    }
+    write_share(mesh, files);
     outputs.write_out();
   });
   ranks.together([&] {

@@ -26,7 +26,7 @@ class FLAUNAY_API PointSource {
 
 /// The arrays of a triangulation, as Triangulation describes them. In `triangles` and `neighbors`, a row has
 /// three entries.
-enum class MeshArray { triangles, neighbors, hull, representatives };
+enum class MeshArray { triangles, neighbors, hull, representatives, areas };
 
 /// Where a triangulation is written, in pieces. No two calls are made at a time.
 class FLAUNAY_API MeshSink {
@@ -37,6 +37,8 @@ class FLAUNAY_API MeshSink {
   /// Stores `count` values as the entries [first, first + count) of an array; throws an Error if it cannot.
   /// Entries may be written in any order. Some neighbours are written twice, and the later value counts.
   virtual void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) = 0;
+  /// As write, for the areas, which are doubles. A sink that does not override it gets none.
+  virtual void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count);
 };
 
 /// Bytes in the scratch folder for each point.
@@ -94,9 +96,9 @@ struct ChunkStatistics {
 
 /// Triangulates one set of points in chunks. What is final in a chunk is written; points around which
 /// something is missing, some hundredths of a chunk's, go on to chunks that are cut otherwise, until one
-/// chunk has them all. The set of triangles with their neighbours, the hull and the representatives are those
-/// of Triangulator::triangulate. Rows are in the order of rounds, then of chunks, then of the rows of a call
-/// on the chunk alone; so their order depends on the options, too. Indices are 64-bit numbers.
+/// chunk has them all. The set of triangles with their neighbours and areas, the hull and the representatives
+/// are those of Triangulator::triangulate. Rows are in the order of rounds, then of chunks, then of the rows
+/// of a call on the chunk alone; so their order depends on the options, too. Indices are 64-bit numbers.
 ///
 /// Throws what Triangulator::triangulate throws, and: Error(input) if the scratch folder has too little room
 /// or writing there fails; if the points that are left to the last chunk do not fit memory_bytes, as of
@@ -127,6 +129,7 @@ struct MeshArrays {
   Index* neighbors = nullptr;        ///< room for 6 n indices
   Index* hull = nullptr;             ///< room for n indices
   Index* representatives = nullptr;  ///< room for n indices
+  double* areas = nullptr;           ///< room for 2 n numbers
 };
 
 /// Points and results are in memory. Throws Error(input), too, if there are more points than 32-bit indices

@@ -299,12 +299,13 @@ typedef struct flaunay_chunk_options {
 /// Arrays of the caller's for the results of n points, such as memory-mapped files. There are at most 2 n
 /// triangles and n hull vertices. What is beyond the results is not written. {0}: no array is wanted.
 typedef struct flaunay_mesh_arrays {
-  int index_type;         ///< a flaunay_index_type, of all arrays
+  int index_type;         ///< a flaunay_index_type, of all arrays of indices
   void* triangles;        ///< room for 6 n indices; NULL: not wanted
   void* neighbors;        ///< room for 6 n indices; NULL: not wanted
   void* hull;             ///< room for n indices; NULL: not wanted
   void* representatives;  ///< room for n indices; NULL: not wanted
-  uintptr_t reserved[4];  ///< 0
+  double* areas;          ///< room for 2 n numbers; NULL: not wanted
+  uintptr_t reserved[3];  ///< 0
 } flaunay_mesh_arrays;
 
 /// Points in memory, such as a part of a larger table. {0}: no points.
@@ -317,14 +318,15 @@ typedef struct flaunay_strided_points {
   uintptr_t reserved[4];        ///< 0
 } flaunay_strided_points;
 
-/// Files for the results, .npy arrays of the type that flaunay_mesh_arrays has. The paths are those of
+/// Files for the results, .npy arrays of the types that flaunay_mesh_arrays has. The paths are those of
 /// regular files and end in ".npy"; NULL: no file is wanted.
 typedef struct flaunay_mesh_files {
   const char* triangles;        ///< the path for an array of three columns
   const char* neighbors;        ///< the path for an array of three columns
   const char* hull;             ///< the path for an array of one dimension
   const char* representatives;  ///< the path for an array of one dimension
-  uintptr_t reserved[4];        ///< 0
+  const char* areas;            ///< the path for an array of one dimension
+  uintptr_t reserved[3];        ///< 0
 } flaunay_mesh_files;
 
 /// Points that a function of the caller's reads in pieces. {0}: no points.
@@ -340,16 +342,18 @@ typedef struct flaunay_point_source {
 
 /// Where a function of the caller's writes a triangulation in pieces.
 typedef struct flaunay_mesh_sink {
-  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES and FLAUNAY_PART_AREAS. Other arrays are not
-  /// computed. 0: the triangles alone.
+  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES. Other arrays are not computed. 0: the triangles
+  /// alone.
   unsigned parts;
   /// Stores `count` values as the entries [first, first + count) of one part, where a triangle has three
   /// entries. Returns 0; if it returns anything else, the call ends with FLAUNAY_ERROR_STOPPED. Entries may
   /// be written in any order. Some neighbours are written twice, and the later value counts. It may be called
   /// on any thread, once at a time.
   int (*write)(unsigned part, uint64_t first, const int64_t* values, size_t count, void* data);
-  void* data;             ///< passed to write unchanged
-  uintptr_t reserved[4];  ///< 0
+  void* data;  ///< passed to both functions unchanged
+  /// As write, for FLAUNAY_PART_AREAS. NULL: it is not wanted.
+  int (*write_doubles)(unsigned part, uint64_t first, const double* values, size_t count, void* data);
+  uintptr_t reserved[3];  ///< 0
 } flaunay_mesh_sink;
 
 /// A phase of a call and its wall time.

@@ -21,6 +21,7 @@ struct Options {
   /// machine take them in turn.
   std::string device;
   bool neighbors = true;  ///< compute Triangulation::neighbors
+  bool areas = false;     ///< compute Triangulation::areas
   /// Points that a rank should have at most in rounds after the first, in which as few ranks as possible work
   /// on what is left. 0: a sixteenth of the mean of the first round, but at least 65,536.
   std::size_t round_points = 0;
@@ -60,6 +61,8 @@ struct Triangulation {
   /// 3 row numbers per row: the triangle opposite to each vertex, -1 beyond the hull. Empty unless
   /// Options::neighbors.
   std::vector<std::int64_t> neighbors;
+  /// One per row: the triangle's area, as flaunay::Triangulation::areas. Empty unless Options::areas.
+  std::vector<double> areas;
   /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
   /// point. Collinear sets: the distinct points in lexicographic order. On rank 0; empty on the others.
   std::vector<std::int64_t> hull;

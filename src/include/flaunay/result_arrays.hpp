@@ -27,7 +27,7 @@
   X(double, areas, triangle, 1, on_request, "Areas of triangles")
 
 /// The arrays that triangulations in chunks have, in the order of flaunay::MeshArray: X(name).
-#define FLAUNAY_MESH_ARRAYS(X) X(triangles) X(neighbors) X(hull) X(representatives)
+#define FLAUNAY_MESH_ARRAYS(X) X(triangles) X(neighbors) X(hull) X(representatives) X(areas)
 
 /// The arrays that flaunay::ConstrainedTriangulation has besides. A row is as above, but the line for users
 /// is empty for arrays that the command does not write to files. An array is computed always, or if there is
@@ -159,5 +159,13 @@ constexpr std::size_t array_index(std::string_view name) {
 /// For each MeshArray its place in the table.
 inline constexpr std::array kMeshArrayIndices = {FLAUNAY_MESH_ARRAYS(FLAUNAY_INDEX)};
 #undef FLAUNAY_INDEX
+
+/// Calls visit(array) for the one that has this number in the order of MeshArray.
+template <typename Visit>
+constexpr void visit_mesh_array(std::size_t number, const Visit& visit) {
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (k == kMeshArrayIndices[number]) visit(array);
+  });
+}
 
 }  // namespace flaunay

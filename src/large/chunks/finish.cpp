@@ -199,13 +199,16 @@ void FinishedChunk::write_rows(MeshSink& sink, std::uint64_t first_row) const {
   const bool with_triangles = sink.wants(MeshArray::triangles),
              with_neighbors = sink.wants(MeshArray::neighbors);
   std::vector<std::int64_t> corners, neighbors;
+  std::vector<double> areas;
   std::uint64_t written = first_row;
   const auto flush = [&] {
     if (with_triangles) sink.write(MeshArray::triangles, 3 * written, corners.data(), corners.size());
     if (with_neighbors) sink.write(MeshArray::neighbors, 3 * written, neighbors.data(), neighbors.size());
+    if (!areas.empty()) sink.write_doubles(MeshArray::areas, written, areas.data(), areas.size());
     written += corners.size() / 3;
     corners.clear();
     neighbors.clear();
+    areas.clear();
   };
   auto border = border_.begin();
   for (std::size_t t = 0; t < rows_.size(); ++t) {
@@ -220,6 +223,7 @@ void FinishedChunk::write_rows(MeshSink& sink, std::uint64_t first_row) const {
         ++border;
       }
     }
+    if (!mesh_.areas.empty()) areas.push_back(mesh_.areas[t]);
     if (corners.size() == 3 * kRowsPerPiece) flush();
   }
   if (!corners.empty()) flush();

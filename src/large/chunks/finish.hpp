@@ -27,8 +27,8 @@ struct Place {
 /// A triangulated chunk. Rows are counted from the number of its first one, which may be known only later.
 class FinishedChunk {
  public:
-  /// mesh: the triangulation of the chunk's points, with neighbours. scaling: that of all points. O(points),
-  /// and in later rounds O(points log points).
+  /// mesh: the triangulation of the chunk's points, with neighbours, and with areas if these are wanted.
+  /// scaling: that of all points. O(points), and in later rounds O(points log points).
   FinishedChunk(host::Threads& threads, ChunkPoints points, Triangulation mesh, const Place& place,
                 const geometry::Scaling& scaling);
 
@@ -39,7 +39,7 @@ class FinishedChunk {
 
   /// The points around which something is missing.
   ChunkPoints handed_on(std::uint64_t first_row) const;
-  /// Writes the triangles that are final, and their neighbours, also those of rounds before.
+  /// Writes the triangles that are final, their areas, and their neighbours, also those of rounds before.
   void write(MeshSink& sink, std::uint64_t first_row) const;
   /// Writes which points are not their own representatives.
   void write_duplicates(MeshSink& sink) const;

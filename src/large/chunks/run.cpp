@@ -35,14 +35,10 @@ class SharedSink : public MeshSink {
   }
   bool wants(MeshArray array) const override { return wanted_[static_cast<std::size_t>(array)]; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
-    const std::lock_guard lock(mutex_);
-    if (failure_) std::rethrow_exception(failure_);
-    try {
-      sink_.write(array, first, values, count);
-    } catch (...) {
-      failure_ = std::current_exception();
-      throw;
-    }
+    write_alone([&] { sink_.write(array, first, values, count); });
+  }
+  void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
+    write_alone([&] { sink_.write_doubles(array, first, values, count); });
   }
   // Writes nothing any more, because of this error.
   void close(const std::exception_ptr& error) {
@@ -51,6 +47,18 @@ class SharedSink : public MeshSink {
   }
 
  private:
+  template <typename Write>
+  void write_alone(const Write& write) {
+    const std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(failure_);
+    try {
+      write();
+    } catch (...) {
+      failure_ = std::current_exception();
+      throw;
+    }
+  }
+
 #define ARRAY(name) MeshArray::name,
   static constexpr std::array kArrays{FLAUNAY_MESH_ARRAYS(ARRAY)};
 #undef ARRAY

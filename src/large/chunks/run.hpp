@@ -17,8 +17,8 @@ namespace flaunay::chunks {
 /// What triangulates chunks, on a device. It is called by one thread at a time.
 struct Solver {
   std::string name;
-  /// Triangulates n points, x0 y0 x1 y1 ..., with neighbours. If it throws Error(device), it is not used any
-  /// more.
+  /// Triangulates n points, x0 y0 x1 y1 ..., with neighbours, and areas if they are wanted. If it throws
+  /// Error(device), it is not used any more.
   std::function<Triangulation(const double* coordinates, std::size_t n)> triangulate;
 };
 

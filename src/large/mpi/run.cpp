@@ -259,6 +259,7 @@ class Run {
     result_.triangles = std::move(sink_.triangles());
     result_.neighbors = std::move(sink_.neighbors());
     result_.hull = std::move(sink_.hull());
+    result_.areas = std::move(sink_.areas());
     result_.statistics.bytes_sent = ranks_.bytes_sent();
     end_phase("link");
     return std::move(result_);

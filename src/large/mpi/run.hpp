@@ -15,6 +15,7 @@ struct Solver {
   std::size_t capacity = 0;  ///< points that it can take at once
   /// Whether what it takes comes from the memory of the machine, which other ranks on it use as well.
   bool shares_memory = true;
+  /// With neighbours, and with areas if they are wanted.
   std::function<flaunay::Triangulation(const double* coordinates, std::size_t n)> triangulate;
 };
 

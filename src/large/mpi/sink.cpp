@@ -46,6 +46,8 @@ void RankSink::write(MeshArray array, std::uint64_t first, const std::int64_t* v
       for (std::size_t k = 0; k < count; ++k)
         duplicates_.push_back({static_cast<std::int64_t>(first + k), values[k]});
       break;
+    case MeshArray::areas:
+      break;  // see write_doubles
   }
 }
 

@@ -27,6 +27,10 @@ class RankSink : public MeshSink {
 
   bool wants(MeshArray array) const override { return array != MeshArray::neighbors || with_neighbors_; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override;
+  /// Areas alone are doubles.
+  void write_doubles(MeshArray, std::uint64_t, const double* values, std::size_t count) override {
+    areas_.insert(areas_.end(), values, values + count);
+  }
 
   /// The results, when all rounds are over. Called by all ranks. begins: the number of each rank's first row.
   void link_rows(Ranks& ranks, host::Threads& threads, const std::vector<std::int64_t>& begins);
@@ -34,6 +38,7 @@ class RankSink : public MeshSink {
   std::vector<std::int64_t>& triangles() { return triangles_; }
   std::vector<std::int64_t>& neighbors() { return neighbors_; }
   std::vector<std::int64_t>& hull() { return hull_; }
+  std::vector<double>& areas() { return areas_; }
 
  private:
   // An entry of an array of another rank.
@@ -46,6 +51,7 @@ class RankSink : public MeshSink {
   int rank_;
   bool with_neighbors_;
   std::vector<std::int64_t> triangles_, neighbors_, hull_;
+  std::vector<double> areas_;
   std::vector<Entry> links_, duplicates_;
 };
 

@@ -44,8 +44,10 @@ Triangulation triangulate(Ranks& ranks, Triangulator* given, const double* coord
     solver.name = device.name;
     solver.capacity = triangulator->capacity();
     solver.shares_memory = device.type != "GPU";
-    solver.triangulate = [triangulator](const double* points, std::size_t count) {
-      return triangulator->triangulate(points, count);
+    flaunay::Options with_areas;
+    with_areas.areas = options.areas;
+    solver.triangulate = [triangulator, with_areas](const double* points, std::size_t count) {
+      return triangulator->triangulate(points, count, with_areas);
     };
   });
   return run(ranks, solver, coordinates, n, options);
