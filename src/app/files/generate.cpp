@@ -61,6 +61,9 @@ class Random {
   std::uint64_t below(std::uint64_t bound) { return engine_() % bound; }
   /// In the unit square.
   GeneratedPoint in_square() { return {unit(), unit()}; }  // in this order, as in all lists in braces
+  GeneratedPoint integers_below(std::uint64_t bound) {
+    return {static_cast<double>(below(bound)), static_cast<double>(below(bound))};
+  }
   /// Two independent N(0, 1), by Box and Muller.
   GeneratedPoint normal_pair() {
     const double radius = std::sqrt(-2 * portable_log(1 - unit()));
@@ -79,7 +82,19 @@ class Random {
 namespace {
 
 using Point = GeneratedPoint;
-using MakePoint = Distribution::MakePoint;
+using MakePoints = Distribution::MakePoints;
+
+/// Makes points one by one.
+template <typename MakePoint>
+MakePoints each(MakePoint make) {
+  return [make = std::move(make)](std::size_t first, std::size_t count, double* coordinates) mutable {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point p = make(first + i);
+      coordinates[2 * i] = p.x;
+      coordinates[2 * i + 1] = p.y;
+    }
+  };
+}
 
 /// Columns of the smallest square grid that has n nodes.
 std::size_t grid_width(std::size_t n) {
@@ -89,58 +104,60 @@ std::size_t grid_width(std::size_t n) {
   return width;
 }
 
-/// Node i of that grid, row by row.
-MakePoint grid(std::size_t n, Random&) {
-  return [width = grid_width(n)](std::size_t i) {
-    return Point{static_cast<double>(i % width), static_cast<double>(i / width)};
-  };
+/// Its node i, row by row.
+Point grid_node(std::size_t width, std::size_t i) {
+  return {static_cast<double>(i % width), static_cast<double>(i / width)};
 }
 
-MakePoint rotated_grid(std::size_t n, Random& random) {
-  return [node = grid(n, random)](std::size_t i) {
-    const double cosine = 3 / std::sqrt(10.0), sine = 1 / std::sqrt(10.0);  // by atan(1/3)
-    const auto [x, y] = node(i);
+MakePoints grid(std::size_t n, Random&) {
+  return each([width = grid_width(n)](std::size_t i) { return grid_node(width, i); });
+}
+
+MakePoints rotated_grid(std::size_t n, Random&) {
+  const double cosine = 3 / std::sqrt(10.0), sine = 1 / std::sqrt(10.0);  // by atan(1/3)
+  return each([width = grid_width(n), cosine, sine](std::size_t i) {
+    const auto [x, y] = grid_node(width, i);
     return Point{cosine * x - sine * y, sine * x + cosine * y};
-  };
+  });
 }
 
-MakePoint hexagonal(std::size_t n, Random& random) {
-  return [node = grid(n, random), row_distance = std::sqrt(3.0) / 2](std::size_t i) {
-    const auto [x, y] = node(i);
-    return Point{x + (static_cast<std::size_t>(y) % 2 ? 0.5 : 0.0), row_distance * y};
-  };
+MakePoints hexagonal(std::size_t n, Random&) {
+  return each([width = grid_width(n), row_distance = std::sqrt(3.0) / 2](std::size_t i) {
+    const auto [x, y] = grid_node(width, i);
+    return Point{x + (i / width % 2 ? 0.5 : 0.0), row_distance * y};
+  });
 }
 
-MakePoint uniform(std::size_t, Random& random) {
-  return [&random](std::size_t) { return random.in_square(); };
+MakePoints uniform(std::size_t, Random& random) {
+  return each([&random](std::size_t) { return random.in_square(); });
 }
 
-MakePoint normal(std::size_t, Random& random) {
-  return [&random](std::size_t) { return random.normal_pair(); };
+MakePoints normal(std::size_t, Random& random) {
+  return each([&random](std::size_t) { return random.normal_pair(); });
 }
 
-MakePoint kuzmin(std::size_t, Random& random) {
-  return [&random](std::size_t) {
+MakePoints kuzmin(std::size_t, Random& random) {
+  return each([&random](std::size_t) {
     // M(r) = 1 - 1 / sqrt(1 + r^2), inverted.
     const double rest = 1 - random.unit();
     const double radius = std::sqrt(1 / (rest * rest) - 1);
     const Point d = direction(random.unit());
     return Point{radius * d.x, radius * d.y};
-  };
+  });
 }
 
-MakePoint line(std::size_t, Random& random) {
-  return [&random](std::size_t) {
+MakePoints line(std::size_t, Random& random) {
+  return each([&random](std::size_t) {
     constexpr double b = 0.001;
     const double u = random.unit();
     return Point{b / (u - b * u + b), random.unit()};
-  };
+  });
 }
 
-MakePoint circle(std::size_t n, Random& random) {
-  return [n, start = random.unit()](std::size_t i) {
+MakePoints circle(std::size_t n, Random& random) {
+  return each([n, start = random.unit()](std::size_t i) {
     return direction((static_cast<double>(i) + start) / static_cast<double>(n));
-  };
+  });
 }
 
 struct IntegerPoint {
@@ -172,7 +189,7 @@ std::vector<IntegerPoint> integer_circle_points(const std::vector<int>& powers) 
   return points;
 }
 
-MakePoint integer_circle(std::size_t n, Random& random) {
+MakePoints integer_circle(std::size_t n, Random& random) {
   // Each circle has more points than the one before, 4 to 36,864.
   const std::vector<std::vector<int>> circles = {
       {}, {1, 1}, {2, 1, 1}, {2, 2, 1, 1, 1}, {2, 2, 2, 1, 1, 1, 1}, {3, 3, 2, 2, 1, 1, 1, 1, 1, 1}};
@@ -182,104 +199,106 @@ MakePoint integer_circle(std::size_t n, Random& random) {
     if (points.size() >= n) break;
   }
   // Scaled by 1, 2, 3, ..., the largest circle gives more circles of as many exactly cocircular points.
-  return [&random, points, scale = std::int64_t{0}](std::size_t i) mutable {
+  return each([&random, points, scale = std::int64_t{0}](std::size_t i) mutable {
     const std::size_t k = i % points.size();
     if (k == 0) {
       random.shuffle(points);
       ++scale;
     }
     return Point{static_cast<double>(scale * points[k].x), static_cast<double>(scale * points[k].y)};
-  };
+  });
 }
 
-MakePoint nested_circles(std::size_t n, Random& random) {
-  return [n, circles = grid_width(n) / 4 + 1, start = random.unit()](std::size_t i) {
+MakePoints nested_circles(std::size_t n, Random& random) {
+  return each([n, circles = grid_width(n) / 4 + 1, start = random.unit()](std::size_t i) {
     const std::size_t c = i % circles, on_circle = (n - c + circles - 1) / circles;
     const double radius = static_cast<double>(c + 1) / static_cast<double>(circles);
     const Point d = direction((static_cast<double>(i / circles) + start) / static_cast<double>(on_circle));
     return Point{radius * d.x, radius * d.y};
-  };
+  });
 }
 
-MakePoint columns(std::size_t, Random& random) {
-  return [&random](std::size_t i) {
+MakePoints columns(std::size_t, Random& random) {
+  return each([&random](std::size_t i) {
     constexpr std::size_t kColumns = 8;
     const std::size_t column = i % kColumns, row = i / kColumns;
     // Even columns are equally spaced, odd ones irregular. All numbers are integers, and no two are equal.
     const std::uint64_t shift = column % 2 ? random.below(4) : 0;
     return Point{static_cast<double>(column), static_cast<double>(4 * row + shift)};
-  };
+  });
 }
 
-MakePoint small_integers(std::size_t n, Random& random) {
-  const std::uint64_t bound = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(n)) / 2) + 2;
-  return [&random, bound](std::size_t) {
-    return Point{static_cast<double>(random.below(bound)), static_cast<double>(random.below(bound))};
-  };
+/// Of n points with integers below this, most are there several times.
+std::uint64_t small_bound(std::size_t n) {
+  return static_cast<std::uint64_t>(std::sqrt(static_cast<double>(n)) / 2) + 2;
 }
 
-MakePoint one_ulp(std::size_t n, Random& random) {
-  return [integers = small_integers(n, random)](std::size_t i) {
-    const auto [x, y] = integers(i);
+MakePoints small_integers(std::size_t n, Random& random) {
+  return each([&random, bound = small_bound(n)](std::size_t) { return random.integers_below(bound); });
+}
+
+MakePoints one_ulp(std::size_t n, Random& random) {
+  return each([&random, bound = small_bound(n)](std::size_t) {
+    const auto [x, y] = random.integers_below(bound);
     return Point{1 + x * 0x1p-52, 1 + y * 0x1p-52};
-  };
+  });
 }
 
-MakePoint half_duplicates(std::size_t n, Random& random) {
+MakePoints half_duplicates(std::size_t n, Random& random) {
   const std::size_t originals = n - n / 2;
   std::vector<Point> all;
   all.reserve(n);
   while (all.size() < originals) all.push_back(random.in_square());
   while (all.size() < n) all.push_back(all[random.below(originals)]);
   random.shuffle(all);
-  return [all = std::move(all)](std::size_t i) { return all[i]; };
+  return each([all = std::move(all)](std::size_t i) { return all[i]; });
 }
 
-MakePoint collinear(std::size_t n, Random& random) {
-  return [&random, n](std::size_t) {
+MakePoints collinear(std::size_t n, Random& random) {
+  return each([&random, n](std::size_t) {
     const auto position = static_cast<double>(random.below(8 * n));
     return Point{position, 3 * position};
-  };
+  });
 }
 
-MakePoint horizontal(std::size_t n, Random& random) {
-  return [&random, n](std::size_t) { return Point{static_cast<double>(random.below(8 * n)), 7}; };
+MakePoints horizontal(std::size_t n, Random& random) {
+  return each([&random, n](std::size_t) { return Point{static_cast<double>(random.below(8 * n)), 7}; });
 }
 
-MakePoint parabola(std::size_t n, Random&) {
+MakePoints parabola(std::size_t n, Random&) {
   // Scaled by a power of two, so that x is within [-1, 1] and x^2 as exact as the integer's square.
   int bits = 0;
   while ((n / 2) >> bits > 0) ++bits;
-  return [middle = static_cast<double>(n / 2), bits](std::size_t i) {
+  return each([middle = static_cast<double>(n / 2), bits](std::size_t i) {
     const double x = std::ldexp(static_cast<double>(i) - middle, -bits);
     return Point{x, x * x};
-  };
+  });
 }
 
-MakePoint clusters(std::size_t, Random& random) {
+MakePoints clusters(std::size_t, Random& random) {
   std::array<Point, 12> centers;
   for (Point& center : centers) center = random.in_square();
-  return [&random, centers](std::size_t) {
+  return each([&random, centers](std::size_t) {
     // Each cluster a quarter the width of the one before: 1/8 down to 3e-8.
     const std::size_t c = random.below(centers.size());
     const double width = std::ldexp(0.125, -2 * static_cast<int>(c));
     const Point d = random.normal_pair();
     return Point{centers[c].x + width * d.x, centers[c].y + width * d.y};
-  };
+  });
 }
 
-MakePoint spiral(std::size_t n, Random& random) {
+MakePoints spiral(std::size_t n, Random& random) {
   // Archimedes' spiral. The distance between its arms equals the distance between points along an arm.
   const double pi = 0x1.921fb54442d18p+1;
   const double arms = std::sqrt(static_cast<double>(n) / pi);
-  return [n, arms, start = random.unit()](std::size_t i) {
+  return each([n, arms, start = random.unit()](std::size_t i) {
     const double radius = std::sqrt((static_cast<double>(i) + 0.5) / static_cast<double>(n));
     const Point d = direction(arms * radius + start);
     return Point{radius * d.x, radius * d.y};
-  };
+  });
 }
 
-MakePoint thirty_lines(std::size_t n, Random& random) {
+MakePoints thirty_lines(std::size_t n, Random& random) {
   constexpr std::size_t kLines = 30;
   // No two of the directions are parallel; each line goes through a random node of a grid as wide as it is
   // long, so that all of them cross.
@@ -289,41 +308,39 @@ MakePoint thirty_lines(std::size_t n, Random& random) {
       {4, 3}, {4, -3}, {3, 4}, {3, -4}, {5, 1}, {5, -1}, {1, 5}, {1, -5}, {5, 2}, {5, -2}};
   const std::uint64_t length = 8 * n;
   std::array<Point, kLines> starts;
-  for (Point& start : starts) {
-    start = {static_cast<double>(random.below(length + 1)), static_cast<double>(random.below(length + 1))};
-  }
-  return [&random, length, starts](std::size_t) {
+  for (Point& start : starts) start = random.integers_below(length + 1);
+  return each([&random, length, starts](std::size_t) {
     const std::size_t l = random.below(kLines);
     const double position = static_cast<double>(random.below(length)) - static_cast<double>(length / 2);
     return Point{starts[l].x + static_cast<double>(kDirections[l][0]) * position,
                  starts[l].y + static_cast<double>(kDirections[l][1]) * position};
-  };
+  });
 }
 
-MakePoint power_of_two_span(std::size_t n, Random& random) {
+MakePoints power_of_two_span(std::size_t n, Random& random) {
   std::uint64_t span = 4;
   while (span * span / 16 < n) span *= 2;
-  return [&random, span](std::size_t i) {
+  return each([&random, span](std::size_t i) {
     // Two opposite corners, so that the span is exact.
     const auto coordinate = [&] { return static_cast<double>(i < 2 ? i * span : random.below(span + 1)); };
     return Point{coordinate(), coordinate()};
-  };
+  });
 }
 
-MakePoint mostly_equal(std::size_t n, Random& random) {
+MakePoints mostly_equal(std::size_t n, Random& random) {
   constexpr std::size_t kOthers = 10;
-  return [&random, stride = n / kOthers + 1, usual = random.in_square()](std::size_t i) {
+  return each([&random, stride = n / kOthers + 1, usual = random.in_square()](std::size_t i) {
     return i % stride == stride / 2 ? random.in_square() : usual;
-  };
+  });
 }
 
-MakePoint two_clusters(std::size_t, Random& random) {
-  return [&random](std::size_t) {
+MakePoints two_clusters(std::size_t, Random& random) {
+  return each([&random](std::size_t) {
     constexpr double kDistance = 1e9;
     const double center = random.below(2) ? kDistance : 0;
     const Point d = random.normal_pair();
     return Point{center + d.x, center + d.y};
-  };
+  });
 }
 
 }  // namespace
@@ -367,16 +384,12 @@ void generate(const std::string& distribution, std::size_t n, std::uint64_t seed
     names += (names.empty() ? "" : ", ") + known.name;
     if (known.name != distribution) continue;
     Random random(seed);
-    const MakePoint make = known.maker(n, random);
+    const MakePoints make = known.maker(n, random);
     constexpr std::size_t kPiece = std::size_t{1} << 16;
     std::vector<double> piece(2 * std::min(n, kPiece));
     for (std::size_t first = 0; first < n; first += kPiece) {
       const std::size_t count = std::min(n - first, kPiece);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Point p = make(first + i);
-        piece[2 * i] = p.x;
-        piece[2 * i + 1] = p.y;
-      }
+      make(first, count, piece.data());
       consume(piece.data(), count);
     }
     return;

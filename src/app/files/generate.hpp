@@ -19,9 +19,9 @@ class Random;
 struct Distribution {
   std::string name;
   std::string description;
-  /// Makes point i of n, in their order.
-  using MakePoint = std::function<GeneratedPoint(std::size_t i)>;
-  MakePoint (*maker)(std::size_t n, Random& random);
+  /// Makes points [first, first + count) of n. To be called for all of them in their order.
+  using MakePoints = std::function<void(std::size_t first, std::size_t count, double* coordinates)>;
+  MakePoints (*maker)(std::size_t n, Random& random);
 };
 
 /// The known distributions, each with a line of description; the first four are those of the paper.

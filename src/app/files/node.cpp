@@ -135,7 +135,8 @@ void write_vertices(OutputFile& file, const double* coordinates, const std::int3
                     std::uint64_t first, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     file.print("{} {} {}", first + i, coordinates[2 * i], coordinates[2 * i + 1]);
-    markers != nullptr ? file.print(" {}\n", markers[i]) : file.print("\n");
+    if (markers != nullptr) file.print(" {}", markers[i]);
+    file.print("\n");
   }
 }
 

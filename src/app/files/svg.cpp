@@ -52,7 +52,11 @@ class Picture {
     drawing_.begin(fmt::format("{} triangulation of {}", kind, counted(point_count(), "point")));
     write_triangles();
     if (!mesh_.triangles.empty()) write_edges();
-    is_constrained() ? write_constraints() : write_hull();
+    if (is_constrained()) {
+      write_constraints();
+    } else {
+      write_hull();
+    }
     if (point_count() <= kDotsUpTo) write_dots();
     drawing_.end(caption());
   }
