@@ -36,8 +36,10 @@ WorkspaceBytes taken(Runtime& runtime, const Coordinates& coordinates, const Off
   mesh.hull = results.allocate<cl_int>(n);
   const Options options;
   statistics::Phases phases(options);
-  run(runtime, persistent, offsets,
-      {points, persistent.allocate<cl_int>(n), true, [&](const MeshSizes&) { return mesh; }}, phases);
+  const auto outcome =
+      run(runtime, persistent, offsets,
+          {points, persistent.allocate<cl_int>(n), true, [&](const MeshSizes&) { return mesh; }}, phases);
+  EXPECT_TRUE(static_cast<bool>(outcome)) << "points are too wide for fixed point";
   runtime.finish();
   return {persistent.peak_bytes(), scratch.peak_bytes()};
 }
