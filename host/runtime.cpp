@@ -9,7 +9,6 @@
 #include "host/memory/huge_pages.hpp"
 #include "host/native/backend.hpp"
 #include "host/opencl/backend.hpp"
-#include "operations/counting.h"
 
 namespace flaunay::host {
 
@@ -65,11 +64,11 @@ void Runtime::set_counters(const Buffer<cl_uint>& counters) {
   counting_ = counters.memory() != nullptr;
 }
 
-void Runtime::record_launches(bool with_steps) {
+void Runtime::record_launches(const CountedWords& words) {
   // Pending times refer to launches of another log, if any.
   backend_->collect_times();
-  accounts_.log = std::make_unique<LaunchLog>(memory(), with_steps && !is_native());
-  if (!accounts_.log->counts_steps()) return;
+  accounts_.log = std::make_unique<LaunchLog>(memory(), words);
+  if (words.length == 0) return;
   set_counters(accounts_.log->counters());
   uncounted([&] { fill(counters_, counters_.size(), cl_uint{0}); });
 }
@@ -78,7 +77,7 @@ void Runtime::stop_recording() {
   if (accounts_.log == nullptr) return;
   // The device may still write counters to the log.
   settle();
-  if (accounts_.log->counts_steps()) set_counters({});
+  if (accounts_.log->words().length > 0) set_counters({});
   accounts_.log = nullptr;
 }
 
@@ -90,14 +89,14 @@ std::vector<Launch> Runtime::recorded_launches() {
 }
 
 // Reads what the last launch has counted and sets it to 0.
-void Runtime::record_steps() {
-  constexpr std::size_t kOffset = kernel::COUNTER_STEPS * sizeof(cl_uint),
-                        kBytes = kernel::STEP_COUNTERS * sizeof(cl_uint);
+void Runtime::record_counted() {
+  const CountedWords& words = accounts_.log->words();
+  const std::size_t offset = words.first * sizeof(cl_uint), bytes = words.count * sizeof(cl_uint);
   const cl_uint zero = 0;
-  cl_uint* const steps = accounts_.log->steps_of_last();
+  cl_uint* const counted = accounts_.log->counted_of_last();
   uncounted([&] {
-    backend_->read(counters_.memory(), kOffset, kBytes, steps, false);
-    backend_->fill(counters_.memory(), kOffset, kBytes, &zero, sizeof zero);
+    backend_->read(counters_.memory(), offset, bytes, counted, false);
+    backend_->fill(counters_.memory(), offset, bytes, &zero, sizeof zero);
   });
 }
 

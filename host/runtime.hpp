@@ -289,9 +289,9 @@ class Runtime {
     Runtime& runtime_;
   };
 
-  /// Records later launches. with_steps: kernels count their steps, in a build that is slower; not while they
-  /// count otherwise (set_counters).
-  void record_launches(bool with_steps);
+  /// Records later launches. words: what each launch counts, in a build of the kernels that is slower; not
+  /// while they count otherwise (set_counters), and not natively.
+  void record_launches(const CountedWords& words = {});
   void stop_recording();
   /// The launches since the last reset, empty if they are not recorded. Waits, which is not counted.
   std::vector<Launch> recorded_launches();
@@ -301,7 +301,7 @@ class Runtime {
   void note_spread(std::size_t spread) { accounts_.next.spread = spread; }
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
-  /// counters as their last argument; see kernels/operations/counting.h. An empty buffer ends this.
+  /// counters as their last argument. An empty buffer ends this.
   void set_counters(const Buffer<cl_uint>& counters);
   /// The times per kernel since the last reset; empty without profiling.
   std::map<std::string, KernelTime> kernel_times();
@@ -344,7 +344,7 @@ class Runtime {
     const bool counts = counting_ && arguments < kernel.arguments;
     if (counts) set_argument(kernel, arguments, counters_);
     backend_->launch(kernel, work_items, group);
-    if (counts && accounts_.log != nullptr) record_steps();
+    if (counts && accounts_.log != nullptr) record_counted();
   }
   template <typename T>
   void set_bytes(Kernel& kernel, cl_uint index, const T& value) {
@@ -374,7 +374,7 @@ class Runtime {
 
   Kernel& find_kernel(const KernelName& name);
   void read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to);
-  void record_steps();
+  void record_counted();
   /// Does what is no command of the call: it is neither counted nor recorded.
   template <typename Commands>
   void uncounted(const Commands& commands) {

@@ -2,34 +2,20 @@
 
 #include <utility>
 
-#include "operations/counting.h"
-
 namespace flaunay::host {
 
-static_assert(kernel::STEP_COUNTERS == 3);
-
-LaunchLog::LaunchLog(MemorySource memory, bool counts_steps)
-    : counts_steps_(counts_steps), arena_(std::move(memory)) {
-  if (counts_steps_) counters_ = arena_.allocate<cl_uint>(kernel::COUNTERS_LENGTH);
+LaunchLog::LaunchLog(MemorySource memory, const CountedWords& words)
+    : words_(words), arena_(std::move(memory)) {
+  if (words_.length > 0) counters_ = arena_.allocate<cl_uint>(words_.length);
 }
 
-cl_uint* LaunchLog::steps_of_last() {
-  steps_.push_back({last(), {}});
-  return steps_.back().counters;
+cl_uint* LaunchLog::counted_of_last() {
+  launches_.back().counted.resize(words_.count);
+  return launches_.back().counted.data();
 }
 
-std::vector<Launch> LaunchLog::launches() const {
-  std::vector<Launch> result = launches_;
-  for (const Steps& of : steps_) {
-    result[of.launch].longest_chain = of.counters[0];
-    result[of.launch].steps = of.counters[1] + (static_cast<std::uint64_t>(of.counters[2]) << 32);
-  }
-  return result;
-}
+std::vector<Launch> LaunchLog::launches() const { return {launches_.begin(), launches_.end()}; }
 
-void LaunchLog::clear() {
-  launches_.clear();
-  steps_.clear();
-}
+void LaunchLog::clear() { launches_.clear(); }
 
 }  // namespace flaunay::host

@@ -10,6 +10,7 @@
 #include "modes/dwyer/dwyer.hpp"
 #include "modes/partition/regions.hpp"
 #include "modes/recursive/run.hpp"
+#include "operations/counting.h"
 
 namespace flaunay {
 namespace call {
@@ -25,7 +26,8 @@ class Recording {
     if (wanted == research::Record::steps && runtime_.is_native()) {
       throw Error(ErrorKind::usage, "kernels count their steps on OpenCL devices only; name one");
     }
-    runtime_.record_launches(wanted == research::Record::steps);
+    const host::CountedWords steps{kernel::COUNTERS_LENGTH, kernel::COUNTER_STEPS, kernel::STEP_COUNTERS};
+    runtime_.record_launches(wanted == research::Record::steps ? steps : host::CountedWords{});
   }
   ~Recording() { runtime_.stop_recording(); }
   Recording(const Recording&) = delete;
@@ -34,8 +36,12 @@ class Recording {
   std::vector<research::LaunchStatistics> launches() const {
     std::vector<research::LaunchStatistics> all;
     for (const host::Launch& launch : runtime_.recorded_launches()) {
-      all.push_back({launch.kernel, launch.work_items, launch.group, launch.busy, launch.elements,
-                     launch.bytes, launch.longest_chain, launch.steps, launch.seconds});
+      all.push_back(
+          {launch.kernel, launch.work_items, launch.group, launch.busy, launch.elements, launch.bytes});
+      all.back().seconds = launch.seconds;
+      if (launch.counted.empty()) continue;
+      all.back().longest_chain = launch.counted[0];
+      all.back().steps = launch.counted[1] + (static_cast<std::uint64_t>(launch.counted[2]) << 32);
     }
     return all;
   }
