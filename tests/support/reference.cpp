@@ -59,11 +59,33 @@ std::vector<mpz_class> scale_to_integers(const double* values, std::size_t count
   return integers;
 }
 
+/// A rounded number, and by how much at most it differs from the exact one.
+struct Rounded {
+  double value, error;
+};
+
+/// a b + c d, of numbers that are exact but for a rounding each, so their products too: at most 6 roundings
+/// of 2^-53.
+Rounded sum_of_products(double a, double b, double c, double d) {
+  return {a * b + c * d, 0x1p-50 * (std::fabs(a * b) + std::fabs(c * d))};
+}
+
+/// a b - c d.
+Rounded difference_of_products(Rounded a, Rounded b, Rounded c, Rounded d) {
+  const auto error = [](Rounded u, Rounded v) {
+    return std::fabs(u.value) * v.error + u.error * (std::fabs(v.value) + v.error) +
+           0x1p-50 * std::fabs(u.value * v.value);
+  };
+  return {a.value * b.value - c.value * d.value, 1.01 * (error(a, b) + error(c, d))};
+}
+
 /// Triangulates distinct points; the triangles are in terms of their positions in the list.
 template <typename Integer>
 class CellWrapper {
  public:
-  explicit CellWrapper(const std::vector<Point<Integer>>& points) : points_(points) {}
+  explicit CellWrapper(const std::vector<Point<Integer>>& points) : points_(points) {
+    for (const Point<Integer>& p : points) rounded_.push_back({as_double(p.x), as_double(p.y)});
+  }
 
   TriangleSet run() {
     if (points_.size() < 3) return {};
@@ -106,7 +128,20 @@ class CellWrapper {
     // grows with cot(angle a p b) = dot / cross. The empty circle is that of the smallest.
     std::vector<int> cell;
     Integer best_dot = 0, best_cross = 0;
+    Rounded rounded_dot{}, rounded_cross{};
+    const Point<double>&u = rounded_[a], &v = rounded_[b];
     for (int p = 0; p < size(); ++p) {
+      // Most points are out of question by rounded numbers already; where these overflow, no comparison
+      // holds.
+      const double ux = u.x - rounded_[p].x, uy = u.y - rounded_[p].y;
+      const double vx = v.x - rounded_[p].x, vy = v.y - rounded_[p].y;
+      const Rounded about_cross = sum_of_products(ux, vy, -uy, vx),
+                    about_dot = sum_of_products(ux, vx, uy, vy);
+      if (about_cross.value < -about_cross.error) continue;
+      if (!cell.empty()) {
+        const Rounded about = difference_of_products(about_dot, rounded_cross, rounded_dot, about_cross);
+        if (about_cross.value > about_cross.error && about.value > about.error) continue;
+      }
       const Integer p_cross = cross<Integer>(points_[p], points_[a], points_[b]);
       if (p_cross <= 0) continue;
       const Integer p_dot = dot<Integer>(points_[p], points_[a], points_[b]);
@@ -115,6 +150,8 @@ class CellWrapper {
         cell.assign(1, p);
         best_dot = p_dot;
         best_cross = p_cross;
+        rounded_dot = about_dot;
+        rounded_cross = about_cross;
       } else if (difference == 0) {
         cell.push_back(p);
       }
@@ -131,7 +168,11 @@ class CellWrapper {
     return cell;
   }
 
+  static double as_double(const mpz_class& integer) { return integer.get_d(); }
+  static double as_double(Int128 integer) { return static_cast<double>(integer); }
+
   const std::vector<Point<Integer>>& points_;
+  std::vector<Point<double>> rounded_;  // the same numbers: those that were scaled to integers
   std::set<std::pair<int, int>> done_;  // directed edges of the cells found
   TriangleSet triangles_;
 };

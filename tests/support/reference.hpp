@@ -15,7 +15,7 @@ using TriangleSet = std::vector<std::array<std::int32_t, 3>>;
 /// The canonical Delaunay triangulation of n points (x0 y0 x1 y1 ..., finite): duplicates are represented by
 /// their smallest index; every Delaunay cell (polygon whose corners are all points on an empty circle) is
 /// triangulated as a fan from its lexicographically smallest corner; counter-clockwise. Empty if the points
-/// are all collinear. O(n^2): a few milliseconds for 100 points, some 50 for 300.
+/// are all collinear. O(n^2): some milliseconds for 300 points.
 TriangleSet reference_delaunay(const double* coordinates, std::size_t n);
 TriangleSet reference_delaunay(const std::vector<double>& coordinates);
 
