@@ -323,7 +323,7 @@ class Fingerprint:
             "command": ["sideways"],
             "distribution": ["generate", "sideways", 5, "-o", "-"],
             "count": ["generate", "uniform", -5, "-o", "-"],
-            "too-many": ["generate", "uniform", 3000000000, "-o", folder / "many.npy"],
+            "too-many": ["generate", "uniform", 30000000000000000000, "-o", folder / "many.npy"],
             "no-output": ["generate", "uniform", 5],
             "points-ending": ["generate", "uniform", 5, "-o", folder / "a.off"],
             "partition-levels": ["partition", good, "--levels=31", "-o", folder / "regions"],
