@@ -2,7 +2,8 @@
 # Builds and runs all tests. Needs only Debian 12: installs everything else first.
 #   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers, and some fuzzing
 #                             the readers of files
-#   scripts/test.sh --quick   without the sanitizers
+#   scripts/test.sh --quick   without the sanitizers, and without the tests labelled configurations, which check on other
+#                             devices, with other sizes and the like what others check already
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -37,4 +38,6 @@ if ! $quick; then
   scripts/fuzz.sh 20s readers
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
-ctest --preset release --no-tests=error -j "$jobs"
+some=()
+if $quick; then some=(--label-exclude configurations); fi
+ctest --preset release --no-tests=error -j "$jobs" "${some[@]}"

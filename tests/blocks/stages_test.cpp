@@ -264,7 +264,8 @@ TEST(Stages, ResultsDoNotDependOnTuning) {
   for (const std::size_t block_points : {2, 6, 64}) {
     std::vector<Triangulation> results;
     for (const int variant : {0, 1, 2, 3}) {
-      Runtime runtime(host::find_device(""), settings_for(host::find_device("")));
+      const auto own = testing::make_tuned_runtime("own");
+      Runtime& runtime = *own;
       Tuning tuning = tuning_of(runtime);
       tuning.block_points = block_points;
       tuning.block_workers = std::array<std::size_t, 4>{1, 3, 64, 5000}[static_cast<std::size_t>(variant)];

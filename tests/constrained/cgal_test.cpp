@@ -28,10 +28,10 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
-using Structure =
+using ConstrainedStructure =
     CGAL::Triangulation_data_structure_2<Vertex, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using Constrained =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, ConstrainedStructure,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 Constrained cgal_constrained(const Coordinates& points, const Triangulation& delaunay,

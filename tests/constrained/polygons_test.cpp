@@ -323,13 +323,13 @@ TEST(SmallPolygons, PartsAndTheirHoles) {
     return result;
   };
   // Parts of polygons, and how large the polygon is.
-  struct Case {
+  struct Polygon {
     std::vector<std::vector<Coordinates>> parts;
     double area;
   };
   const Coordinates large = square(0, 10), hole = square(2, 8), inner = square(4, 6), apart = square(20, 30);
   const Coordinates eight = {0, 0, 2, 2, 4, 0, 4, 4, 2, 2, 0, 4};
-  const std::vector<Case> cases = {
+  const std::vector<Polygon> cases = {
       {{{large, hole}}, 64},          {{{large, hole, hole}}, 64},
       {{{large, hole, inner}}, 64},   {{{large, square(12, 14)}}, 100},
       {{{large, large}}, 0},          {{{large}, {hole}}, 100},
