@@ -127,19 +127,6 @@ TEST_P(OnFixture, EveryModeIsTheSameAtThousands) {
   expect_all_same(make_fixture(GetParam(), 3000, 4), false);
 }
 
-std::string instance_name(const ::testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
-}
-
-std::vector<std::string> fixture_names() {
-  std::vector<std::string> names;
-  for (const Fixture& fixture : all_fixtures()) names.push_back(fixture.name);
-  return names;
-}
-
 // Tiny inputs take levels and blocks, with regions of all kinds: cocircular polygons across borders, borders
 // that touch themselves, vertices with several corners.
 TEST_P(OnFixture, FlattenedEndsInBlocks) {

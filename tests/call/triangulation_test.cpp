@@ -64,33 +64,8 @@ research::Triangulation triangulate(const Coordinates& points, const std::vector
   return research::triangulate(triangulator(), points.data(), offsets, options);
 }
 
-/// Sets FLAUNAY_TUNING for its lifetime.
-class TuningScope {
- public:
-  explicit TuningScope(const char* tuning) {
-    if (const char* before = std::getenv("FLAUNAY_TUNING")) {
-      had_ = true;
-      before_ = before;
-    }
-    setenv("FLAUNAY_TUNING", tuning, 1);
-  }
-  ~TuningScope() {
-    if (had_) {
-      setenv("FLAUNAY_TUNING", before_.c_str(), 1);
-    } else {
-      unsetenv("FLAUNAY_TUNING");
-    }
-  }
-  TuningScope(const TuningScope&) = delete;
-  TuningScope& operator=(const TuningScope&) = delete;
-
- private:
-  bool had_ = false;
-  std::string before_;
-};
-
 Triangulator make_tuned(const char* tuning) {
-  const TuningScope scope(tuning);
+  const ScopedEnvironment scope("FLAUNAY_TUNING", tuning);
   return Triangulator(testing::device_under_test());
 }
 
@@ -98,18 +73,6 @@ std::size_t size_of(const Coordinates& points) { return points.size() / 2; }
 
 std::pair<double, double> point(const Coordinates& points, std::size_t i) {
   return {points[2 * i], points[2 * i + 1]};
-}
-
-/// Small sets in full, so that a failure can be replayed.
-std::string text_of(const Coordinates& points) {
-  std::string text = std::to_string(size_of(points)) + " points";
-  if (size_of(points) > 40) return text;
-  for (std::size_t i = 0; i < size_of(points); ++i) {
-    char buffer[80];
-    std::snprintf(buffer, sizeof buffer, "\n  %.17g %.17g", points[2 * i], points[2 * i + 1]);
-    text += buffer;
-  }
-  return text;
 }
 
 std::vector<std::size_t> lexicographic_order(const Coordinates& points) {
@@ -343,20 +306,6 @@ std::string error_text(ErrorKind kind, const std::function<void()>& action) {
   }
   ADD_FAILURE() << "no error";
   return {};
-}
-
-std::string instance_name(const ::testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  for (char& c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
-  return name;
-}
-
-std::vector<std::string> fixture_names() {
-  std::vector<std::string> names;
-  for (const Fixture& fixture : all_fixtures()) names.push_back(fixture.name);
-  return names;
 }
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -1005,7 +954,7 @@ TEST_F(Errors, UnknownDevice) {
     EXPECT_NE(text.find(name), std::string::npos) << text;
     EXPECT_NE(text.find("#0 "), std::string::npos) << "does not say what there is: " << text;
   }
-  const TuningScope scope("no such tuning");
+  const ScopedEnvironment scope("FLAUNAY_TUNING", "no such tuning");
   EXPECT_NE(error_text(ErrorKind::device, [] { Triangulator(testing::device_under_test()); })
                 .find("no such tuning"),
             std::string::npos);
@@ -1195,7 +1144,7 @@ TEST(Statistics, ProgressGoesFromBeginningToEnd) {
 
 /// In mode blocks, one launch after the other: no step is longer than the solution of some blocks.
 TEST(Statistics, ProgressMovesInModeBlocks) {
-  const TuningScope scope("cpu,block_workers=2");
+  const ScopedEnvironment scope("FLAUNAY_TUNING", "cpu,block_workers=2");
   const std::size_t n = 400000;
   const Coordinates points = io::generate("uniform", n, 2).coordinates;
   Triangulator fresh;

@@ -39,17 +39,6 @@ research::Triangulation triangulate(const Coordinates& points, const Options& op
   return research::triangulate_on_host(points.data(), {0, points.size() / 2}, options);
 }
 
-/// Small sets in full, so that a failure can be replayed.
-std::string text_of(const Coordinates& points) {
-  std::string text = std::to_string(points.size() / 2) + " points";
-  for (std::size_t i = 0; i < points.size() && points.size() <= 80; ++i) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%s%.17g", i % 2 ? " " : "\n  ", points[i]);
-    text += buffer;
-  }
-  return text;
-}
-
 void expect_reference(const Coordinates& points) {
   SCOPED_TRACE(text_of(points));
   const Triangulation result = triangulate(points);

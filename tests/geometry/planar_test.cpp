@@ -22,16 +22,6 @@ namespace {
 
 using geometry::Point;
 
-std::string text_of(const Coordinates& points) {
-  std::string text;
-  for (const double c : points) {
-    char number[40];
-    std::snprintf(number, sizeof number, "%a ", c);
-    text += number;
-  }
-  return text;
-}
-
 Point point_of(const Coordinates& points, std::size_t i) { return {points[2 * i], points[2 * i + 1]}; }
 
 int reference_orient(const Coordinates& points, std::size_t a, std::size_t b, std::size_t c) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <random>
 #include <stdexcept>
@@ -268,12 +270,37 @@ inline Coordinates scaled(Coordinates points, double factor) {
   return points;
 }
 
+/// Small sets in full, so that a failure can be replayed.
+inline std::string text_of(const Coordinates& points) {
+  std::string text = std::to_string(points.size() / 2) + " points";
+  for (std::size_t i = 0; i < points.size() && points.size() <= 80; ++i) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%s%.17g", i % 2 ? " " : "\n  ", points[i]);
+    text += buffer;
+  }
+  return text;
+}
+
 /// permutation[i] is where point i of the result comes from.
 inline Coordinates permuted(const Coordinates& points, const std::vector<std::size_t>& permutation) {
   Coordinates result;
   for (const std::size_t i : permutation) fixtures_detail::add(result, points[2 * i], points[2 * i + 1]);
   return result;
 }
+
+inline std::vector<std::string> fixture_names() {
+  std::vector<std::string> names;
+  for (const Fixture& fixture : all_fixtures()) names.push_back(fixture.name);
+  return names;
+}
+
+/// Names a test's instance by its parameter, in letters, digits and underscores.
+inline constexpr auto instance_name = [](const auto& info) {
+  std::string name = info.param;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+};
 
 /// The files of tests/data.
 inline const std::vector<std::string>& data_files() {
